@@ -1,0 +1,103 @@
+#ifndef FASCICLE_CLIENT_LIB_CLIENT_H_
+#define FASCICLE_CLIENT_LIB_CLIENT_H_
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "core/base/problems.h"
+#include "fascicle/v1/frame.pb.h"
+#include "fascicle/v1/job.pb.h"
+#include "fascicle/v1/scene.pb.h"
+#include "fascicle/v1/simulation_service.pb.h"
+
+namespace fascicle::client {
+
+// What a call can end in beside its result. `kind` decides the exit code of the command line.
+struct Error {
+  enum class Kind { kInvalid, kNoServer, kNotFound, kRefused, kInternal, kStopped };
+  Kind kind = Kind::kInternal;
+  std::string message;  // for people
+  std::string reason;   // ErrorInfo.reason, may be empty
+  Problems problems;    // kInvalid: each with its field path
+};
+
+// A result or an error.
+template <class T>
+class Result {
+ public:
+  Result(T value) : value_(std::move(value)) {}        // NOLINT(google-explicit-constructor): reads like a return value
+  Result(Error error) : error_(std::move(error)) {}    // NOLINT(google-explicit-constructor)
+  bool ok() const { return value_.has_value(); }
+  T& value() { return *value_; }
+  const T& value() const { return *value_; }
+  const Error& error() const { return error_; }
+
+ private:
+  std::optional<T> value_;
+  Error error_;
+};
+
+// A file that a scene names, read into memory.
+struct AssetFile {
+  std::string sha256_hex;
+  std::string path;   // where it came from, for messages
+  std::string bytes;
+};
+
+// A scene with every FileRef.asset set, and the files.
+struct ScenePackage {
+  v1::Scene scene;
+  std::vector<AssetFile> assets;
+};
+
+struct WatchOptions {
+  std::int64_t start_index = 0;
+  bool follow = true;
+  v1::StreamFramesRequest::Mode mode = v1::StreamFramesRequest::MODE_ALL;
+  // How long to try again after a lost connection before giving up; fresh after every frame.
+  std::chrono::seconds patience = std::chrono::seconds(30);
+};
+
+// What Watch tells; all called on the thread that called Watch. Any may be empty.
+struct WatchEvents {
+  std::function<void(const v1::Frame& frame)> frame;                                     // complete, digest checked
+  std::function<void(v1::Job::State state, const v1::Progress& progress)> progress;
+  std::function<void(const std::string& message)> reconnecting;
+};
+
+// A connection to a server. Thread-safe. Calls are repeated on UNAVAILABLE with backoff; CreateJob only with its
+// request id, so that a job is never created twice.
+class Client {
+ public:
+  explicit Client(const std::string& address);
+  ~Client();
+
+  Result<v1::ServerInfo> GetServerInfo();
+  // Uploads what the server lacks and creates the job.
+  Result<v1::Job> Submit(const ScenePackage& package, int threads);
+  // Checks without creating.
+  std::optional<Error> Validate(const ScenePackage& package, int threads);
+  Result<v1::Job> GetJob(const std::string& name);
+  Result<std::vector<v1::Job>> ListJobs(int limit, const std::vector<v1::Job::State>& states);
+  Result<v1::Job> CancelJob(const std::string& name);
+  std::optional<Error> DeleteJob(const std::string& name);
+  Result<v1::Geometry> GetGeometry(const std::string& name);
+  Result<std::vector<v1::FrameInfo>> ListFrames(const std::string& name, std::int64_t start_index);
+  // Delivers frames from start_index, each once and in order, reconnecting and resuming by itself; returns the job
+  // when the stream is complete. kStopped after a stop request.
+  Result<v1::Job> Watch(const std::string& name, const WatchOptions& options, const WatchEvents& events, std::stop_token stop = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_LIB_CLIENT_H_

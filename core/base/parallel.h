@@ -1,0 +1,54 @@
+#ifndef FASCICLE_CORE_BASE_PARALLEL_H_
+#define FASCICLE_CORE_BASE_PARALLEL_H_
+
+#include <cstddef>
+#include <memory>
+#include <type_traits>
+
+namespace fascicle {
+
+// A fixed set of threads that run loops together. The calling thread takes part.
+// One loop at a time: the member functions must not be called from two threads at once, nor from inside a loop.
+class ThreadTeam {
+ public:
+  // threads >= 1.
+  explicit ThreadTeam(int threads);
+  ~ThreadTeam();
+  ThreadTeam(const ThreadTeam&) = delete;
+  ThreadTeam& operator=(const ThreadTeam&) = delete;
+
+  int size() const;
+
+  // Calls body(begin, end) on ranges that together cover [0, count) once, each at least `grain` long where possible.
+  // `body` may write only what belongs to its own indices; then the result does not depend on the number of threads.
+  // `body` must not throw. Allocates nothing.
+  template <class Body>
+  void For(std::size_t count, std::size_t grain, const Body& body) {
+    static_assert(std::is_invocable_v<const Body&, std::size_t, std::size_t>);
+    Run(count, grain, [](const void* b, std::size_t begin, std::size_t end) { (*static_cast<const Body*>(b))(begin, end); },
+        &body);
+  }
+
+  // Sum of body(begin, end) over blocks of fixed size, added in the order of the blocks: the same bits for any number
+  // of threads.
+  template <class Body>
+  double Sum(std::size_t count, const Body& body) {
+    static_assert(std::is_invocable_r_v<double, const Body&, std::size_t, std::size_t>);
+    return RunSum(count, [](const void* b, std::size_t begin, std::size_t end) {
+      return (*static_cast<const Body*>(b))(begin, end);
+    }, &body);
+  }
+
+ private:
+  using LoopBody = void (*)(const void* body, std::size_t begin, std::size_t end);
+  using SumBody = double (*)(const void* body, std::size_t begin, std::size_t end);
+  void Run(std::size_t count, std::size_t grain, LoopBody call, const void* body);
+  double RunSum(std::size_t count, SumBody call, const void* body);
+
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_BASE_PARALLEL_H_

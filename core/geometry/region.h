@@ -1,0 +1,33 @@
+#ifndef FASCICLE_CORE_GEOMETRY_REGION_H_
+#define FASCICLE_CORE_GEOMETRY_REGION_H_
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/geometry/tet_mesh.h"
+
+namespace fascicle {
+
+// The selectors of scene.proto, lengths in [m], directions of any non-zero length.
+struct TagSelector { std::int32_t tag = 0; };
+struct PlaneSelector { Vec3 point, normal; };
+struct BoxSelector { Vec3 min, max; };
+struct SphereSelector { Vec3 center; double radius = 0; };
+struct SideSelector { Vec3 direction; double max_angle = 0; };  // [rad]
+using Selector = std::variant<TagSelector, PlaneSelector, BoxSelector, SphereSelector, SideSelector>;
+
+// A named part of a mesh.
+struct Region {
+  std::string name;
+  std::vector<std::int32_t> nodes;  // ascending, no duplicates
+  std::vector<Triangle> triangles;  // of the surface: outward, all nodes in `nodes` (side, tag: the selected ones)
+};
+
+// Round-off allowance of plane, box and sphere: 1e-9 of the mesh's diagonal. May be empty.
+Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name, const Selector& selector);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_GEOMETRY_REGION_H_

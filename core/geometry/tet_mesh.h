@@ -1,0 +1,33 @@
+#ifndef FASCICLE_CORE_GEOMETRY_TET_MESH_H_
+#define FASCICLE_CORE_GEOMETRY_TET_MESH_H_
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/types.h"
+
+namespace fascicle {
+
+using Tetrahedron = std::array<std::int32_t, 4>;  // node indices; det[X1-X0, X2-X0, X3-X0] > 0
+using Triangle = std::array<std::int32_t, 3>;     // node indices; counter-clockwise seen from outside
+
+// Tetrahedra with what their file says about them. Plain data: see mesh_checks.h for what makes one fit to simulate.
+struct TetMesh {
+  std::vector<Vec3> nodes;                      // [m] (readers: the file's own unit)
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<std::int32_t> tetrahedron_tags;   // physical tag of each tetrahedron; empty when the file has none
+  std::vector<Triangle> tagged_triangles;       // triangles listed in the file, in its own orientation
+  std::vector<std::int32_t> triangle_tags;      // physical tag of each of them
+};
+
+// det[X1-X0, X2-X0, X3-X0] / 6 [m^3].
+double SignedVolume(const TetMesh& mesh, std::size_t tetrahedron);
+// Sum of the signed volumes [m^3].
+double TotalVolume(const TetMesh& mesh);
+// Faces that belong to one tetrahedron only, outward oriented, in a fixed order.
+std::vector<Triangle> BoundaryTriangles(const TetMesh& mesh);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_GEOMETRY_TET_MESH_H_

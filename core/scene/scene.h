@@ -1,0 +1,113 @@
+#ifndef FASCICLE_CORE_SCENE_SCENE_H_
+#define FASCICLE_CORE_SCENE_SCENE_H_
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/problems.h"
+#include "core/geometry/region.h"
+#include "core/geometry/tet_mesh.h"
+#include "core/materials/material.h"
+#include "core/muscle/fibre_field.h"
+#include "core/scene/curve.h"
+
+namespace fascicle {
+
+// What is simulated, in SI and with everything resolved: the messages of scene.proto one for one, see there for the
+// meaning. Built by the server's translation or by hand, then checked by CheckScene and never changed.
+
+struct Rotation {
+  Vec3 point = Vec3::Zero();   // [m]
+  Vec3 axis = Vec3::UnitZ();   // unit
+  Curve angle;                 // [rad]
+};
+
+struct Motion {
+  std::array<std::optional<Curve>, 3> translation;  // [m]
+  std::optional<Rotation> rotation;
+};
+
+struct Constraint {
+  std::int32_t region = 0;                           // index into Body::regions
+  std::array<bool, 3> axes = {true, true, true};
+  Motion motion;
+};
+
+struct Traction { Vec3 vector = Vec3::Zero(); };   // [Pa] of rest area
+struct NodalForce { Vec3 total = Vec3::Zero(); };  // [N]
+
+struct Load {
+  std::int32_t region = 0;  // index into Body::regions
+  std::variant<Traction, NodalForce> kind;
+  Curve scale = Curve::Constant(1);
+};
+
+struct Damping {
+  double mass_proportional = 0;       // [1/s]
+  double stiffness_proportional = 0;  // [s]
+  double viscosity = 0;               // [Pa s]
+};
+
+struct Body {
+  std::string name;
+  TetMesh mesh;  // [m]
+  double density = 1060;  // [kg/m^3]
+  Material material = NeoHookean(std::array{1e4, 0.3});
+  FibreField fibres;  // empty, or one for each tetrahedron
+  std::vector<Region> regions;
+  std::vector<Constraint> constraints;
+  std::vector<Load> loads;
+  Curve activation = Curve::Constant(0);
+  Damping damping;
+};
+
+struct Gravity {
+  Vec3 acceleration = Vec3::Zero();  // [m/s^2]
+  Curve scale = Curve::Constant(1);
+};
+
+enum class Stepping { kExplicit, kMixed };
+
+struct TetMethod {
+  Stepping stepping = Stepping::kExplicit;
+  std::optional<double> time_step;  // [s]; automatic when absent
+  double safety = 0.9;
+  double solver_tolerance = 1e-8;
+};
+
+enum class OutputField { kVelocity, kCauchyStress, kVonMisesStress, kPressure, kVolumeRatio, kFibreStretch, kFibreDirection };
+
+struct Probe {
+  std::string name;
+  std::int32_t body = 0;
+  std::int32_t node = 0;
+};
+
+struct Output {
+  double frame_interval = 0;  // [s]
+  std::vector<OutputField> fields;
+  std::vector<Probe> probes;
+  std::optional<double> settle_speed;  // [m/s]
+};
+
+struct Scene {
+  std::string name;
+  std::vector<Body> bodies;
+  Gravity gravity;
+  TetMethod method;
+  double duration = 0;  // [s]
+  Output output;
+};
+
+// Checks what concerns more than one field: constraints that contradict each other in a node, loads on regions without
+// surface, fibres missing for a law that needs them, activation outside [0, 1], bodies without mass, frame counts,
+// a whole body free to fly away under load (not a problem when gravity or loads are absent). One check per file in this room.
+void CheckScene(const Scene& scene, Problems& problems);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_SCENE_SCENE_H_

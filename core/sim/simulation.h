@@ -1,0 +1,81 @@
+#ifndef FASCICLE_CORE_SIM_SIMULATION_H_
+#define FASCICLE_CORE_SIM_SIMULATION_H_
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "core/sim/frame.h"
+
+namespace fascicle {
+
+// How far a run is.
+struct Progress {
+  double fraction = 0;   // of the simulated time, 0 to 1
+  double time = 0;       // [s]
+  std::int64_t step = 0;
+  double time_step = 0;  // [s]
+};
+
+// Why a run could not go on. Reasons: INVERTED_ELEMENT STEP_TOO_SMALL NOT_CONVERGED NOT_FINITE STORAGE.
+struct Failure {
+  std::string reason;
+  std::string message;
+  std::int64_t step = 0;
+  double time = 0;  // [s]
+  std::string body;
+  std::vector<std::int64_t> elements;  // at most 16
+  std::string advice;
+};
+
+struct Outcome {
+  enum class Kind { kSucceeded, kFailed, kCancelled };
+  Kind kind = Kind::kSucceeded;
+  Failure failure;  // kFailed only
+};
+
+// Takes what a run produces. Called from the thread that runs the simulation.
+class FrameSink {
+ public:
+  virtual ~FrameSink() = default;
+  // `checkpoint` is empty, or restores the simulation to the moment right after this frame. False stops the run with
+  // failure STORAGE.
+  virtual bool PutFrame(Frame frame, std::string checkpoint) = 0;
+  // After every step; cheap.
+  virtual void PutProgress(const Progress& progress) = 0;
+};
+
+// Runs a scene: clock, output policy, cancel, checkpoints, digests. The frames do not depend on the number of threads,
+// nor on how often a run was interrupted and restored. One thread at a time.
+class Simulation {
+ public:
+  // The scene must have passed CheckScene. threads >= 1.
+  Simulation(std::shared_ptr<const Scene> scene, int threads);
+  ~Simulation();
+
+  const std::vector<SeriesInfo>& series() const;
+
+  // Goes on from a checkpoint of the same scene; false when it is not one (the simulation then starts from rest).
+  bool Restore(std::string_view checkpoint);
+
+  // Index of the next frame that Run will put: 0, or the one after the restored checkpoint.
+  std::int64_t next_frame() const;
+
+  // Steps to the end of the scene. A stop request ends it between two steps with kCancelled. A checkpoint goes with
+  // the first frame after each `checkpoint_interval` of wall time, and with the last frame.
+  Outcome Run(FrameSink& sink, std::stop_token stop,
+              std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2));
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_SIM_SIMULATION_H_

@@ -1,0 +1,56 @@
+# A room is a folder with a library of its own. Headers are included by their path from the project's root, and only
+# those of rooms that a target links are found: each room exports a folder that holds nothing but a link to itself.
+#
+#   fascicle_room(core/geometry SOURCES a.cc b.cc DEPS core/base Eigen3::Eigen PRIVATE_DEPS ZLIB::ZLIB)
+#
+# makes the target fascicle_core_geometry. A DEPS entry that is a folder of the project stands for that room's target.
+function(fascicle_room room)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
+  string(REPLACE "/" "_" suffix ${room})
+  set(target fascicle_${suffix})
+  set(exported ${CMAKE_BINARY_DIR}/rooms/${suffix})
+  get_filename_component(parent ${room} DIRECTORY)
+  file(MAKE_DIRECTORY ${exported}/${parent})
+  file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${room} ${exported}/${room} SYMBOLIC)
+  if(ARG_SOURCES)
+    add_library(${target} STATIC ${ARG_SOURCES})
+    set(visibility PUBLIC)
+    set(private PRIVATE)
+    target_link_libraries(${target} PRIVATE fascicle_settings)
+  else()
+    add_library(${target} INTERFACE)
+    set(visibility INTERFACE)
+    set(private INTERFACE)
+  endif()
+  target_include_directories(${target} ${visibility} ${exported})
+  fascicle_link(${target} ${visibility} ${ARG_DEPS})
+  fascicle_link(${target} ${private} ${ARG_PRIVATE_DEPS})
+endfunction()
+
+# Links rooms (given as folders) and other libraries to a target.
+function(fascicle_link target visibility)
+  foreach(dep ${ARGN})
+    if(IS_DIRECTORY ${CMAKE_SOURCE_DIR}/${dep} AND dep MATCHES "/|^proto$")
+      string(REPLACE "/" "_" suffix ${dep})
+      set(dep fascicle_${suffix})
+    endif()
+    target_link_libraries(${target} ${visibility} ${dep})
+  endforeach()
+endfunction()
+
+# A program of Google tests over rooms:
+#
+#   fascicle_test(geometry_test SOURCES mesh_io_test.cc DEPS core/geometry [LABELS slow] [TIMEOUT 60])
+#
+# Tests find the project's root in FASCICLE_ROOT (a macro) and real anatomy in $FASCICLE_DATA.
+function(fascicle_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE fascicle_settings GTest::gtest_main GTest::gmock)
+  target_compile_definitions(${name} PRIVATE FASCICLE_ROOT="${CMAKE_SOURCE_DIR}")
+  fascicle_link(${name} PRIVATE ${ARG_DEPS})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+endfunction()

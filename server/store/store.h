@@ -1,0 +1,127 @@
+#ifndef FASCICLE_SERVER_STORE_STORE_H_
+#define FASCICLE_SERVER_STORE_STORE_H_
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fascicle::server {
+
+// The store is the only truth of the server: what is in it survives, what is not never happened. It knows bytes and
+// records; it never sees a solver or a wire message. All functions are thread-safe, block on disk, and throw
+// StoreError when the storage fails (disk full, damaged file); everything else is in the return value.
+
+class StoreError : public std::exception {
+ public:
+  explicit StoreError(std::string what) : what_(std::move(what)) {}
+  const char* what() const noexcept override { return what_.c_str(); }
+
+ private:
+  std::string what_;
+};
+
+// As Job.State in job.proto; the numbers are stored.
+enum class JobState { kQueued = 1, kStarting = 2, kRunning = 3, kCancelling = 4, kSucceeded = 5, kFailed = 6, kCancelled = 7 };
+inline bool IsFinal(JobState s) { return s == JobState::kSucceeded || s == JobState::kFailed || s == JobState::kCancelled; }
+
+struct JobRecord {
+  std::string id;            // 26 characters, sortable by creation
+  std::string request_id;    // may be empty; unique otherwise
+  std::string request_digest;  // of the request, to tell a repeat from a reuse of the id
+  std::string scene_name;
+  std::string spec;          // serialized job specification, opaque here
+  int threads = 1;
+  JobState state = JobState::kQueued;
+  std::string failure;       // serialized failure, opaque here; empty when none
+  std::int64_t attempt = 0;
+  std::int64_t generation = 1;
+  std::int64_t create_time_us = 0;  // since the Unix epoch
+  std::int64_t start_time_us = 0;   // 0: not yet
+  std::int64_t end_time_us = 0;     // 0: not yet
+  double fraction = 0;       // of simulated time, when last written
+  double time = 0;           // [s] of simulated time, when last written
+  std::int64_t step = 0;     // when last written
+};
+
+// Jobs: durable (fsync) before each function returns.
+class JobStore {
+ public:
+  virtual ~JobStore() = default;
+  // False, and nothing written, when the request id is taken: `existing` is that job.
+  virtual bool CreateJob(const JobRecord& job, JobRecord* existing) = 0;
+  virtual std::optional<JobRecord> GetJob(std::string_view id) = 0;
+  // Newest first, without `spec`; ids below `before_id` (empty: from the newest), states in `states` (empty: all).
+  virtual std::vector<JobRecord> ListJobs(int limit, std::string_view before_id, const std::vector<JobState>& states) = 0;
+  // Writes state, failure, attempt, generation, times and progress of an existing job.
+  virtual void UpdateJob(const JobRecord& job) = 0;
+  // Removes the job with its frames. False when there is none.
+  virtual bool DeleteJob(std::string_view id) = 0;
+};
+
+struct FrameRecord {
+  std::int64_t index = 0;
+  double time = 0;     // [s]
+  std::int64_t step = 0;
+  std::int64_t size = 0;
+  std::string digest;  // 32 bytes
+};
+
+// Frames of one job, in a file of their own.
+class FrameStore {
+ public:
+  static constexpr std::int64_t kChunkSize = 1 << 20;  // frames and geometry are kept in chunks of this size
+
+  virtual ~FrameStore() = default;
+  virtual void PutGeometry(std::string_view bytes) = 0;
+  virtual std::optional<std::string> GetGeometry() = 0;
+  // Appends a frame and, when not empty, replaces the checkpoint, in one transaction. A frame that is already there
+  // with the same digest is left as it is (a restart replays from its checkpoint); with another digest it and all
+  // later frames are replaced and true is returned: the caller must then change the job's generation.
+  virtual bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) = 0;
+  virtual std::optional<std::string> GetCheckpoint() = 0;
+  // Frames with index >= start, at most `limit`, in order.
+  virtual std::vector<FrameRecord> ListFrames(std::int64_t start, int limit) = 0;
+  // Indices 0 .. count - 1 are there.
+  virtual std::int64_t frame_count() = 0;
+  virtual std::int64_t stored_bytes() = 0;
+  // Chunk number `chunk` of a frame; nothing where there is none.
+  virtual std::optional<std::string> ReadChunk(std::int64_t index, std::int64_t chunk) = 0;
+};
+
+// Files that scenes need, by digest.
+class AssetStore {
+ public:
+  // An upload in progress; destroyed without Commit it leaves nothing.
+  class Upload {
+   public:
+    virtual ~Upload() = default;
+    virtual void Write(std::string_view bytes) = 0;
+    // False, and nothing kept, when size or digest are not as announced.
+    virtual bool Commit() = 0;
+  };
+
+  virtual ~AssetStore() = default;
+  virtual bool HasAsset(std::string_view sha256_hex) = 0;
+  virtual std::unique_ptr<Upload> BeginUpload(std::string_view sha256_hex, std::int64_t size) = 0;
+  virtual std::optional<std::string> ReadAsset(std::string_view sha256_hex) = 0;
+};
+
+// All of it. The shared frame store of a job stays usable until it is released, also when the job is deleted.
+class Store : public JobStore, public AssetStore {
+ public:
+  // Opens (and for a job without frames, creates) the frame store. nullptr when there is no such job.
+  virtual std::shared_ptr<FrameStore> OpenFrames(std::string_view job_id) = 0;
+};
+
+// In memory, for tests and for `run`; nothing survives it.
+std::unique_ptr<Store> MakeMemoryStore();
+// In a directory: control.db, jobs/{id}.db, assets/{sha256}. Creates it; throws StoreError when it is in use by
+// another process, on a network filesystem, or written by a newer version.
+std::unique_ptr<Store> OpenSqliteStore(const std::string& directory);
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_STORE_STORE_H_

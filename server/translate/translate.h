@@ -1,0 +1,38 @@
+#ifndef FASCICLE_SERVER_TRANSLATE_TRANSLATE_H_
+#define FASCICLE_SERVER_TRANSLATE_TRANSLATE_H_
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/problems.h"
+#include "core/scene/scene.h"
+#include "core/sim/frame.h"
+#include "core/sim/simulation.h"
+#include "fascicle/v1/frame.pb.h"
+#include "fascicle/v1/job.pb.h"
+#include "fascicle/v1/scene.pb.h"
+
+namespace fascicle::server {
+
+// The one room that knows both the wire and the core. Stateless and thread-safe.
+
+// Bytes of an asset by the 64 hexadecimal digits of its digest; nothing when it is not there.
+using AssetReader = std::function<std::optional<std::string>(const std::string& sha256_hex)>;
+
+// Digests of the assets that a scene names, each once.
+std::vector<std::string> AssetsOf(const v1::Scene& scene);
+
+// Checks everything that can be checked without running (the proto's ranges, names, files, meshes, regions,
+// CheckScene) and adds every problem with its field path ("bodies[0].density"). nullptr when there was any.
+std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetReader& assets, Problems& problems);
+
+v1::Geometry EncodeGeometry(const Scene& scene, const std::vector<SeriesInfo>& series);
+v1::Frame EncodeFrame(const Frame& frame);
+v1::Failure EncodeFailure(const Failure& failure);
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_TRANSLATE_TRANSLATE_H_
