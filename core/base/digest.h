@@ -38,6 +38,8 @@ std::string Hex(const Digest& digest);
 
 // CRC-32C (Castagnoli) of `bytes`; `crc` is the result for the bytes before, 0 at the start.
 std::uint32_t Crc32c(std::string_view bytes, std::uint32_t crc = 0);
+// The same on machines without the CRC instruction, byte by byte.
+std::uint32_t Crc32cByTable(std::string_view bytes, std::uint32_t crc = 0);
 
 }  // namespace fascicle
 

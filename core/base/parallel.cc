@@ -1,0 +1,189 @@
+#include "core/base/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "core/base/check.h"
+
+namespace fascicle {
+namespace {
+
+// Indices of one term of a sum. A constant, so that the order of the additions never depends on the team.
+constexpr std::size_t kSumBlock = 1024;
+// Parts of a loop for each thread: enough to even out a thread that was held up.
+constexpr std::size_t kPartsPerThread = 8;
+// Looks at a flag before going to sleep: some tens of microseconds, longer than the serial stretch between two loops.
+constexpr int kSpins = 2000;
+
+void Pause() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#endif
+}
+
+}  // namespace
+
+// Threads enter a loop while it is open and leave when no part is left; the caller closes the loop and waits for those
+// inside only. A thread that wakes late (a busy machine) finds it closed: nobody waits for it.
+struct ThreadTeam::Impl {
+  // state = loop number * kLoop + (kOpen) + threads inside.
+  static constexpr std::uint64_t kOpen = 1u << 16;
+  static constexpr std::uint64_t kLoop = kOpen << 1;
+  static constexpr std::uint64_t kInside = kOpen - 1;
+
+  int size = 1;
+  std::vector<std::thread> threads;
+  std::vector<double> terms;  // of RunSum
+
+  // The loop. Written by the caller while nobody is inside.
+  LoopBody call = nullptr;
+  const void* body = nullptr;
+  std::size_t count = 0;
+  std::size_t part = 1;
+
+  alignas(64) std::atomic<std::uint64_t> state{0};
+  alignas(64) std::atomic<std::size_t> next{0};
+  alignas(64) std::atomic<bool> busy{false};
+  std::atomic<bool> stop{false};
+  std::atomic<int> sleepers{0};
+  std::atomic<bool> caller_sleeps{false};
+  std::mutex mutex;
+  std::condition_variable loop_opened;
+  std::condition_variable loop_left;
+
+  bool HasNews(std::uint64_t last_loop) const {
+    const std::uint64_t now = state.load();
+    return stop.load() || ((now & kOpen) && now / kLoop != last_loop);
+  }
+
+  void RunParts() {
+    for (;;) {
+      const std::size_t begin = next.fetch_add(part, std::memory_order_relaxed);
+      if (begin >= count) return;
+      call(body, begin, std::min(begin + part, count));
+    }
+  }
+
+  void WaitForNews(std::uint64_t last_loop) {
+    for (int spin = 0; spin < kSpins; ++spin) {
+      if (HasNews(last_loop)) return;
+      Pause();
+    }
+    std::unique_lock lock(mutex);
+    ++sleepers;
+    loop_opened.wait(lock, [&] { return HasNews(last_loop); });
+    --sleepers;
+  }
+
+  void Leave() {
+    const std::uint64_t after = state.fetch_sub(1) - 1;
+    if ((after & (kOpen | kInside)) == 0 && caller_sleeps.load()) {
+      const std::lock_guard lock(mutex);
+      loop_left.notify_one();
+    }
+  }
+
+  void Work() {
+    std::uint64_t last_loop = 0;
+    while (true) {
+      WaitForNews(last_loop);
+      if (stop.load()) return;
+      std::uint64_t now = state.load();
+      while ((now & kOpen) && !state.compare_exchange_weak(now, now + 1)) {
+      }
+      if (!(now & kOpen)) continue;
+      last_loop = now / kLoop;
+      RunParts();
+      Leave();
+    }
+  }
+
+  void Open() {
+    next.store(0, std::memory_order_relaxed);
+    const std::uint64_t loop = state.load() / kLoop + 1;
+    state.store(loop * kLoop + kOpen);
+    // A thread counts itself among the sleepers before it looks at the state for the last time, under the mutex: it
+    // sees this loop, or we see it.
+    if (sleepers.load() > 0) {
+      { const std::lock_guard lock(mutex); }
+      loop_opened.notify_all();
+    }
+  }
+
+  void CloseAndWait() {
+    state.fetch_and(~kOpen);
+    const auto all_left = [&] { return (state.load() & kInside) == 0; };
+    for (int spin = 0; spin < kSpins; ++spin) {
+      if (all_left()) return;
+      Pause();
+    }
+    std::unique_lock lock(mutex);
+    caller_sleeps.store(true);
+    loop_left.wait(lock, all_left);
+    caller_sleeps.store(false);
+  }
+};
+
+ThreadTeam::ThreadTeam(int threads) : impl_(std::make_unique<Impl>()) {
+  FASCICLE_CHECK(threads >= 1 && threads < static_cast<int>(Impl::kInside), "a team has at least one thread");
+  impl_->size = threads;
+  impl_->threads.reserve(threads - 1);
+  for (int i = 1; i < threads; ++i) impl_->threads.emplace_back([impl = impl_.get()] { impl->Work(); });
+}
+
+ThreadTeam::~ThreadTeam() {
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->stop.store(true);
+  }
+  impl_->loop_opened.notify_all();
+  for (std::thread& thread : impl_->threads) thread.join();
+}
+
+int ThreadTeam::size() const { return impl_->size; }
+
+void ThreadTeam::Run(std::size_t count, std::size_t grain, LoopBody call, const void* body) {
+  if (count == 0) return;
+  Impl& impl = *impl_;
+  const std::size_t parts = kPartsPerThread * static_cast<std::size_t>(impl.size);
+  const std::size_t part = std::max({grain, std::size_t{1}, (count - 1) / parts + 1});
+  if (impl.size == 1 || part >= count) {
+    call(body, 0, count);
+    return;
+  }
+  FASCICLE_CHECK(!impl.busy.exchange(true), "a team runs one loop at a time, and none inside another");
+  impl.call = call;
+  impl.body = body;
+  impl.count = count;
+  impl.part = part;
+  impl.Open();
+  impl.RunParts();
+  impl.CloseAndWait();
+  impl.busy.store(false);
+}
+
+double ThreadTeam::RunSum(std::size_t count, SumBody call, const void* body) {
+  const std::size_t blocks = count == 0 ? 0 : (count - 1) / kSumBlock + 1;
+  const auto term = [&](std::size_t block) {
+    return call(body, block * kSumBlock, std::min((block + 1) * kSumBlock, count));
+  };
+  double sum = 0;
+  if (impl_->size == 1) {
+    for (std::size_t block = 0; block < blocks; ++block) sum += term(block);
+    return sum;
+  }
+  std::vector<double>& terms = impl_->terms;
+  if (terms.size() < blocks) terms.resize(blocks);
+  For(blocks, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) terms[block] = term(block);
+  });
+  for (std::size_t block = 0; block < blocks; ++block) sum += terms[block];
+  return sum;
+}
+
+}  // namespace fascicle
