@@ -88,13 +88,15 @@ bool InRange(const FieldRule& rule, double value) {
          (rule.max_open ? value < rule.max : value <= rule.max);
 }
 
-void CheckNumber(const FieldRule* rule, double value, std::string path, Problems& problems) {
-  const std::string hint = rule == nullptr ? std::string() : Hint(*rule);
-  if (!std::isfinite(value)) {
-    problems.Add(std::move(path), "is " + Text(value) + "; every number must be finite", hint);
-  } else if (rule != nullptr && !InRange(*rule, value)) {
-    problems.Add(std::move(path), "is " + Text(value) + ", outside the range " + rule->range_text, hint);
-  }
+bool IsGood(const FieldRule* rule, double value) {
+  return std::isfinite(value) && (rule == nullptr || InRange(*rule, value));
+}
+
+void AddBadNumber(const FieldRule* rule, double value, std::string path, Problems& problems) {
+  problems.Add(std::move(path),
+               "is " + Text(value) +
+                   (std::isfinite(value) ? ", outside the range " + rule->range_text : "; every number must be finite"),
+               rule == nullptr ? std::string() : Hint(*rule));
 }
 
 void CheckList(const Message& message, const FieldDescriptor* field, const FieldRule* rule, const std::string& path,
@@ -109,28 +111,18 @@ void CheckList(const Message& message, const FieldDescriptor* field, const Field
                  Hint(*rule));
   }
   for (int i = 0; i < size; ++i) {
-    CheckNumber(rule, Get(message, field, i), IndexPath(path, static_cast<std::size_t>(i)), problems);
+    const double value = Get(message, field, i);
+    if (!IsGood(rule, value)) AddBadNumber(rule, value, IndexPath(path, static_cast<std::size_t>(i)), problems);
   }
 }
 
 void CheckScalar(const Message& message, const FieldDescriptor* field, const FieldRule* rule, const std::string& path,
                  Problems& problems) {
-  const double value = Get(message, field, 0);
-  if (field->has_presence()) {
-    if (message.GetReflection()->HasField(message, field)) {
-      CheckNumber(rule, value, path, problems);
-    } else if (rule != nullptr && rule->required) {
-      problems.Add(path, "is missing", Hint(*rule));
-    }
-  } else if (rule != nullptr && value == 0 && !InRange(*rule, 0)) {
-    // Without presence an absent number reads as 0.
-    if (rule->required) {
-      problems.Add(path, "is missing or 0", Hint(*rule));
-    } else if (rule->defaults.empty()) {
-      return;
-    }
-  } else {
-    CheckNumber(rule, value, path, problems);
+  const bool absent = !message.GetReflection()->HasField(message, field);  // without presence: is 0
+  if (absent && rule != nullptr && rule->required && (field->has_presence() || !InRange(*rule, 0))) {
+    problems.Add(path, field->has_presence() ? "is missing" : "is missing or 0", Hint(*rule));
+  } else if (const double value = Get(message, field, 0); !absent && !IsGood(rule, value)) {
+    AddBadNumber(rule, value, path, problems);
   }
 }
 
@@ -146,7 +138,20 @@ void CheckEnum(const Message& message, const FieldDescriptor* field, const std::
   }
 }
 
+// "Exactly one" stands over every oneof: nothing chosen is a problem, two can't be told.
+void CheckOneofs(const Message& message, const std::string& prefix, Problems& problems) {
+  const google::protobuf::Descriptor* type = message.GetDescriptor();
+  for (int i = 0; i < type->real_oneof_decl_count(); ++i) {
+    const google::protobuf::OneofDescriptor* oneof = type->oneof_decl(i);
+    if (message.GetReflection()->HasOneof(message, oneof)) continue;
+    std::string choices;
+    for (int k = 0; k < oneof->field_count(); ++k) choices += (k > 0 ? ", " : "") + oneof->field(k)->name();
+    problems.Add(JoinPath(prefix, oneof->name()), "is missing", "give one of: " + choices);
+  }
+}
+
 void Check(const Message& message, const std::string& prefix, Problems& problems) {
+  CheckOneofs(message, prefix, problems);
   const Reflection& r = *message.GetReflection();
   for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
     const FieldDescriptor* field = message.GetDescriptor()->field(i);

@@ -35,7 +35,8 @@ std::string CommentOf(const google::protobuf::EnumDescriptor& type);
 std::string CommentOf(const google::protobuf::EnumValueDescriptor& value);
 
 // Checks every number in `message`, to any depth, against its rule: present where required, as many values as it
-// says, finite, in range. Adds each problem with its path ("bodies[0].density").
+// says, finite, in range; a number without a rule has to be finite only. Enumerations must have a known value, and every
+// oneof a member. Adds each problem with its path ("bodies[0].density", "bodies[0].material.law").
 void CheckRules(const google::protobuf::Message& message, Problems& problems);
 
 // Sets every absent number that has a default, to any depth, in messages that are present.
