@@ -1,0 +1,43 @@
+#ifndef FASCICLE_CLIENT_LIB_DECODE_H_
+#define FASCICLE_CLIENT_LIB_DECODE_H_
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/types.h"
+#include "fascicle/v1/frame.pb.h"
+
+namespace fascicle::client {
+
+// The bytes of frames and geometry as arrays. All functions throw std::runtime_error, with a message for people, when
+// the bytes don't fit what they should be: sizes, indices out of range, values that are missing.
+
+// Rest geometry of one body.
+struct BodyShape {
+  std::string name;
+  std::vector<Vec3> positions;                           // [m]
+  std::vector<std::array<std::uint32_t, 4>> tetrahedra;  // node indices, all in range
+  std::vector<Vec3> fibres;                              // unit, one for each tetrahedron, or empty
+  struct Region {
+    std::string name;
+    std::vector<std::uint32_t> nodes;  // all in range
+  };
+  std::vector<Region> regions;
+};
+
+std::vector<BodyShape> DecodeGeometry(const v1::Geometry& geometry);
+
+// Positions [m] of a body that has `nodes` nodes.
+std::vector<Vec3> DecodePositions(const v1::BodyFrame& frame, std::size_t nodes);
+
+// Values of a field, component fastest: `components` for each node or tetrahedron of `shape`.
+std::vector<double> DecodeField(const v1::FieldValues& field, const BodyShape& shape);
+
+// Throws unless `frame` has as many bodies and series as `geometry`.
+void CheckFits(const v1::Frame& frame, const v1::Geometry& geometry);
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_LIB_DECODE_H_

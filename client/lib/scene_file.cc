@@ -1,0 +1,212 @@
+#include "client/lib/scene_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <google/protobuf/message.h>
+
+#include "client/lib/scene_json.h"
+#include "core/base/digest.h"
+
+namespace fascicle::client {
+namespace {
+
+namespace fs = std::filesystem;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+constexpr std::uintmax_t kMaxAssetBytes = std::uintmax_t{4} << 30;
+
+struct NamedFile {
+  v1::FileRef* ref;
+  std::string path;  // field path, such as "bodies[0].mesh.file"
+};
+
+// Every FileRef of a message, to any depth.
+void CollectFiles(Message& message, const std::string& path, std::vector<NamedFile>& files) {
+  if (auto* ref = dynamic_cast<v1::FileRef*>(&message)) {
+    files.push_back({ref, path});
+    return;
+  }
+  const auto& reflection = *message.GetReflection();
+  std::vector<const FieldDescriptor*> fields;
+  reflection.ListFields(message, &fields);
+  for (const FieldDescriptor* field : fields) {
+    if (field->cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) continue;
+    const std::string field_path = JoinPath(path, field->name());
+    if (!field->is_repeated()) {
+      CollectFiles(*reflection.MutableMessage(&message, field), field_path, files);
+      continue;
+    }
+    for (int i = 0; i < reflection.FieldSize(message, field); ++i) {
+      CollectFiles(*reflection.MutableRepeatedMessage(&message, field, i),
+                   IndexPath(field_path, static_cast<std::size_t>(i)), files);
+    }
+  }
+}
+
+bool IsInside(const fs::path& folder, const fs::path& path) {
+  const auto [end, ignored] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return end == folder.end();
+}
+
+// Where a name in the scene points to; nothing, with a problem, when that is not a file in the scene's folder.
+std::optional<fs::path> Resolve(const fs::path& folder, const std::string& name, const std::string& field,
+                                Problems& problems) {
+  const auto refuse = [&](const std::string& message, const std::string& hint) {
+    problems.Add(field, message, hint);
+    return std::nullopt;
+  };
+  const fs::path relative(name);
+  if (name.empty()) return refuse("names no file", "give a path relative to the scene's folder");
+  if (name.find('\0') != std::string::npos || name.size() > 4096) return refuse("is not a usable path", "");
+  const bool climbs = std::find(relative.begin(), relative.end(), fs::path("..")) != relative.end();
+  if (relative.is_absolute() || climbs) {
+    return refuse("\"" + name + "\" leads out of the scene's folder",
+                  "put the file beside the scene or in a folder below it");
+  }
+  std::error_code error;
+  const fs::path resolved = fs::weakly_canonical(folder / relative, error);
+  if (error) return refuse("\"" + name + "\" can't be resolved: " + error.message(), "");
+  if (!IsInside(folder, resolved)) {
+    return refuse("\"" + name + "\" is a link that leads out of the scene's folder",
+                  "copy the file into the scene's folder");
+  }
+  const fs::file_status status = fs::status(resolved, error);
+  if (!fs::exists(status)) {
+    return refuse("there is no file \"" + name + "\"", "paths are relative to the scene's folder " + folder.string());
+  }
+  if (!fs::is_regular_file(status)) return refuse("\"" + name + "\" is not a regular file", "");
+  if (fs::file_size(resolved, error) > kMaxAssetBytes || error) {
+    return refuse("\"" + name + "\" is larger than 4 GiB", "use a coarser mesh");
+  }
+  return resolved;
+}
+
+std::optional<std::string> ReadFile(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) return std::nullopt;
+  const std::streamoff size = in.tellg();
+  if (size < 0) return std::nullopt;
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  in.seekg(0);
+  in.read(bytes.data(), size);
+  if (in.gcount() != size) return std::nullopt;
+  return bytes;
+}
+
+bool HasExtension(const std::string& path, std::string_view extension) {
+  std::string own = fs::path(path).extension().string();
+  std::transform(own.begin(), own.end(), own.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return own == extension;
+}
+
+// A TetGen mesh is two files; the second is found beside the first.
+void NameElementFiles(v1::Scene& scene) {
+  for (v1::Body& body : *scene.mutable_bodies()) {
+    if (!body.has_mesh() || !body.mesh().has_file() || body.mesh().has_elements()) continue;
+    const std::string& path = body.mesh().file().path();
+    if (!HasExtension(path, ".node")) continue;
+    const bool upper_case = fs::path(path).extension() == ".NODE";
+    body.mutable_mesh()->mutable_elements()->set_path(
+        fs::path(path).replace_extension(upper_case ? ".ELE" : ".ele").string());
+  }
+}
+
+// Reads each file once, however often it is named.
+class AssetReader {
+ public:
+  AssetReader(fs::path folder, ScenePackage& package, Problems& problems)
+      : folder_(std::move(folder)), package_(package), problems_(problems) {}
+
+  void Read(const NamedFile& file) {
+    // A reference by digest alone names something that the server already has.
+    if (file.ref->path().empty() && !file.ref->asset().empty()) return;
+    const std::string field = JoinPath(file.path, "path");
+    const std::optional<fs::path> path = Resolve(folder_, file.ref->path(), field, problems_);
+    if (!path) return;
+    std::string& digest = digests_[*path];
+    if (digest.empty()) {
+      std::optional<std::string> bytes = ReadFile(*path);
+      if (!bytes) {
+        problems_.Add(field, "\"" + file.ref->path() + "\" can't be read", "check its permissions");
+        return;
+      }
+      digest = Hex(Sha256Of(*bytes));
+      if (packed_.insert(digest).second) package_.assets.push_back({digest, path->string(), std::move(*bytes)});
+    }
+    file.ref->set_asset("assets/" + digest);
+  }
+
+ private:
+  fs::path folder_;
+  ScenePackage& package_;
+  Problems& problems_;
+  std::map<fs::path, std::string> digests_;
+  std::set<std::string> packed_;
+};
+
+// The scene as far as it could be read; nothing after a syntax error.
+std::optional<v1::Scene> ReadScene(const std::string& text, Problems& problems) {
+  const nlohmann::json value = ParseJson(text, problems);
+  if (value.is_discarded()) return std::nullopt;
+  v1::Scene scene;
+  ReadMessage(value, scene, "", problems);
+  return scene;
+}
+
+}  // namespace
+
+std::optional<v1::Scene> ParseScene(const std::string& json, Problems& problems) {
+  Problems own;
+  std::optional<v1::Scene> scene = ReadScene(json, own);
+  problems.Append("", own);
+  return own.empty() ? scene : std::nullopt;
+}
+
+std::optional<ScenePackage> LoadScene(const std::string& path, Problems& problems) {
+  std::error_code error;
+  const fs::path file = fs::canonical(path, error);
+  if (error) {
+    problems.Add("", "the scene file can't be opened: " + error.message());
+    return std::nullopt;
+  }
+  if (!fs::is_regular_file(file, error)) {
+    problems.Add("", "the scene is not a file");
+    return std::nullopt;
+  }
+  if (fs::file_size(file, error) > kMaxSceneBytes || error) {
+    problems.Add("", "the scene is larger than 16 MiB", "put meshes and fibres into files of their own");
+    return std::nullopt;
+  }
+  const std::optional<std::string> text = ReadFile(file);
+  if (!text) {
+    problems.Add("", "the scene file can't be read", "check its permissions");
+    return std::nullopt;
+  }
+  // Problems of the scene and of its files are told together.
+  Problems own;
+  ScenePackage package;
+  if (std::optional<v1::Scene> scene = ReadScene(*text, own)) {
+    package.scene = std::move(*scene);
+    NameElementFiles(package.scene);
+    std::vector<NamedFile> files;
+    CollectFiles(package.scene, "", files);
+    AssetReader reader(file.parent_path(), package, own);
+    for (const NamedFile& named : files) reader.Read(named);
+  }
+  problems.Append("", own);
+  if (!own.empty()) return std::nullopt;
+  return package;
+}
+
+}  // namespace fascicle::client

@@ -1,0 +1,335 @@
+#include "client/lib/scene_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <vector>
+
+namespace fascicle::client {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::EnumDescriptor;
+using google::protobuf::EnumValueDescriptor;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using google::protobuf::OneofDescriptor;
+using google::protobuf::Reflection;
+using nlohmann::json;
+
+// Scenes are 8 levels deep; anything far beyond is a mistake or an attack.
+constexpr int kMaxDepth = 64;
+
+struct TooDeep {};
+
+// Follows the parser through the document to know the path of every key and to see keys that come twice.
+class DuplicateKeys {
+ public:
+  explicit DuplicateKeys(Problems& problems) : problems_(problems) {}
+
+  bool operator()(int depth, json::parse_event_t event, const json& parsed) {
+    if (depth > kMaxDepth) throw TooDeep{};
+    switch (event) {
+      case json::parse_event_t::object_start:
+      case json::parse_event_t::array_start:
+        levels_.push_back({event == json::parse_event_t::array_start, Here(), 0, {}, {}});
+        break;
+      case json::parse_event_t::object_end:
+      case json::parse_event_t::array_end:
+        levels_.pop_back();
+        EndOfValue();
+        break;
+      case json::parse_event_t::key: {
+        Level& level = levels_.back();
+        level.key = parsed.get<std::string>();
+        if (!level.seen.insert(level.key).second) {
+          problems_.Add(JoinPath(level.path, level.key), "is given twice", "keep one of them");
+        }
+        break;
+      }
+      case json::parse_event_t::value:
+        EndOfValue();
+        break;
+    }
+    return true;
+  }
+
+ private:
+  struct Level {
+    bool is_array;
+    std::string path;
+    std::size_t index;
+    std::string key;
+    std::set<std::string> seen;
+  };
+
+  std::string Here() const {
+    if (levels_.empty()) return "";
+    const Level& level = levels_.back();
+    return level.is_array ? IndexPath(level.path, level.index) : JoinPath(level.path, level.key);
+  }
+  void EndOfValue() {
+    if (!levels_.empty() && levels_.back().is_array) ++levels_.back().index;
+  }
+
+  Problems& problems_;
+  std::vector<Level> levels_;
+};
+
+std::string PlaceOf(std::string_view text, std::size_t byte) {
+  const std::string_view before = text.substr(0, std::min(byte, text.size()));
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const std::size_t start = before.rfind('\n');
+  const std::size_t column = before.size() - (start == std::string_view::npos ? 0 : start + 1);
+  return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
+}
+
+// The library's message without its own tag and place: "syntax error while parsing value - unexpected ..." ->
+// "unexpected ...".
+std::string SyntaxMessage(const std::string& what) {
+  const std::size_t dash = what.find(" - ");
+  if (dash != std::string::npos) return what.substr(dash + 3);
+  const std::size_t bracket = what.find("] ");
+  return bracket == std::string::npos ? what : what.substr(bracket + 2);
+}
+
+// Levenshtein distance.
+std::size_t EditDistance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substituted});
+    }
+  }
+  return row.back();
+}
+
+std::string Join(const std::vector<std::string>& names) {
+  std::string joined;
+  for (const std::string& name : names) joined += (joined.empty() ? "" : ", ") + name;
+  return joined;
+}
+
+// "did you mean x?" when a name is near, otherwise the list of them.
+std::string NameHint(std::string_view wrong, const std::vector<std::string>& names) {
+  const std::string shortened(wrong.substr(0, 64));
+  std::size_t best = std::max<std::size_t>(2, shortened.size() / 3) + 1;
+  const std::string* nearest = nullptr;
+  for (const std::string& name : names) {
+    const std::size_t distance = EditDistance(shortened, name);
+    if (distance < best) {
+      best = distance;
+      nearest = &name;
+    }
+  }
+  if (nearest != nullptr) return "did you mean " + *nearest + "?";
+  return names.empty() ? "" : "known: " + Join(names);
+}
+
+std::string Quoted(std::string_view text) {
+  constexpr std::size_t kMaxShown = 64;
+  return "\"" + std::string(text.substr(0, kMaxShown)) + (text.size() > kMaxShown ? "..." : "") + "\"";
+}
+
+std::string KindOf(const json& value) {
+  switch (value.type()) {
+    case json::value_t::null:
+      return "null";
+    case json::value_t::boolean:
+      return value.get<bool>() ? "true" : "false";
+    case json::value_t::string:
+      return "the text " + Quoted(value.get_ref<const std::string&>());
+    case json::value_t::array:
+      return "a list";
+    case json::value_t::object:
+      return "an object";
+    default:
+      return "the number " + value.dump();
+  }
+}
+
+// "LENGTH_UNIT_MM" of LengthUnit -> "mm".
+std::string ShortName(const EnumValueDescriptor& value) {
+  const std::string& type = value.type()->name();
+  std::size_t prefix = type.size() + 1;  // one `_` between words and one at the end
+  for (std::size_t i = 1; i < type.size(); ++i) prefix += std::isupper(static_cast<unsigned char>(type[i])) ? 1 : 0;
+  std::string name = value.name().substr(std::min(prefix, value.name().size()));
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name;
+}
+
+std::optional<int> ReadEnum(const std::string& text, const EnumDescriptor& type, const std::string& path,
+                            Problems& problems) {
+  std::vector<std::string> names;
+  for (int i = 0; i < type.value_count(); ++i) {
+    const EnumValueDescriptor& value = *type.value(i);
+    if (value.number() == 0) continue;  // "not given" is said by leaving the field out
+    names.push_back(ShortName(value));
+    if (text == names.back() || text == value.name()) return value.number();
+  }
+  problems.Add(path, "unknown value " + Quoted(text), NameHint(text, names));
+  return std::nullopt;
+}
+
+class FieldReader {
+ public:
+  FieldReader(Message& message, const FieldDescriptor& field, Problems& problems)
+      : message_(message), reflection_(*message.GetReflection()), field_(field), problems_(problems) {}
+
+  void Read(const json& value, const std::string& path) {
+    if (!field_.is_repeated()) return ReadOne(value, path);
+    if (!value.is_array()) {
+      problems_.Add(path, "expects a list, got " + KindOf(value), "write [ ... ]");
+      return;
+    }
+    for (std::size_t i = 0; i < value.size(); ++i) ReadOne(value[i], IndexPath(path, i));
+  }
+
+ private:
+  void ReadOne(const json& value, const std::string& path) {
+    if (value.is_null()) {
+      problems_.Add(path, "is null", "leave the field out to take its default");
+      return;
+    }
+    switch (field_.cpp_type()) {
+      case FieldDescriptor::CPPTYPE_MESSAGE:
+        return ReadMessage(value,
+                           field_.is_repeated() ? *reflection_.AddMessage(&message_, &field_)
+                                                : *reflection_.MutableMessage(&message_, &field_),
+                           path, problems_);
+      case FieldDescriptor::CPPTYPE_DOUBLE:
+        if (!value.is_number()) return WrongType(value, "a number", path);
+        return Set(value.get<double>(), &Reflection::SetDouble, &Reflection::AddDouble);
+      case FieldDescriptor::CPPTYPE_INT32:
+        if (const auto number = ReadInteger(value, path, std::numeric_limits<std::int32_t>::min(),
+                                            std::numeric_limits<std::int32_t>::max())) {
+          Set(static_cast<std::int32_t>(*number), &Reflection::SetInt32, &Reflection::AddInt32);
+        }
+        return;
+      case FieldDescriptor::CPPTYPE_INT64:
+        if (const auto number = ReadInteger(value, path, -kExact, kExact)) {
+          Set(*number, &Reflection::SetInt64, &Reflection::AddInt64);
+        }
+        return;
+      case FieldDescriptor::CPPTYPE_BOOL:
+        if (!value.is_boolean()) return WrongType(value, "true or false", path);
+        return Set(value.get<bool>(), &Reflection::SetBool, &Reflection::AddBool);
+      case FieldDescriptor::CPPTYPE_STRING:
+        if (!value.is_string()) return WrongType(value, "text in quotes", path);
+        return field_.is_repeated() ? reflection_.AddString(&message_, &field_, value.get<std::string>())
+                                    : reflection_.SetString(&message_, &field_, value.get<std::string>());
+      case FieldDescriptor::CPPTYPE_ENUM:
+        if (!value.is_string()) return WrongType(value, "a name in quotes", path);
+        if (const auto number = ReadEnum(value.get<std::string>(), *field_.enum_type(), path, problems_)) {
+          Set(*number, &Reflection::SetEnumValue, &Reflection::AddEnumValue);
+        }
+        return;
+      default:
+        problems_.Add(path, "can't be set in a scene file");
+    }
+  }
+
+  // Integers that a double holds exactly: JSON has no others.
+  static constexpr std::int64_t kExact = std::int64_t{1} << 53;
+
+  std::optional<std::int64_t> ReadInteger(const json& value, const std::string& path, std::int64_t lowest,
+                                          std::int64_t highest) {
+    if (!value.is_number()) {
+      WrongType(value, "a whole number", path);
+      return std::nullopt;
+    }
+    const double number = value.get<double>();
+    if (number != std::floor(number)) {
+      WrongType(value, "a whole number", path);
+      return std::nullopt;
+    }
+    if (number < static_cast<double>(lowest) || number > static_cast<double>(highest)) {
+      problems_.Add(path, value.dump() + " is out of range",
+                    "whole numbers from " + std::to_string(lowest) + " to " + std::to_string(highest));
+      return std::nullopt;
+    }
+    return static_cast<std::int64_t>(number);
+  }
+
+  void WrongType(const json& value, const std::string& expected, const std::string& path) {
+    problems_.Add(path, "expects " + expected + ", got " + KindOf(value));
+  }
+
+  template <class T>
+  void Set(T value, void (Reflection::*set)(Message*, const FieldDescriptor*, T) const,
+           void (Reflection::*add)(Message*, const FieldDescriptor*, T) const) {
+    (reflection_.*(field_.is_repeated() ? add : set))(&message_, &field_, value);
+  }
+
+  Message& message_;
+  const Reflection& reflection_;
+  const FieldDescriptor& field_;
+  Problems& problems_;
+};
+
+std::vector<std::string> FieldNames(const Descriptor& type) {
+  std::vector<std::string> names;
+  for (int i = 0; i < type.field_count(); ++i) names.push_back(type.field(i)->name());
+  return names;
+}
+
+std::vector<std::string> MemberNames(const OneofDescriptor& oneof) {
+  std::vector<std::string> names;
+  for (int i = 0; i < oneof.field_count(); ++i) names.push_back(oneof.field(i)->name());
+  return names;
+}
+
+}  // namespace
+
+json ParseJson(std::string_view text, Problems& problems) {
+  if (text.size() > kMaxSceneBytes) {
+    problems.Add("", "the scene is larger than 16 MiB", "put meshes and fibres into files of their own");
+    return json(json::value_t::discarded);
+  }
+  DuplicateKeys duplicates(problems);
+  try {
+    return json::parse(text.begin(), text.end(), std::ref(duplicates), true, /*ignore_comments=*/true);
+  } catch (const TooDeep&) {
+    problems.Add("", "is nested deeper than " + std::to_string(kMaxDepth) + " levels");
+  } catch (const json::parse_error& error) {
+    problems.Add("", "JSON syntax error at " + PlaceOf(text, error.byte) + ": " + SyntaxMessage(error.what()));
+  } catch (const json::exception& error) {
+    problems.Add("", "JSON error: " + SyntaxMessage(error.what()));
+  }
+  return json(json::value_t::discarded);
+}
+
+void ReadMessage(const json& value, Message& message, const std::string& path, Problems& problems) {
+  const Descriptor& type = *message.GetDescriptor();
+  if (!value.is_object()) {
+    problems.Add(path, "expects an object of " + Join(FieldNames(type)) + ", got " + KindOf(value), "write { ... }");
+    return;
+  }
+  std::set<const OneofDescriptor*> given;
+  for (const auto& [key, member] : value.items()) {
+    const std::string member_path = JoinPath(path, key.size() > 64 ? key.substr(0, 64) + "..." : key);
+    const FieldDescriptor* field = type.FindFieldByName(key);
+    if (field == nullptr) {
+      problems.Add(member_path, "unknown field", NameHint(key, FieldNames(type)));
+      continue;
+    }
+    // `optional` fields are oneofs of one member to Protobuf; those are not meant.
+    const OneofDescriptor* oneof = field->real_containing_oneof();
+    if (oneof != nullptr && !given.insert(oneof).second) {
+      problems.Add(member_path, "only one of " + Join(MemberNames(*oneof)) + " may be given", "keep one of them");
+      continue;
+    }
+    FieldReader(message, *field, problems).Read(member, member_path);
+  }
+}
+
+}  // namespace fascicle::client

@@ -1,0 +1,30 @@
+#ifndef FASCICLE_CLIENT_LIB_SCENE_JSON_H_
+#define FASCICLE_CLIENT_LIB_SCENE_JSON_H_
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include <google/protobuf/message.h>
+#include <nlohmann/json.hpp>
+
+#include "core/base/problems.h"
+
+namespace fascicle::client {
+
+// Largest scene file [byte].
+inline constexpr std::size_t kMaxSceneBytes = std::size_t{16} << 20;
+
+// Reads JSON with comments. Adds a syntax error (with line and column), every duplicate key and nesting deeper than 64
+// levels to `problems`; the value is `discarded` after a syntax error.
+nlohmann::json ParseJson(std::string_view text, Problems& problems);
+
+// Sets the fields of `message` from a JSON object and goes on past every problem: unknown fields (with the nearest
+// known name), wrong types, integers out of range, unknown enum values, two members of a oneof. Problems carry the
+// field's path below `path`.
+void ReadMessage(const nlohmann::json& value, google::protobuf::Message& message, const std::string& path,
+                 Problems& problems);
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_LIB_SCENE_JSON_H_
