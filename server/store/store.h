@@ -2,6 +2,7 @@
 #define FASCICLE_SERVER_STORE_STORE_H_
 
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,38 +25,52 @@ class StoreError : public std::exception {
 };
 
 // As Job.State in job.proto; the numbers are stored.
-enum class JobState { kQueued = 1, kStarting = 2, kRunning = 3, kCancelling = 4, kSucceeded = 5, kFailed = 6, kCancelled = 7 };
-inline bool IsFinal(JobState s) { return s == JobState::kSucceeded || s == JobState::kFailed || s == JobState::kCancelled; }
+enum class JobState {
+  kQueued = 1,
+  kStarting = 2,
+  kRunning = 3,
+  kCancelling = 4,
+  kSucceeded = 5,
+  kFailed = 6,
+  kCancelled = 7
+};
+inline bool IsFinal(JobState s) {
+  return s == JobState::kSucceeded || s == JobState::kFailed || s == JobState::kCancelled;
+}
 
 struct JobRecord {
-  std::string id;            // 26 characters, sortable by creation
-  std::string request_id;    // may be empty; unique otherwise
+  std::string id;              // 26 characters, sortable by creation
+  std::string request_id;      // may be empty; unique otherwise
   std::string request_digest;  // of the request, to tell a repeat from a reuse of the id
   std::string scene_name;
-  std::string spec;          // serialized job specification, opaque here
+  std::string spec;  // serialized job specification, opaque here
   int threads = 1;
   JobState state = JobState::kQueued;
-  std::string failure;       // serialized failure, opaque here; empty when none
+  std::string failure;  // serialized failure, opaque here; empty when none
   std::int64_t attempt = 0;
   std::int64_t generation = 1;
   std::int64_t create_time_us = 0;  // since the Unix epoch
   std::int64_t start_time_us = 0;   // 0: not yet
   std::int64_t end_time_us = 0;     // 0: not yet
-  double fraction = 0;       // of simulated time, when last written
-  double time = 0;           // [s] of simulated time, when last written
-  std::int64_t step = 0;     // when last written
+  double fraction = 0;              // of simulated time, when last written
+  double time = 0;                  // [s] of simulated time, when last written
+  std::int64_t step = 0;            // when last written
+  std::int64_t frame_count = 0;     // when last written; exact once the state is final
+  std::int64_t stored_bytes = 0;    // of frames and geometry, when last written; exact once the state is final
 };
 
 // Jobs: durable (fsync) before each function returns.
 class JobStore {
  public:
   virtual ~JobStore() = default;
-  // False, and nothing written, when the request id is taken: `existing` is that job.
+  // False, and nothing written, when the request id is taken: `existing` (not null) is then that job.
   virtual bool CreateJob(const JobRecord& job, JobRecord* existing) = 0;
   virtual std::optional<JobRecord> GetJob(std::string_view id) = 0;
   // Newest first, without `spec`; ids below `before_id` (empty: from the newest), states in `states` (empty: all).
-  virtual std::vector<JobRecord> ListJobs(int limit, std::string_view before_id, const std::vector<JobState>& states) = 0;
-  // Writes state, failure, attempt, generation, times and progress of an existing job.
+  virtual std::vector<JobRecord> ListJobs(int limit, std::string_view before_id,
+                                          const std::vector<JobState>& states) = 0;
+  // Writes state, failure, attempt, generation, start and end time, progress and counts of an existing job; without
+  // effect when there is none.
   virtual void UpdateJob(const JobRecord& job) = 0;
   // Removes the job with its frames. False when there is none.
   virtual bool DeleteJob(std::string_view id) = 0;
@@ -63,23 +78,26 @@ class JobStore {
 
 struct FrameRecord {
   std::int64_t index = 0;
-  double time = 0;     // [s]
+  double time = 0;  // [s]
   std::int64_t step = 0;
   std::int64_t size = 0;
   std::string digest;  // 32 bytes
 };
 
-// Frames of one job, in a file of their own.
+// Frames of one job, in a file of their own. Writers wait for each other, readers for nobody.
 class FrameStore {
  public:
   static constexpr std::int64_t kChunkSize = 1 << 20;  // frames and geometry are kept in chunks of this size
 
   virtual ~FrameStore() = default;
+  // Replaces the geometry; without effect when it is the same.
   virtual void PutGeometry(std::string_view bytes) = 0;
   virtual std::optional<std::string> GetGeometry() = 0;
   // Appends a frame and, when not empty, replaces the checkpoint, in one transaction. A frame that is already there
   // with the same digest is left as it is (a restart replays from its checkpoint); with another digest it and all
-  // later frames are replaced and true is returned: the caller must then change the job's generation.
+  // later frames are replaced, a checkpoint that goes with one of them is removed, and true is returned: the caller
+  // must then change the job's generation. Needs 0 <= index <= frame_count(), else throws std::invalid_argument;
+  // `frame.size` is not looked at, the size of `bytes` is kept.
   virtual bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) = 0;
   virtual std::optional<std::string> GetCheckpoint() = 0;
   // Frames with index >= start, at most `limit`, in order.
@@ -99,13 +117,14 @@ class AssetStore {
    public:
     virtual ~Upload() = default;
     virtual void Write(std::string_view bytes) = 0;
-    // False, and nothing kept, when size or digest are not as announced.
+    // False, and nothing kept, when size or digest are not as announced, or the digest is not 64 digits 0-9a-f.
     virtual bool Commit() = 0;
   };
 
   virtual ~AssetStore() = default;
   virtual bool HasAsset(std::string_view sha256_hex) = 0;
   virtual std::unique_ptr<Upload> BeginUpload(std::string_view sha256_hex, std::int64_t size) = 0;
+  // Throws StoreError when the stored bytes have been damaged.
   virtual std::optional<std::string> ReadAsset(std::string_view sha256_hex) = 0;
 };
 
@@ -118,7 +137,7 @@ class Store : public JobStore, public AssetStore {
 
 // In memory, for tests and for `run`; nothing survives it.
 std::unique_ptr<Store> MakeMemoryStore();
-// In a directory: control.db, jobs/{id}.db, assets/{sha256}. Creates it; throws StoreError when it is in use by
+// In a directory: control.db, jobs/{id}.db, assets/ab/{sha256}. Creates it; throws StoreError when it is in use by
 // another process, on a network filesystem, or written by a newer version.
 std::unique_ptr<Store> OpenSqliteStore(const std::string& directory);
 

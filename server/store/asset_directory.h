@@ -1,0 +1,40 @@
+#ifndef FASCICLE_SERVER_STORE_ASSET_DIRECTORY_H_
+#define FASCICLE_SERVER_STORE_ASSET_DIRECTORY_H_
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/store/store.h"
+
+namespace fascicle::server {
+
+// 64 digits 0-9a-f: nothing else may become part of a path.
+bool IsSha256Hex(std::string_view text);
+
+// Assets as files: assets/ab/{sha256}, written as assets/uploads/{number} first. Thread-safe; an upload belongs to one
+// thread.
+class AssetDirectory final : public AssetStore {
+ public:
+  // Creates the directory and removes what interrupted uploads have left.
+  explicit AssetDirectory(const std::string& directory);
+
+  bool HasAsset(std::string_view sha256_hex) override;
+  std::unique_ptr<Upload> BeginUpload(std::string_view sha256_hex, std::int64_t size) override;
+  std::optional<std::string> ReadAsset(std::string_view sha256_hex) override;
+
+ private:
+  class FileUpload;
+
+  std::string PathOf(std::string_view sha256_hex) const;
+
+  const std::string directory_;
+  std::atomic<std::int64_t> next_upload_ = 0;
+};
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_STORE_ASSET_DIRECTORY_H_

@@ -1,0 +1,59 @@
+#ifndef FASCICLE_SERVER_STORE_FRAME_DATABASE_H_
+#define FASCICLE_SERVER_STORE_FRAME_DATABASE_H_
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/store/database.h"
+#include "server/store/reader_pool.h"
+#include "server/store/store.h"
+
+namespace fascicle::server {
+
+// The frames of one job, in jobs/{id}.db. Thread-safe.
+class FrameDatabase final : public FrameStore {
+ public:
+  // `held` lives as long as this: the lock of the directory.
+  FrameDatabase(const std::string& path, std::shared_ptr<void> held);
+  ~FrameDatabase() override;
+
+  void PutGeometry(std::string_view bytes) override;
+  std::optional<std::string> GetGeometry() override;
+  bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) override;
+  std::optional<std::string> GetCheckpoint() override;
+  std::vector<FrameRecord> ListFrames(std::int64_t start, int limit) override;
+  std::int64_t frame_count() override { return frame_count_; }
+  std::int64_t stored_bytes() override { return stored_bytes_; }
+  std::optional<std::string> ReadChunk(std::int64_t index, std::int64_t chunk) override;
+
+  // The file goes when this does: its job has been deleted.
+  void RemoveWhenClosed() { remove_ = true; }
+
+  // Removes the file of a job and what SQLite keeps beside it.
+  static void Remove(const std::string& path);
+
+ private:
+  struct Reader;
+  struct Connections;  // all that has the file open
+
+  void InsertFrame(const FrameRecord& frame, std::string_view bytes);
+  void DeleteFramesFrom(std::int64_t index);
+  void Count();
+
+  const std::shared_ptr<void> held_;
+  const std::string path_;
+  std::mutex write_mutex_;
+  std::unique_ptr<Connections> connections_;
+  std::atomic<std::int64_t> frame_count_ = 0;
+  std::atomic<std::int64_t> stored_bytes_ = 0;
+  std::atomic<bool> remove_ = false;
+};
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_STORE_FRAME_DATABASE_H_

@@ -1,0 +1,226 @@
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <shared_mutex>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/digest.h"
+#include "server/store/store.h"
+
+namespace fascicle::server {
+namespace {
+
+class MemoryFrameStore final : public FrameStore {
+ public:
+  void PutGeometry(std::string_view bytes) override {
+    const std::unique_lock lock(mutex_);
+    stored_bytes_ +=
+        static_cast<std::int64_t>(bytes.size()) - (geometry_ ? static_cast<std::int64_t>(geometry_->size()) : 0);
+    geometry_ = bytes;
+  }
+
+  std::optional<std::string> GetGeometry() override {
+    const std::shared_lock lock(mutex_);
+    return geometry_;
+  }
+
+  bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) override {
+    const std::unique_lock lock(mutex_);
+    const auto count = static_cast<std::int64_t>(frames_.size());
+    if (frame.index < 0 || frame.index > count) {
+      throw std::invalid_argument("frame " + std::to_string(frame.index) + " does not follow the stored ones");
+    }
+    const bool is_there = frame.index < count;
+    const bool is_same = is_there && frames_[static_cast<std::size_t>(frame.index)].record.digest == frame.digest;
+    if (!is_same) {
+      DropFramesFrom(static_cast<std::size_t>(frame.index));
+      frames_.push_back({frame, std::string(bytes)});
+      frames_.back().record.size = static_cast<std::int64_t>(bytes.size());
+      stored_bytes_ += frames_.back().record.size;
+    }
+    if (!checkpoint.empty()) {
+      checkpoint_ = checkpoint;
+      checkpoint_frame_ = frame.index;
+    }
+    return is_there && !is_same;
+  }
+
+  std::optional<std::string> GetCheckpoint() override {
+    const std::shared_lock lock(mutex_);
+    return checkpoint_;
+  }
+
+  std::vector<FrameRecord> ListFrames(std::int64_t start, int limit) override {
+    const std::shared_lock lock(mutex_);
+    std::vector<FrameRecord> records;
+    for (auto i = static_cast<std::size_t>(std::max<std::int64_t>(start, 0)); i < frames_.size(); ++i) {
+      if (static_cast<int>(records.size()) >= limit) break;
+      records.push_back(frames_[i].record);
+    }
+    return records;
+  }
+
+  std::int64_t frame_count() override {
+    const std::shared_lock lock(mutex_);
+    return static_cast<std::int64_t>(frames_.size());
+  }
+
+  std::int64_t stored_bytes() override {
+    const std::shared_lock lock(mutex_);
+    return stored_bytes_;
+  }
+
+  std::optional<std::string> ReadChunk(std::int64_t index, std::int64_t chunk) override {
+    const std::shared_lock lock(mutex_);
+    if (index < 0 || index >= static_cast<std::int64_t>(frames_.size()) || chunk < 0) return std::nullopt;
+    const std::string& bytes = frames_[static_cast<std::size_t>(index)].bytes;
+    const auto last = std::max<std::int64_t>(static_cast<std::int64_t>(bytes.size()) - 1, 0) / kChunkSize;
+    if (chunk > last) return std::nullopt;
+    return bytes.substr(static_cast<std::size_t>(chunk * kChunkSize), static_cast<std::size_t>(kChunkSize));
+  }
+
+ private:
+  struct StoredFrame {
+    FrameRecord record;
+    std::string bytes;
+  };
+
+  void DropFramesFrom(std::size_t index) {
+    for (std::size_t i = index; i < frames_.size(); ++i) stored_bytes_ -= frames_[i].record.size;
+    frames_.resize(std::min(index, frames_.size()));
+    if (checkpoint_ && checkpoint_frame_ >= static_cast<std::int64_t>(index)) checkpoint_.reset();
+  }
+
+  std::shared_mutex mutex_;
+  std::optional<std::string> geometry_;
+  std::vector<StoredFrame> frames_;
+  std::optional<std::string> checkpoint_;
+  std::int64_t checkpoint_frame_ = -1;
+  std::int64_t stored_bytes_ = 0;
+};
+
+class MemoryStore final : public Store {
+ public:
+  bool CreateJob(const JobRecord& job, JobRecord* existing) override {
+    const std::unique_lock lock(mutex_);
+    if (!job.request_id.empty()) {
+      const auto [taken, is_new] = ids_by_request_.try_emplace(job.request_id, job.id);
+      if (!is_new) {
+        *existing = jobs_.at(taken->second).record;
+        return false;
+      }
+    }
+    jobs_[job.id].record = job;
+    return true;
+  }
+
+  std::optional<JobRecord> GetJob(std::string_view id) override {
+    const std::shared_lock lock(mutex_);
+    const auto found = jobs_.find(id);
+    if (found == jobs_.end()) return std::nullopt;
+    return found->second.record;
+  }
+
+  std::vector<JobRecord> ListJobs(int limit, std::string_view before_id, const std::vector<JobState>& states) override {
+    const std::shared_lock lock(mutex_);
+    std::vector<JobRecord> records;
+    auto end = before_id.empty() ? jobs_.end() : jobs_.lower_bound(before_id);
+    while (end != jobs_.begin() && static_cast<int>(records.size()) < limit) {
+      const JobRecord& record = (--end)->second.record;
+      if (!states.empty() && std::find(states.begin(), states.end(), record.state) == states.end()) continue;
+      records.push_back(record);
+      records.back().spec.clear();
+    }
+    return records;
+  }
+
+  void UpdateJob(const JobRecord& job) override {
+    const std::unique_lock lock(mutex_);
+    const auto found = jobs_.find(job.id);
+    if (found == jobs_.end()) return;
+    JobRecord updated = job;  // what a client has asked for stays as it was
+    JobRecord& record = found->second.record;
+    updated.request_id = std::move(record.request_id);
+    updated.request_digest = std::move(record.request_digest);
+    updated.scene_name = std::move(record.scene_name);
+    updated.spec = std::move(record.spec);
+    updated.threads = record.threads;
+    updated.create_time_us = record.create_time_us;
+    record = std::move(updated);
+  }
+
+  bool DeleteJob(std::string_view id) override {
+    const std::unique_lock lock(mutex_);
+    const auto found = jobs_.find(id);
+    if (found == jobs_.end()) return false;
+    ids_by_request_.erase(found->second.record.request_id);
+    jobs_.erase(found);
+    return true;
+  }
+
+  std::shared_ptr<FrameStore> OpenFrames(std::string_view job_id) override {
+    const std::shared_lock lock(mutex_);
+    const auto found = jobs_.find(job_id);
+    return found == jobs_.end() ? nullptr : found->second.frames;
+  }
+
+  bool HasAsset(std::string_view sha256_hex) override {
+    const std::shared_lock lock(mutex_);
+    return assets_.contains(sha256_hex);
+  }
+
+  std::unique_ptr<Upload> BeginUpload(std::string_view sha256_hex, std::int64_t size) override {
+    return std::make_unique<MemoryUpload>(*this, sha256_hex, size);
+  }
+
+  std::optional<std::string> ReadAsset(std::string_view sha256_hex) override {
+    const std::shared_lock lock(mutex_);
+    const auto found = assets_.find(sha256_hex);
+    if (found == assets_.end()) return std::nullopt;
+    return found->second;
+  }
+
+ private:
+  struct StoredJob {
+    JobRecord record;
+    std::shared_ptr<MemoryFrameStore> frames = std::make_shared<MemoryFrameStore>();
+  };
+
+  class MemoryUpload final : public Upload {
+   public:
+    MemoryUpload(MemoryStore& store, std::string_view sha256_hex, std::int64_t size)
+        : store_(store), digest_(sha256_hex), size_(size) {}
+
+    void Write(std::string_view bytes) override {
+      is_too_long_ = is_too_long_ || static_cast<std::int64_t>(bytes_.size() + bytes.size()) > size_;
+      if (!is_too_long_) bytes_.append(bytes);
+    }
+
+    bool Commit() override {
+      if (is_too_long_ || static_cast<std::int64_t>(bytes_.size()) != size_ || Hex(Sha256Of(bytes_)) != digest_)
+        return false;
+      const std::unique_lock lock(store_.mutex_);
+      store_.assets_[digest_] = std::move(bytes_);
+      return true;
+    }
+
+   private:
+    MemoryStore& store_;
+    const std::string digest_;
+    const std::int64_t size_;
+    std::string bytes_;
+    bool is_too_long_ = false;
+  };
+
+  std::shared_mutex mutex_;
+  std::map<std::string, StoredJob, std::less<>> jobs_;
+  std::map<std::string, std::string> ids_by_request_;
+  std::map<std::string, std::string, std::less<>> assets_;
+};
+
+}  // namespace
+
+std::unique_ptr<Store> MakeMemoryStore() { return std::make_unique<MemoryStore>(); }
+
+}  // namespace fascicle::server

@@ -1,0 +1,112 @@
+#include <filesystem>
+#include <mutex>
+#include <system_error>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+
+#include "server/store/asset_directory.h"
+#include "server/store/control_database.h"
+#include "server/store/file_system.h"
+#include "server/store/frame_database.h"
+#include "server/store/store.h"
+
+namespace fascicle::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string CreateDirectories(const std::string& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (!error) fs::create_directories(directory + "/jobs", error);
+  if (error) throw StoreError(directory + ": " + error.message());
+  SyncParent(directory + "/jobs");
+  return directory;
+}
+
+std::shared_ptr<DirectoryLock> Lock(const std::string& directory) {
+  CheckLocal(directory);
+  return std::make_shared<DirectoryLock>(directory);
+}
+
+class SqliteStore final : public Store {
+ public:
+  explicit SqliteStore(const std::string& directory)
+      : directory_(CreateDirectories(directory)),
+        lock_(Lock(directory_)),
+        jobs_(directory_ + "/control.db"),
+        assets_(directory_ + "/assets") {
+    RemoveOrphans();
+  }
+
+  bool CreateJob(const JobRecord& job, JobRecord* existing) override { return jobs_.CreateJob(job, existing); }
+  std::optional<JobRecord> GetJob(std::string_view id) override { return jobs_.GetJob(id); }
+  std::vector<JobRecord> ListJobs(int limit, std::string_view before_id, const std::vector<JobState>& states) override {
+    return jobs_.ListJobs(limit, before_id, states);
+  }
+  void UpdateJob(const JobRecord& job) override { jobs_.UpdateJob(job); }
+
+  bool DeleteJob(std::string_view id) override {
+    const std::lock_guard lock(mutex_);
+    // The row goes first: a file without a row is removed at the next start, a row without its file would be a lie.
+    if (!jobs_.DeleteJob(id)) return false;
+    const auto open = open_frames_.find(std::string(id));
+    const std::shared_ptr<FrameDatabase> frames = open == open_frames_.end() ? nullptr : open->second.lock();
+    if (open != open_frames_.end()) open_frames_.erase(open);
+    if (frames != nullptr) {
+      frames->RemoveWhenClosed();
+    } else {
+      FrameDatabase::Remove(FramesPath(id));
+    }
+    return true;
+  }
+
+  std::shared_ptr<FrameStore> OpenFrames(std::string_view job_id) override {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(open_frames_, [](const auto& entry) { return entry.second.expired(); });
+    const auto open = open_frames_.find(std::string(job_id));
+    if (open != open_frames_.end()) {
+      if (std::shared_ptr<FrameDatabase> frames = open->second.lock()) return frames;
+    }
+    if (!jobs_.HasJob(job_id)) return nullptr;
+    auto frames = std::make_shared<FrameDatabase>(FramesPath(job_id), lock_);
+    open_frames_[std::string(job_id)] = frames;
+    return frames;
+  }
+
+  bool HasAsset(std::string_view sha256_hex) override { return assets_.HasAsset(sha256_hex); }
+  std::unique_ptr<Upload> BeginUpload(std::string_view sha256_hex, std::int64_t size) override {
+    return assets_.BeginUpload(sha256_hex, size);
+  }
+  std::optional<std::string> ReadAsset(std::string_view sha256_hex) override { return assets_.ReadAsset(sha256_hex); }
+
+ private:
+  std::string FramesPath(std::string_view id) const { return directory_ + "/jobs/" + std::string(id) + ".db"; }
+
+  // Files of jobs that are not in the control database: a deletion was interrupted.
+  void RemoveOrphans() {
+    const std::unordered_set<std::string> ids = jobs_.AllIds();
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory_ + "/jobs", error)) {
+      const std::string name = entry.path().filename().string();
+      if (!ids.contains(name.substr(0, name.find('.')))) fs::remove(entry.path(), error);
+    }
+    if (error) throw StoreError(directory_ + "/jobs: " + error.message());
+  }
+
+  const std::string directory_;
+  const std::shared_ptr<DirectoryLock> lock_;
+  ControlDatabase jobs_;
+  AssetDirectory assets_;
+  std::mutex mutex_;  // guards open_frames_, and that a job is not deleted while its frames are opened
+  std::unordered_map<std::string, std::weak_ptr<FrameDatabase>> open_frames_;
+};
+
+}  // namespace
+
+std::unique_ptr<Store> OpenSqliteStore(const std::string& directory) {
+  return std::make_unique<SqliteStore>(directory);
+}
+
+}  // namespace fascicle::server
