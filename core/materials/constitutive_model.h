@@ -17,13 +17,13 @@ struct FibreState {
 
 // A parameter of a law, as in the message of the same name in scene.proto.
 struct ParameterInfo {
-  const char* name;     // field name in scene.proto
-  const char* unit;     // "Pa", "1"
-  double min;           // range
-  bool min_open;        // min itself is not allowed
-  double max;           // range
-  bool max_open;        // max itself is not allowed
-  double default_value; // NaN: must be given
+  const char* name;      // field name in scene.proto
+  const char* unit;      // "Pa", "1"
+  double min;            // range
+  bool min_open;         // min itself is not allowed
+  double max;            // range
+  bool max_open;         // max itself is not allowed
+  double default_value;  // NaN: must be given
   const char* meaning;
 };
 inline constexpr double kRequired = std::numeric_limits<double>::quiet_NaN();
@@ -37,18 +37,19 @@ inline constexpr double kRequired = std::numeric_limits<double>::quiet_NaN();
 // constructed from its parameters' values in the order of kParameters.
 // Where J <= 0 a law that has no meaning there returns non-finite values; it never traps.
 template <class M>
-concept ConstitutiveModel = requires(const M m, const Mat3& F, const FibreState& fibre, std::span<const double> values) {
+concept ConstitutiveModel = requires(const M m, const Mat3& F, const FibreState& fibre,
+                                     std::span<const double> values) {
   { M::kName } -> std::convertible_to<const char*>;
   { M::kTitle } -> std::convertible_to<const char*>;
   { M::kSource } -> std::convertible_to<const char*>;
   { M::kNeedsFibres } -> std::convertible_to<bool>;
-  { std::span<const ParameterInfo>(M::kParameters) };
+  {std::span<const ParameterInfo>(M::kParameters)};
   M(values);
-  { m.Energy(F, fibre) } -> std::same_as<double>;    // W [J/m^3]
-  { m.Stress(F, fibre) } -> std::same_as<Mat3>;      // P = dW/dF, first Piola-Kirchhoff [Pa]
-  { m.Tangent(F, fibre) } -> std::same_as<Mat9>;     // dP/dF, symmetric [Pa]
-  { m.ShearModulus() } -> std::same_as<double>;      // small-strain, passive, without fibres [Pa]
-  { m.BulkModulus() } -> std::same_as<double>;       // small-strain [Pa]
+  { m.Energy(F, fibre) } -> std::same_as<double>;  // W [J/m^3]
+  { m.Stress(F, fibre) } -> std::same_as<Mat3>;    // P = dW/dF, first Piola-Kirchhoff [Pa]
+  { m.Tangent(F, fibre) } -> std::same_as<Mat9>;   // dP/dF, symmetric [Pa]
+  { m.ShearModulus() } -> std::same_as<double>;    // small-strain, passive, without fibres [Pa]
+  { m.BulkModulus() } -> std::same_as<double>;     // small-strain [Pa]
 };
 
 }  // namespace fascicle

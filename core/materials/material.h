@@ -18,7 +18,8 @@ namespace fascicle {
 
 // The closed list of laws. A new law is a header, an entry here and a message in scene.proto of the same name; range
 // checks, the test battery, `fascicle materials` and the tables in the documentation follow from it.
-using Material = std::variant<LinearElastic, StVenantKirchhoff, CorotatedLinear, NeoHookean, MooneyRivlin, Muscle, Tendon>;
+using Material =
+    std::variant<LinearElastic, StVenantKirchhoff, CorotatedLinear, NeoHookean, MooneyRivlin, Muscle, Tendon>;
 
 // What the list says of a law, without its type.
 struct LawInfo {

@@ -1,0 +1,96 @@
+#ifndef FASCICLE_CORE_MATERIALS_MUSCLE_H_
+#define FASCICLE_CORE_MATERIALS_MUSCLE_H_
+
+#include <array>
+#include <span>
+
+#include "core/materials/fibre_curves.h"
+#include "core/materials/isochoric.h"
+
+namespace fascicle {
+
+// Active skeletal muscle: transversely isotropic, nearly incompressible.
+//
+//   W = c1 (I1bar - 3) + c2 (I2bar - 3) + K/2 (ln J)^2 + F2(lambda, alpha)
+//   lambda F2' = smax r [alpha f_act(r) + f_pass(r)],  r = lambda / lo
+//
+// lambda is the isochoric fibre stretch, lo the optimal stretch, smax the peak stress; f_act and f_pass are ActiveCurve
+// and ExponentialToeCurve. F2(1, alpha) = 0, so that W = 0 at rest for every activation. Departs from the letter of
+// [Teran 2003, 5]: U = K/2 (ln J)^2, and W4 = dW/d(lambda^2) where the paper's W_lambda reads as dF2/dlambda; see
+// README.md. Not finite where J <= 0.
+class Muscle {
+ public:
+  static constexpr const char* kName = "muscle";
+  static constexpr const char* kTitle = "Active skeletal muscle";
+  static constexpr const char* kSource = "Teran 2003, section 5; Blemker, Pinsky, Delp 2005, eqs. 8-11; Weiss 1996";
+  static constexpr std::array<ParameterInfo, 8> kParameters = {{
+      {"c1", "Pa", 0, true, 1e9, false, 500, "matrix coefficient A"},
+      {"c2", "Pa", 0, false, 1e9, false, 500, "matrix coefficient B"},
+      {"bulk_modulus", "Pa", 0, true, 1e12, false, 1e7, "bulk modulus K"},
+      {"peak_stress", "Pa", 0, false, 1e8, false, 3e5, "peak isometric fibre stress"},
+      {"optimal_stretch", "1", 0.5, false, 2, false, 1.4, "fibre stretch at which the active stress peaks"},
+      {"passive_scale", "1", 0, false, 10, false, 0.05, "scale of the passive curve, relative to the peak stress"},
+      {"passive_exponent", "1", 0, true, 100, false, 6.6, "exponent of the passive curve"},
+      {"passive_transition", "1", 1, true, 3, false, 1.4, "normalized length from which the passive curve is a line"},
+  }};
+  static constexpr bool kNeedsFibres = true;
+
+  explicit Muscle(std::span<const double> values)
+      : moduli_{values[0], values[1], values[2]},
+        peak_stress_(values[3]),
+        length_per_stretch_(1 / values[4]),
+        passive_(values[5], values[6], values[7]),
+        active_at_rest_(ActiveCurve::Integral(length_per_stretch_)),
+        passive_at_rest_(passive_.Integral(length_per_stretch_)) {}
+
+  double Energy(const Mat3& F, const FibreState& fibre) const {
+    const IsochoricKinematics k(F);
+    const double r = k.FibreStretch(fibre.direction) * length_per_stretch_;
+    return MatrixEnergy(moduli_, k) + peak_stress_ * (fibre.activation * (ActiveCurve::Integral(r) - active_at_rest_) +
+                                                      (passive_.Integral(r) - passive_at_rest_));
+  }
+
+  Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
+    const IsochoricKinematics k(F);
+    const double stretch = k.FibreStretch(fibre.direction);
+    const double W4 = Slope(stretch, fibre.activation) / (2 * stretch);
+    return NearlyIncompressibleStress(F, k, FibreWeight(moduli_.c1, W4, fibre.direction), moduli_.c2, moduli_.bulk);
+  }
+
+  Mat9 Tangent(const Mat3& F, const FibreState& fibre) const {
+    const IsochoricKinematics k(F);
+    const double stretch = k.FibreStretch(fibre.direction);
+    const FibreDerivatives derivatives(stretch, Slope(stretch, fibre.activation), Curvature(stretch, fibre.activation));
+    return FibreTangent(F, k, moduli_, fibre.direction, derivatives);
+  }
+
+  double ShearModulus() const { return 2 * (moduli_.c1 + moduli_.c2); }
+  double BulkModulus() const { return moduli_.bulk; }
+
+  // Cauchy stress that the fibre adds along itself at isochoric stretch lambda: lambda F2'(lambda, alpha) [Pa].
+  double FibreStress(double stretch, double activation) const { return stretch * Slope(stretch, activation); }
+
+ private:
+  // F2'(lambda) [Pa].
+  double Slope(double stretch, double activation) const {
+    const double r = stretch * length_per_stretch_;
+    return peak_stress_ * length_per_stretch_ * (activation * ActiveCurve::Value(r) + passive_.Value(r));
+  }
+  // F2''(lambda) [Pa].
+  double Curvature(double stretch, double activation) const {
+    const double r = stretch * length_per_stretch_;
+    return peak_stress_ * length_per_stretch_ * length_per_stretch_ *
+           (activation * ActiveCurve::Derivative(r) + passive_.Derivative(r));
+  }
+
+  MatrixModuli moduli_;
+  double peak_stress_;         // smax [Pa]
+  double length_per_stretch_;  // 1 / lo
+  ExponentialToeCurve passive_;
+  double active_at_rest_, passive_at_rest_;  // integrals of the curves up to lambda = 1
+};
+static_assert(ConstitutiveModel<Muscle>);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_MATERIALS_MUSCLE_H_

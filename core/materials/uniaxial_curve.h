@@ -1,0 +1,32 @@
+#ifndef FASCICLE_CORE_MATERIALS_UNIAXIAL_CURVE_H_
+#define FASCICLE_CORE_MATERIALS_UNIAXIAL_CURVE_H_
+
+#include <span>
+#include <vector>
+
+#include "core/materials/material.h"
+
+namespace fascicle {
+
+// One point of a tension test along z, which is also the fibre direction, with free sides: F = diag(l, l, stretch) with
+// the lateral stretch l at which the lateral stress vanishes.
+struct UniaxialPoint {
+  double stretch = 0;          // along z [1]
+  double lateral_stretch = 0;  // l [1]
+  double volume_ratio = 0;     // J = l^2 stretch [1]
+  double cauchy_stress = 0;    // sigma_zz, force per deformed area [Pa]
+  double nominal_stress = 0;   // P_zz, force per rest area [Pa]
+  // False where no lateral stretch without lateral stress was found; all but `stretch` are NaN then.
+  bool converged = false;
+};
+
+// stretch > 0; activation in [0, 1]. Thread-safe, as all of this room.
+UniaxialPoint UniaxialTension(const Material& material, double activation, double stretch);
+
+// The same for each of `stretches`: what `fascicle materials curve` prints and draws.
+std::vector<UniaxialPoint> UniaxialCurve(const Material& material, double activation,
+                                         std::span<const double> stretches);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_MATERIALS_UNIAXIAL_CURVE_H_
