@@ -1,6 +1,7 @@
 #ifndef FASCICLE_SERVER_TRANSLATE_TRANSLATE_H_
 #define FASCICLE_SERVER_TRANSLATE_TRANSLATE_H_
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -25,10 +26,19 @@ using AssetReader = std::function<std::optional<std::string>(const std::string& 
 // Digests of the assets that a scene names, each once.
 std::vector<std::string> AssetsOf(const v1::Scene& scene);
 
+// What a scene may cost. All bodies together.
+struct TranslateLimits {
+  std::int64_t max_tetrahedra = 20'000'000;      // about 10 GB while it runs
+  std::int64_t max_frame_bytes = 1'000'000'000;  // a message of Protobuf must stay below 2 GiB
+};
+
 // Checks everything that can be checked without running (the proto's ranges, names, files, meshes, regions,
 // CheckScene) and adds every problem with its field path ("bodies[0].density"). nullptr when there was any.
-std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetReader& assets, Problems& problems);
+// Nothing large is built before its size is known to be within the limits.
+std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetReader& assets, Problems& problems,
+                                            const TranslateLimits& limits = {});
 
+// To the wire. A frame's digest and numbers are copied bit by bit.
 v1::Geometry EncodeGeometry(const Scene& scene, const std::vector<SeriesInfo>& series);
 v1::Frame EncodeFrame(const Frame& frame);
 v1::Failure EncodeFailure(const Failure& failure);

@@ -1,0 +1,28 @@
+#ifndef FASCICLE_SERVER_TRANSLATE_BUILT_IN_SHAPES_H_
+#define FASCICLE_SERVER_TRANSLATE_BUILT_IN_SHAPES_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/base/problems.h"
+#include "core/geometry/tet_mesh.h"
+#include "fascicle/v1/scene.pb.h"
+
+namespace fascicle::server {
+
+struct ShapeSize {
+  std::string path;             // of the shape
+  std::int64_t tetrahedra = 0;  // that MakeShape would make
+};
+
+// Checks the parameters of a built-in shape (defaults filled in) against each other, without building it. Nothing when
+// it can't be built or none is given.
+std::optional<ShapeSize> CheckShape(const v1::Mesh& mesh, const std::string& path, Problems& problems);
+
+// Builds a shape that CheckShape accepted; `metres` in its length unit.
+TetMesh MakeShape(const v1::Mesh& mesh, double metres);
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_TRANSLATE_BUILT_IN_SHAPES_H_

@@ -1,0 +1,28 @@
+#ifndef FASCICLE_SERVER_TRANSLATE_CURVES_H_
+#define FASCICLE_SERVER_TRANSLATE_CURVES_H_
+
+#include <string>
+
+#include "core/base/problems.h"
+#include "core/scene/curve.h"
+#include "fascicle/v1/scene.pb.h"
+
+namespace fascicle::server {
+
+// What a curve's values mean where it is used: scene.proto says it there, for the rule lines can't.
+struct CurveUse {
+  const char* unit;
+  double min, max;  // inclusive
+  double neutral;   // the value of the constant curve that stands for a wrong one in later checks
+};
+inline constexpr CurveUse kActivationCurve = {"1", 0, 1, 0};
+inline constexpr CurveUse kFactorCurve = {"1", -1000, 1000, 1};
+inline constexpr CurveUse kTranslationCurve = {"m", -10, 10, 0};
+inline constexpr CurveUse kAngleCurve = {"rad", -1000, 1000, 0};
+
+// Problems: more than 10,000 points, as many values as times, times that don't increase, values out of range.
+Curve TranslateCurve(const v1::Curve& curve, const CurveUse& use, const std::string& path, Problems& problems);
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_TRANSLATE_CURVES_H_

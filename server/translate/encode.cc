@@ -1,0 +1,82 @@
+#include <bit>
+#include <cstring>
+#include <span>
+#include <string>
+
+#include "server/translate/translate.h"
+
+namespace fascicle::server {
+namespace {
+
+// The wire is little-endian and packed; so is memory, and encoding is copying.
+static_assert(std::endian::native == std::endian::little);
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Tetrahedron) == 4 * sizeof(std::uint32_t));
+
+template <class T>
+std::string Bytes(const std::vector<T>& values) {
+  std::string bytes(values.size() * sizeof(T), '\0');
+  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+
+}  // namespace
+
+v1::Geometry EncodeGeometry(const Scene& scene, const std::vector<SeriesInfo>& series) {
+  v1::Geometry geometry;
+  for (const Body& body : scene.bodies) {
+    v1::BodyGeometry& encoded = *geometry.add_bodies();
+    encoded.set_name(body.name);
+    encoded.set_positions(Bytes(body.mesh.nodes));
+    encoded.set_tetrahedra(Bytes(body.mesh.tetrahedra));
+    encoded.set_fibres(Bytes(body.fibres));
+    for (const Region& region : body.regions) {
+      v1::RegionGeometry& nodes = *encoded.add_regions();
+      nodes.set_name(region.name);
+      nodes.set_nodes(Bytes(region.nodes));
+    }
+  }
+  for (const SeriesInfo& info : series) {
+    v1::SeriesInfo& encoded = *geometry.add_series();
+    encoded.set_name(info.name);
+    encoded.set_unit(info.unit);
+    encoded.set_description(info.description);
+  }
+  return geometry;
+}
+
+v1::Frame EncodeFrame(const Frame& frame) {
+  v1::Frame encoded;
+  encoded.set_index(frame.index);
+  encoded.set_time(frame.time);
+  encoded.set_step(frame.step);
+  for (const BodyFrame& body : frame.bodies) {
+    v1::BodyFrame& target = *encoded.add_bodies();
+    target.set_positions(Bytes(body.positions));
+    for (const FieldValues& field : body.fields) {
+      v1::FieldValues& values = *target.add_fields();
+      values.set_name(field.name);
+      values.set_location(field.location == FieldLocation::kNode ? v1::FieldValues::LOCATION_NODE
+                                                                 : v1::FieldValues::LOCATION_TETRAHEDRON);
+      values.set_components(field.components);
+      values.set_unit(field.unit);
+      values.set_values(Bytes(field.values));
+    }
+  }
+  encoded.mutable_series()->Assign(frame.series.begin(), frame.series.end());
+  encoded.set_digest(frame.digest.data(), frame.digest.size());
+  return encoded;
+}
+
+v1::Failure EncodeFailure(const Failure& failure) {
+  v1::Failure encoded;
+  encoded.set_reason(failure.reason);
+  encoded.set_message(failure.message);
+  encoded.set_step(failure.step);
+  encoded.set_time(failure.time);
+  encoded.set_body(failure.body);
+  encoded.mutable_element_ids()->Assign(failure.elements.begin(), failure.elements.end());
+  encoded.set_advice(failure.advice);
+  return encoded;
+}
+
+}  // namespace fascicle::server

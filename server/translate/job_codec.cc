@@ -1,0 +1,40 @@
+#include "server/translate/job_codec.h"
+
+#include <stdexcept>
+
+namespace fascicle::server {
+namespace {
+
+template <class M>
+std::string Serialize(const M& message) {
+  std::string bytes;
+  if (!message.SerializeToString(&bytes))
+    throw std::runtime_error(message.GetTypeName() + " is too large to be stored");
+  return bytes;
+}
+
+std::shared_ptr<const Scene> DecodeScene(const std::string& spec, AssetStore& assets) {
+  v1::Job job;
+  if (!job.ParseFromString(spec)) throw std::runtime_error("the stored job can't be read");
+  Problems problems;
+  auto scene = TranslateScene(job.scene(), ReaderOf(assets), problems);
+  if (scene == nullptr) throw std::runtime_error("the stored scene can't be built any more:\n" + problems.ToString());
+  return scene;
+}
+
+}  // namespace
+
+AssetReader ReaderOf(AssetStore& assets) {
+  return [&assets](const std::string& sha256_hex) { return assets.ReadAsset(sha256_hex); };
+}
+
+JobCodec MakeJobCodec() {
+  return {
+      .decode_scene = DecodeScene,
+      .encode_geometry = [](const Scene& scene,
+                            const std::vector<SeriesInfo>& series) { return Serialize(EncodeGeometry(scene, series)); },
+      .encode_frame = [](const Frame& frame) { return Serialize(EncodeFrame(frame)); },
+      .encode_failure = [](const Failure& failure) { return Serialize(EncodeFailure(failure)); }};
+}
+
+}  // namespace fascicle::server

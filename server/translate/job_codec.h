@@ -1,0 +1,18 @@
+#ifndef FASCICLE_SERVER_TRANSLATE_JOB_CODEC_H_
+#define FASCICLE_SERVER_TRANSLATE_JOB_CODEC_H_
+
+#include "server/jobs/job_manager.h"
+#include "server/translate/translate.h"
+
+namespace fascicle::server {
+
+// Reads from a store, which must outlive the reader.
+AssetReader ReaderOf(AssetStore& assets);
+
+// How jobs become bytes: a spec is a serialized v1::Job with scene and threads; geometry, frames and failures are
+// serialized v1::Geometry, v1::Frame and v1::Failure. Stateless and thread-safe.
+JobCodec MakeJobCodec();
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_TRANSLATE_JOB_CODEC_H_

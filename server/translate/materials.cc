@@ -1,0 +1,54 @@
+#include "server/translate/materials.h"
+
+#include <stdexcept>
+#include <vector>
+
+#include "server/translate/values.h"
+
+namespace fascicle::server {
+namespace {
+
+// The message of the law, whose fields are named as the law's parameters: nothing here knows any single law.
+const google::protobuf::FieldDescriptor* LawField(const v1::Material& material) {
+  const auto* oneof = material.GetDescriptor()->FindOneofByName("law");
+  return material.GetReflection()->GetOneofFieldDescriptor(material, oneof);
+}
+
+double Parameter(const google::protobuf::Message& law, const std::string& name) {
+  const auto* field = law.GetDescriptor()->FindFieldByName(name);
+  if (field == nullptr) throw std::logic_error("scene.proto lacks " + law.GetTypeName() + "." + name);
+  return law.GetReflection()->GetDouble(law, field);
+}
+
+}  // namespace
+
+const LawInfo* LawOf(const v1::Material& material) {
+  const auto* field = LawField(material);
+  if (field == nullptr) return nullptr;
+  const LawInfo* law = FindLaw(field->name());
+  if (law == nullptr) throw std::logic_error("core/materials lacks the law " + field->name());
+  return law;
+}
+
+Material TranslateMaterial(const v1::Body& body, const std::string& body_path, Problems& problems) {
+  const Material neutral = Body().material;
+  if (!body.has_material()) {
+    std::string names;
+    for (const LawInfo& law : Laws()) names += (names.empty() ? "" : ", ") + std::string(law.name);
+    problems.Add(JoinPath(body_path, "material"), "is missing", "give one of: " + names);
+    return neutral;
+  }
+  const LawInfo* law = LawOf(body.material());
+  if (law == nullptr || !ObeysRules(body.material())) return neutral;
+  const auto& message = body.material().GetReflection()->GetMessage(body.material(), LawField(body.material()));
+  std::vector<double> values;
+  for (const ParameterInfo& parameter : law->parameters) values.push_back(Parameter(message, parameter.name));
+  return law->make(values);
+}
+
+Damping TranslateDamping(const v1::Body& body) {
+  if (!ObeysRules(body.damping())) return {};
+  return {body.damping().mass_proportional(), body.damping().stiffness_proportional(), body.damping().viscosity()};
+}
+
+}  // namespace fascicle::server

@@ -1,0 +1,23 @@
+#ifndef FASCICLE_SERVER_TRANSLATE_MATERIALS_H_
+#define FASCICLE_SERVER_TRANSLATE_MATERIALS_H_
+
+#include <string>
+
+#include "core/base/problems.h"
+#include "core/materials/material.h"
+#include "core/scene/scene.h"
+#include "fascicle/v1/scene.pb.h"
+
+namespace fascicle::server {
+
+// The law that a material message names; nullptr when it names none.
+const LawInfo* LawOf(const v1::Material& material);
+
+// The material of a body, defaults filled in. A soft isotropic one stands for a wrong one in later checks.
+Material TranslateMaterial(const v1::Body& body, const std::string& body_path, Problems& problems);
+
+Damping TranslateDamping(const v1::Body& body);
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_TRANSLATE_MATERIALS_H_

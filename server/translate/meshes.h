@@ -1,0 +1,34 @@
+#ifndef FASCICLE_SERVER_TRANSLATE_MESHES_H_
+#define FASCICLE_SERVER_TRANSLATE_MESHES_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/base/problems.h"
+#include "core/geometry/tet_mesh.h"
+#include "fascicle/v1/scene.pb.h"
+#include "server/translate/translate.h"
+
+namespace fascicle::server {
+
+struct TranslatedMesh {
+  TetMesh mesh;       // [m]; indices in range and coordinates finite
+  bool sound = true;  // CheckMesh found nothing
+};
+
+// The mesh of a body (defaults filled in) in metres. `budget` is the number of tetrahedra that are left for it, and is
+// reduced by those it has. Nothing when there is no mesh that other checks could look at.
+std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, const std::string& body_path,
+                                            const AssetReader& assets, std::int64_t& budget, Problems& problems);
+
+// Bytes of the file that `file` names; nothing, with a problem, when its digest is malformed or its asset is not there.
+std::optional<std::string> ReadFile(const v1::FileRef& file, const std::string& path, const AssetReader& assets,
+                                    Problems& problems);
+
+// The 64 hexadecimal digits of `assets/{sha256}`; empty when it is not of this form.
+std::string DigestOfAsset(const std::string& asset);
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_TRANSLATE_MESHES_H_

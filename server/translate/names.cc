@@ -1,0 +1,82 @@
+#include "server/translate/names.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace fascicle::server {
+namespace {
+
+constexpr std::size_t kMaxLength = 64;
+constexpr std::size_t kMaxListed = 10;
+const char kPattern[] = "letters, digits, `_`, `-` and `.`, 1 to 64 characters";
+
+bool IsNameCharacter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+}
+
+// Files are named after names, so they must not mean a folder.
+bool IsName(const std::string& name) {
+  return !name.empty() && name.size() <= kMaxLength && std::all_of(name.begin(), name.end(), IsNameCharacter) &&
+         name != "." && name != "..";
+}
+
+// Fewest insertions, deletions and replacements between two short texts (Levenshtein).
+std::size_t EditDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+std::string Shortened(const std::string& name) {
+  return name.size() <= kMaxLength ? name : name.substr(0, kMaxLength) + "...";
+}
+
+}  // namespace
+
+void Names::Add(const std::string& name, const std::string& path, Problems& problems) {
+  if (name.empty()) {
+    problems.Add(path, "is missing", kPattern);
+  } else if (!IsName(name)) {
+    problems.Add(path, "'" + Shortened(name) + "' is not a name", kPattern);
+  } else if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
+    problems.Add(path, "'" + name + "' is the name of another " + what_, "every " + what_ + " needs a name of its own");
+  }
+  names_.push_back(name);
+}
+
+std::optional<std::size_t> Names::Find(const std::string& name, const std::string& path, Problems& problems) const {
+  const auto found = std::find(names_.begin(), names_.end(), name);
+  if (!name.empty() && found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
+  problems.Add(path, name.empty() ? "is missing" : "there is no " + what_ + " '" + Shortened(name) + "'", Hint(name));
+  return std::nullopt;
+}
+
+std::string Names::Hint(const std::string& name) const {
+  if (names_.empty()) return "there is no " + what_ + " at all";
+  std::string hint;
+  const auto distance = [&](const std::string& known) {
+    return EditDistance(name.substr(0, kMaxLength), Shortened(known));
+  };
+  const auto nearest = std::min_element(names_.begin(), names_.end(), [&](const std::string& a, const std::string& b) {
+    return distance(a) < distance(b);
+  });
+  if (!name.empty() && !nearest->empty() && distance(*nearest) <= std::max<std::size_t>(2, nearest->size() / 3)) {
+    hint = "did you mean '" + *nearest + "'? ";
+  }
+  hint += "known: ";
+  for (std::size_t i = 0; i < std::min(names_.size(), kMaxListed); ++i) {
+    hint += (i > 0 ? ", '" : "'") + Shortened(names_[i]) + "'";
+  }
+  return names_.size() > kMaxListed ? hint + ", ..." : hint;
+}
+
+}  // namespace fascicle::server

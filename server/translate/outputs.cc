@@ -1,0 +1,163 @@
+#include "server/translate/outputs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/translate/values.h"
+
+namespace fascicle::server {
+namespace {
+
+constexpr double kMaxFrames = 100'000;
+
+OutputField ToOutputField(v1::Field field) {
+  switch (field) {
+    case v1::FIELD_CAUCHY_STRESS:
+      return OutputField::kCauchyStress;
+    case v1::FIELD_VON_MISES_STRESS:
+      return OutputField::kVonMisesStress;
+    case v1::FIELD_PRESSURE:
+      return OutputField::kPressure;
+    case v1::FIELD_VOLUME_RATIO:
+      return OutputField::kVolumeRatio;
+    case v1::FIELD_FIBRE_STRETCH:
+      return OutputField::kFibreStretch;
+    case v1::FIELD_FIBRE_DIRECTION:
+      return OutputField::kFibreDirection;
+    default:
+      return OutputField::kVelocity;
+  }
+}
+
+bool IsFibreField(OutputField field) {
+  return field == OutputField::kFibreStretch || field == OutputField::kFibreDirection;
+}
+
+bool AnyFibres(const v1::Scene& scene) {
+  return std::any_of(scene.bodies().begin(), scene.bodies().end(),
+                     [](const v1::Body& body) { return body.has_fibres(); });
+}
+
+void CheckFrameCount(const v1::Scene& scene, Problems& problems) {
+  const double duration = scene.duration(), interval = scene.output().frame_interval();
+  // Wrong numbers are reported with the rules.
+  if (!std::isfinite(duration) || !(duration > 0) || !std::isfinite(interval) || !(interval > 0)) return;
+  const double frames = std::ceil(duration / interval) + 1;
+  if (frames <= kMaxFrames) return;
+  problems.Add("output.frame_interval", "gives " + Text(frames) + " frames; at most 100,000 are kept",
+               "at least " + Text(duration / (kMaxFrames - 1)) + " s for this duration");
+}
+
+std::vector<OutputField> TranslateFields(const v1::Scene& scene, Problems& problems) {
+  std::vector<OutputField> fields;
+  for (int i = 0; i < scene.output().fields_size(); ++i) {
+    const std::string path = IndexPath("output.fields", static_cast<std::size_t>(i));
+    const v1::Field wire = scene.output().fields(i);
+    if (wire == v1::FIELD_UNSPECIFIED) problems.Add(path, "is missing", "such as velocity or von_mises_stress");
+    if (wire == v1::FIELD_UNSPECIFIED || !v1::Field_IsValid(wire)) continue;
+    const OutputField field = ToOutputField(wire);
+    if (std::find(fields.begin(), fields.end(), field) != fields.end()) {
+      problems.Add(path, "is listed twice", "list each field once");
+      continue;
+    }
+    if (IsFibreField(field) && !AnyFibres(scene)) {
+      problems.Add(path, "no body has fibres", "give a body `fibres`, or leave the field out");
+    }
+    fields.push_back(field);
+  }
+  return fields;
+}
+
+std::int64_t FieldBytes(OutputField field, const Body& body) {
+  const auto nodes = static_cast<std::int64_t>(body.mesh.nodes.size());
+  const auto tetrahedra = static_cast<std::int64_t>(body.mesh.tetrahedra.size());
+  constexpr std::int64_t kDouble = sizeof(double);
+  switch (field) {
+    case OutputField::kVelocity:
+      return 3 * kDouble * nodes;
+    case OutputField::kCauchyStress:
+      return 6 * kDouble * tetrahedra;
+    case OutputField::kFibreDirection:
+      return 3 * kDouble * tetrahedra;
+    default:
+      return kDouble * tetrahedra;
+  }
+}
+
+void CheckFrameSize(const Output& output, const std::vector<Body>& bodies, std::int64_t max_bytes, Problems& problems) {
+  std::int64_t bytes = 0;
+  for (const Body& body : bodies) {
+    bytes += static_cast<std::int64_t>(body.mesh.nodes.size() * sizeof(Vec3));
+    for (const OutputField field : output.fields) bytes += FieldBytes(field, body);
+  }
+  if (bytes <= max_bytes) return;
+  problems.Add("output.fields", "each frame would have " + std::to_string(bytes) + " bytes",
+               "at most " + std::to_string(max_bytes) + "; keep fewer fields or take coarser meshes");
+}
+
+// The node nearest to `point` [m]. A point further away than the body is large has a wrong unit or a wrong body.
+std::int32_t NearestNode(const TetMesh& mesh, const Vec3& point, const std::string& path, Problems& problems) {
+  std::int32_t nearest = 0;
+  Vec3 low = mesh.nodes.front(), high = low;
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+    const Vec3& x = mesh.nodes[i];
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+    if ((x - point).squaredNorm() < (mesh.nodes[static_cast<std::size_t>(nearest)] - point).squaredNorm()) {
+      nearest = static_cast<std::int32_t>(i);
+    }
+  }
+  const double distance = (mesh.nodes[static_cast<std::size_t>(nearest)] - point).norm();
+  if (!(distance <= (high - low).norm())) {
+    problems.Add(path, "is " + Text(distance) + " m away from the body, further than the body is large",
+                 "probe points are in the body's own unit");
+  }
+  return nearest;
+}
+
+std::vector<Probe> TranslateProbes(const v1::Scene& scene, const std::vector<Body>& bodies, const Names& body_names,
+                                   Problems& problems) {
+  Names names("probe");
+  std::vector<Probe> probes;
+  for (int i = 0; i < scene.output().probes_size(); ++i) {
+    const v1::Probe& probe = scene.output().probes(i);
+    const std::string path = IndexPath("output.probes", static_cast<std::size_t>(i));
+    names.Add(probe.name(), JoinPath(path, "name"), problems);
+    const auto body = body_names.Find(probe.body(), JoinPath(path, "body"), problems);
+    if (!body || bodies[*body].mesh.nodes.empty() || !ObeysRules(probe)) continue;
+    const Vec3 point = ToVec3(probe.point()) * MetresIn(scene.bodies(static_cast<int>(*body)).unit());
+    probes.push_back({probe.name(), static_cast<std::int32_t>(*body),
+                      NearestNode(bodies[*body].mesh, point, JoinPath(path, "point"), problems)});
+  }
+  return probes;
+}
+
+}  // namespace
+
+Output TranslateOutput(const v1::Scene& scene, const std::vector<Body>& bodies, const Names& body_names,
+                       std::int64_t max_frame_bytes, Problems& problems) {
+  Output output;
+  if (!scene.has_output()) {
+    problems.Add("output", "is missing", "give at least frame_interval [s]");
+    return output;
+  }
+  CheckFrameCount(scene, problems);
+  output.frame_interval = scene.output().frame_interval();
+  output.fields = TranslateFields(scene, problems);
+  output.probes = TranslateProbes(scene, bodies, body_names, problems);
+  if (scene.output().has_settle_speed()) output.settle_speed = scene.output().settle_speed();
+  CheckFrameSize(output, bodies, max_frame_bytes, problems);
+  return output;
+}
+
+TetMethod TranslateMethod(const v1::Scene& scene) {
+  TetMethod method;
+  if (!scene.has_tet() || !ObeysRules(scene.tet())) return method;
+  if (scene.tet().stepping() == v1::STEPPING_MIXED) method.stepping = Stepping::kMixed;
+  if (scene.tet().has_time_step()) method.time_step = scene.tet().time_step();
+  method.safety = scene.tet().safety();
+  method.solver_tolerance = scene.tet().solver_tolerance();
+  return method;
+}
+
+}  // namespace fascicle::server

@@ -1,0 +1,24 @@
+#ifndef FASCICLE_SERVER_TRANSLATE_OUTPUTS_H_
+#define FASCICLE_SERVER_TRANSLATE_OUTPUTS_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/problems.h"
+#include "core/scene/scene.h"
+#include "fascicle/v1/scene.pb.h"
+#include "server/translate/names.h"
+
+namespace fascicle::server {
+
+// What is kept. `bodies` are those of the scene; one without nodes is not known and not looked at.
+Output TranslateOutput(const v1::Scene& scene, const std::vector<Body>& bodies, const Names& body_names,
+                       std::int64_t max_frame_bytes, Problems& problems);
+
+// How it is stepped. A neutral method stands for a wrong one.
+TetMethod TranslateMethod(const v1::Scene& scene);
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_TRANSLATE_OUTPUTS_H_

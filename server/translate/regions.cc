@@ -1,0 +1,120 @@
+#include "server/translate/regions.h"
+
+#include <optional>
+#include <set>
+
+#include "server/translate/values.h"
+
+namespace fascicle::server {
+namespace {
+
+std::optional<Selector> TranslateBox(const v1::BoxRegion& box, double metres, const std::string& path,
+                                     Problems& problems) {
+  bool ordered = true;
+  for (int i = 0; i < std::min(box.min_size(), box.max_size()); ++i) {
+    if (!(box.min(i) > box.max(i))) continue;
+    ordered = false;
+    problems.Add(JoinPath(path, IndexPath("min", static_cast<std::size_t>(i))),
+                 "is " + Text(box.min(i)) + ", above the maximum " + Text(box.max(i)), "exchange min and max");
+  }
+  if (!ordered) return std::nullopt;
+  return BoxSelector{ToVec3(box.min()) * metres, ToVec3(box.max()) * metres};
+}
+
+// The selector in metres; nothing when it is missing or wrong.
+std::optional<Selector> TranslateSelector(const v1::Region& region, double metres, const std::string& path,
+                                          Problems& problems) {
+  Problems own;
+  std::optional<Selector> selector;
+  switch (region.selector_case()) {
+    case v1::Region::kPhysicalTag:
+      selector = TagSelector{region.physical_tag()};
+      break;
+    case v1::Region::kPlane:
+      selector = PlaneSelector{ToVec3(region.plane().point()) * metres,
+                               ToDirection(region.plane().normal(), JoinPath(path, "plane.normal"), own)};
+      break;
+    case v1::Region::kBox:
+      selector = TranslateBox(region.box(), metres, JoinPath(path, "box"), own);
+      break;
+    case v1::Region::kSphere:
+      selector = SphereSelector{ToVec3(region.sphere().center()) * metres, region.sphere().radius() * metres};
+      break;
+    case v1::Region::kSide:
+      selector = SideSelector{ToDirection(region.side().direction(), JoinPath(path, "side.direction"), own),
+                              region.side().max_angle()};
+      break;
+    case v1::Region::SELECTOR_NOT_SET:
+      break;
+  }
+  problems.Append("", own);
+  if (!own.empty() || !ObeysRules(region)) return std::nullopt;
+  return selector;
+}
+
+std::string TagHint(const TetMesh& mesh, bool from_file) {
+  std::set<std::int32_t> tags(mesh.triangle_tags.begin(), mesh.triangle_tags.end());
+  tags.insert(mesh.tetrahedron_tags.begin(), mesh.tetrahedron_tags.end());
+  if (!from_file) return "built-in shapes have no tags; select by plane, box, sphere or side";
+  if (tags.empty()) return "the mesh file has no tags; select by plane, box, sphere or side";
+  constexpr std::size_t kMaxListed = 20;
+  std::string hint = "tags in the mesh file: ";
+  std::size_t listed = 0;
+  for (const std::int32_t tag : tags) {
+    if (listed == kMaxListed) return hint + ", ...";
+    hint += (listed++ > 0 ? ", " : "") + std::to_string(tag);
+  }
+  return hint;
+}
+
+// The body's extent in its own unit, for a selector that misses it.
+std::string ExtentHint(const TetMesh& mesh, double metres) {
+  Vec3 low = mesh.nodes.front(), high = low;
+  for (const Vec3& x : mesh.nodes) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  const auto corner = [metres](const Vec3& x) {
+    char text[96];
+    std::snprintf(text, sizeof(text), "[%.6g, %.6g, %.6g]", x[0] / metres, x[1] / metres, x[2] / metres);
+    return std::string(text);
+  };
+  return "in its own unit, the body reaches from " + corner(low) + " to " + corner(high);
+}
+
+void AddEmptyRegion(const v1::Body& body, const v1::Region& region, const TetMesh& mesh, const std::string& path,
+                    Problems& problems) {
+  if (region.has_physical_tag()) {
+    problems.Add(JoinPath(path, "physical_tag"),
+                 "nothing in the mesh has the tag " + std::to_string(region.physical_tag()),
+                 TagHint(mesh, body.mesh().has_file()));
+  } else {
+    const char* kind = region.has_plane()    ? "plane"
+                       : region.has_box()    ? "box"
+                       : region.has_sphere() ? "sphere"
+                                             : "side";
+    problems.Add(JoinPath(path, kind), "selects no node of the body", ExtentHint(mesh, MetresIn(body.unit())));
+  }
+}
+
+}  // namespace
+
+TranslatedRegions TranslateRegions(const v1::Body& body, const std::string& body_path, const TetMesh* mesh,
+                                   Problems& problems) {
+  TranslatedRegions result;
+  const std::vector<Triangle> surface =
+      mesh != nullptr && body.regions_size() > 0 ? BoundaryTriangles(*mesh) : std::vector<Triangle>();
+  for (int i = 0; i < body.regions_size(); ++i) {
+    const v1::Region& region = body.regions(i);
+    const std::string path = JoinPath(body_path, IndexPath("regions", static_cast<std::size_t>(i)));
+    result.names.Add(region.name(), JoinPath(path, "name"), problems);
+    result.regions.push_back({region.name(), {}, {}});
+    const auto selector = TranslateSelector(region, MetresIn(body.unit()), path, problems);
+    if (mesh == nullptr || !selector) continue;
+    result.regions.back() = SelectRegion(*mesh, surface, region.name(), *selector);
+    if (result.regions.back().nodes.empty()) AddEmptyRegion(body, region, *mesh, path, problems);
+  }
+  return result;
+}
+
+}  // namespace fascicle::server

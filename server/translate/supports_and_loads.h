@@ -1,0 +1,23 @@
+#ifndef FASCICLE_SERVER_TRANSLATE_SUPPORTS_AND_LOADS_H_
+#define FASCICLE_SERVER_TRANSLATE_SUPPORTS_AND_LOADS_H_
+
+#include <string>
+#include <vector>
+
+#include "core/base/problems.h"
+#include "core/scene/scene.h"
+#include "fascicle/v1/scene.pb.h"
+#include "server/translate/names.h"
+
+namespace fascicle::server {
+
+// The constraints and loads of a body. Entries with a problem may be left out of the result.
+std::vector<Constraint> TranslateConstraints(const v1::Body& body, const std::string& body_path, const Names& regions,
+                                             Problems& problems);
+std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_path, const Names& regions,
+                                 Problems& problems);
+Gravity TranslateGravity(const v1::Scene& scene, Problems& problems);
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_TRANSLATE_SUPPORTS_AND_LOADS_H_

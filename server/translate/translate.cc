@@ -1,0 +1,122 @@
+#include "server/translate/translate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "proto/rules/field_rules.h"
+#include "server/translate/curves.h"
+#include "server/translate/fibres.h"
+#include "server/translate/materials.h"
+#include "server/translate/meshes.h"
+#include "server/translate/names.h"
+#include "server/translate/outputs.h"
+#include "server/translate/regions.h"
+#include "server/translate/scene_checks.h"
+#include "server/translate/supports_and_loads.h"
+#include "server/translate/values.h"
+
+namespace fascicle::server {
+namespace {
+
+constexpr std::size_t kMaxSceneName = 200;  // characters
+
+// Characters of a UTF-8 text: bytes that don't continue one.
+std::size_t Characters(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+void CheckHead(const v1::Scene& scene, Problems& problems) {
+  if (const std::size_t length = Characters(scene.name()); length > kMaxSceneName) {
+    problems.Add("name", "has " + std::to_string(length) + " characters", "at most 200; the description may be longer");
+  }
+  if (scene.bodies().empty()) problems.Add("bodies", "is empty", "a scene has at least one body");
+}
+
+// A body, and whether what ties its parts together (mesh, regions, supports, loads) is there for CheckScene to look at.
+struct TranslatedBody {
+  Body body;
+  bool complete = false;
+};
+
+TranslatedBody TranslateBody(const v1::Body& wire, const std::string& path, const AssetReader& assets,
+                             std::int64_t& budget, Problems& problems) {
+  TranslatedBody result;
+  Body& body = result.body;
+  body.name = wire.name();
+  if (std::isfinite(wire.density()) && wire.density() > 0) body.density = wire.density();
+  body.material = TranslateMaterial(wire, path, problems);
+  body.damping = TranslateDamping(wire);
+  if (wire.has_activation()) {
+    body.activation = TranslateCurve(wire.activation(), kActivationCurve, JoinPath(path, "activation"), problems);
+  }
+
+  Problems structure;
+  auto mesh = TranslateMesh(wire, path, assets, budget, structure);
+  TranslatedRegions regions = TranslateRegions(wire, path, mesh ? &mesh->mesh : nullptr, structure);
+  body.constraints = TranslateConstraints(wire, path, regions.names, structure);
+  body.loads = TranslateLoads(wire, path, regions.names, structure);
+  result.complete = structure.empty() && mesh.has_value() &&
+                    std::all_of(wire.regions().begin(), wire.regions().end(), ObeysRules) &&
+                    std::all_of(wire.constraints().begin(), wire.constraints().end(), ObeysRules) &&
+                    std::all_of(wire.loads().begin(), wire.loads().end(), ObeysRules);
+  problems.Append("", structure);
+
+  body.fibres = TranslateFibres(wire, path, mesh ? &*mesh : nullptr, regions, assets, problems);
+  body.regions = std::move(regions.regions);
+  if (mesh) body.mesh = std::move(mesh->mesh);
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::string> AssetsOf(const v1::Scene& scene) {
+  std::vector<std::string> digests;
+  const auto add = [&digests](const v1::FileRef& file) {
+    const std::string digest = DigestOfAsset(file.asset());
+    if (!digest.empty() && std::find(digests.begin(), digests.end(), digest) == digests.end())
+      digests.push_back(digest);
+  };
+  for (const v1::Body& body : scene.bodies()) {
+    add(body.mesh().file());
+    add(body.mesh().elements());
+    add(body.fibres().file());
+  }
+  return digests;
+}
+
+std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetReader& assets, Problems& problems,
+                                            const TranslateLimits& limits) {
+  Problems found;
+  CheckRules(scene, found);
+  v1::Scene filled = scene;
+  FillDefaults(filled);
+  CheckHead(filled, found);
+
+  auto result = std::make_shared<Scene>();
+  result->name = filled.name();
+  result->duration = filled.duration();
+  result->method = TranslateMethod(filled);
+  result->gravity = TranslateGravity(filled, found);
+
+  Names names("body");
+  std::vector<bool> complete;
+  std::int64_t budget = limits.max_tetrahedra;
+  for (int i = 0; i < filled.bodies_size(); ++i) {
+    const std::string path = IndexPath("bodies", static_cast<std::size_t>(i));
+    names.Add(filled.bodies(i).name(), JoinPath(path, "name"), found);
+    TranslatedBody body = TranslateBody(filled.bodies(i), path, assets, budget, found);
+    complete.push_back(body.complete);
+    result->bodies.push_back(std::move(body.body));
+  }
+  result->output = TranslateOutput(filled, result->bodies, names, limits.max_frame_bytes, found);
+
+  if (found.empty()) CheckScene(*result, found);
+  if (found.empty()) return result;
+  CheckEachBody(std::move(*result), complete, found);
+  problems.Append("", found);
+  return nullptr;
+}
+
+}  // namespace fascicle::server
