@@ -78,14 +78,12 @@ bool ParseCount(std::string_view text, FieldRule& rule) {
 
 SplitComment Split(std::string_view comment) {
   SplitComment split;
-  for (const std::string_view line : SplitAt(Trim(comment), '\n')) {
-    if (line.starts_with("Unit ")) {
-      split.rule = line;
-    } else {
-      if (!split.text.empty()) split.text += '\n';
-      split.text += line;
-    }
+  auto lines = SplitAt(Trim(comment), '\n');
+  if (lines.back().starts_with("Unit ") && lines.back().find("; range ") != std::string_view::npos) {
+    split.rule = lines.back();
+    lines.pop_back();
   }
+  for (std::size_t i = 0; i < lines.size(); ++i) split.text.append(i > 0 ? "\n" : "").append(lines[i]);
   return split;
 }
 

@@ -12,7 +12,7 @@ namespace fascicle {
 // A field's comment, taken apart.
 struct SplitComment {
   std::string text;  // without the rule line; lines joined by '\n', no leading blanks
-  std::string rule;  // the line that starts with "Unit "; empty when there is none
+  std::string rule;  // the last line, where it is "Unit ...; range ..."; empty when it is not
 };
 SplitComment Split(std::string_view comment);
 

@@ -77,7 +77,7 @@ TEST(CheckRules, NamesEveryProblemAtOnce) {
   EXPECT_THAT(At(problems, "bodies[0].activation.times").message, HasSubstr("missing"));
   EXPECT_THAT(At(problems, "bodies[0].activation.values[0]").message, HasSubstr("finite"));
   EXPECT_THAT(At(problems, "bodies[0].loads[0].traction.vector").message, HasSubstr("1 values instead of 3"));
-  EXPECT_EQ(problems.count(), 14u) << problems.ToString();
+  EXPECT_EQ(problems.count(), 13u) << problems.ToString();
 }
 
 TEST(CheckRules, OpenAndClosedEndsDiffer) {
