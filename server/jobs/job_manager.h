@@ -1,12 +1,14 @@
 #ifndef FASCICLE_SERVER_JOBS_JOB_MANAGER_H_
 #define FASCICLE_SERVER_JOBS_JOB_MANAGER_H_
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/scene/scene.h"
 #include "core/sim/simulation.h"
@@ -14,7 +16,8 @@
 
 namespace fascicle::server {
 
-// How jobs become bytes and back; made by server/translate, so that this room knows no wire format.
+// How jobs become bytes and back; made by server/translate, so that this room knows no wire format. Called from several
+// threads at once; what they throw fails the job with reason INTERNAL (StoreError: STORAGE).
 struct JobCodec {
   // Scene of a job's spec; assets are read from `assets`. Throws std::runtime_error when it can't be built any more
   // (an asset was lost).
@@ -35,21 +38,23 @@ struct JobView {
   JobRecord record;
   Progress progress;
   double eta_seconds = -1;  // negative: unknown
-  int queue_position = 0;   // kQueued only
+  int queue_position = 0;   // jobs before it; kQueued only
   std::int64_t frame_count = 0;
   std::int64_t stored_bytes = 0;
 };
 
 // The queue and its workers. Takes up what was queued or running when the last process ended. Thread-safe; all
-// functions may block on disk.
+// functions may block on disk and throw StoreError. What a job meets in its worker ends that job alone.
 class JobManager {
  public:
+  // `store` outlives this. Throws StoreError when what is stored can't be taken up.
   JobManager(Store& store, JobCodec codec, JobManagerOptions options);
-  // Stops the workers after their current step, with a checkpoint; unfinished jobs go on with the next process.
+  // Drains; unfinished jobs go on with the next process.
   ~JobManager();
 
   // `record` with spec, scene_name, threads, request_id and request_digest set. Returns the job, or the earlier one
   // with the same request id (`*repeated` true; the caller compares request_digest).
+  // Durable when it returns.
   JobView Submit(JobRecord record, bool* repeated);
   std::optional<JobView> Get(std::string_view id);
   std::vector<JobView> List(int limit, std::string_view before_id, const std::vector<JobState>& states);
@@ -60,12 +65,16 @@ class JobManager {
   // Frames of a job; nullptr when there is no such job.
   std::shared_ptr<FrameStore> Frames(std::string_view id);
 
-  // Calls `listener` (on some internal thread, quickly returning, never under a lock of the caller) whenever the job
-  // got its geometry, a frame or another state. Returns a handle; the listener is not called any more once the handle is gone.
+  // Calls `listener` (on an internal thread, quickly returning, never under a lock of the caller) whenever the job got
+  // its geometry, a frame or another state, or was deleted: after the store has it. Changes that follow each other fast
+  // may be told once. The listener is not called any more once the returned handle is gone; destroying it waits for a
+  // call that is under way (unless done by that call), so don't do it under a lock that the listener takes.
   using Subscription = std::shared_ptr<void>;
   Subscription Subscribe(std::string_view id, std::function<void()> listener);
 
-  // Takes up no more jobs and stops the running ones, with a checkpoint. Idempotent.
+  // Takes up no more jobs and stops the running ones after their current step. They are queued again, for the next
+  // process to go on from the checkpoint that was stored with one of their last frames. Jobs can still be submitted,
+  // they wait too. Idempotent.
   void Drain();
 
  private:

@@ -1,0 +1,91 @@
+#include "server/jobs/active_job.h"
+
+#include <chrono>
+#include <utility>
+
+namespace fascicle::server {
+
+ActiveJob::ActiveJob(Store& store, JobRecord record) : store_(store), id_(record.id), record_(std::move(record)) {
+  record_.spec.clear();
+  progress_ = ViewOf(record_).progress;
+}
+
+JobRecord ActiveJob::record() const {
+  const std::lock_guard lock(mutex_);
+  return record_;
+}
+
+void ActiveJob::Update(const Change& change) {
+  const std::lock_guard update_lock(update_mutex_);
+  JobRecord changed;
+  {
+    const std::lock_guard lock(mutex_);
+    changed = record_;
+    FillIn(changed);
+  }
+  if (!change(changed)) return;
+  store_.UpdateJob(changed);
+  const std::lock_guard lock(mutex_);
+  record_ = std::move(changed);
+}
+
+void ActiveJob::UpdateUnstored(const Change& change) {
+  const std::lock_guard update_lock(update_mutex_);
+  const std::lock_guard lock(mutex_);
+  JobRecord changed = record_;
+  FillIn(changed);
+  if (change(changed)) record_ = std::move(changed);
+}
+
+void ActiveJob::SetProgress(const Progress& progress) {
+  const auto now = std::chrono::steady_clock::now();
+  const std::lock_guard lock(mutex_);
+  progress_ = progress;
+  eta_.Add(progress.fraction, now);
+}
+
+void ActiveJob::SetFrames(std::shared_ptr<FrameStore> frames) {
+  const std::lock_guard lock(mutex_);
+  frames_ = std::move(frames);
+}
+
+std::shared_ptr<FrameStore> ActiveJob::frames() const {
+  const std::lock_guard lock(mutex_);
+  return frames_;
+}
+
+void ActiveJob::FillIn(JobRecord& record) const {
+  record.fraction = progress_.fraction;
+  record.time = progress_.time;
+  record.step = progress_.step;
+  if (frames_ == nullptr) return;
+  record.frame_count = frames_->frame_count();
+  record.stored_bytes = frames_->stored_bytes();
+}
+
+JobView ActiveJob::View(JobRecord stored) const {
+  const std::lock_guard lock(mutex_);
+  JobRecord record = record_;
+  record.spec = std::move(stored.spec);
+  FillIn(record);
+  JobView view = ViewOf(std::move(record));
+  view.progress = progress_;
+  if (record_.state == JobState::kRunning) view.eta_seconds = eta_.Seconds(std::chrono::steady_clock::now());
+  return view;
+}
+
+JobView ViewOf(JobRecord record) {
+  JobView view;
+  view.progress = {.fraction = record.fraction, .time = record.time, .step = record.step};
+  view.frame_count = record.frame_count;
+  view.stored_bytes = record.stored_bytes;
+  view.record = std::move(record);
+  return view;
+}
+
+std::int64_t UnixTimeUs() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace fascicle::server

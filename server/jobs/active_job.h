@@ -1,0 +1,66 @@
+#ifndef FASCICLE_SERVER_JOBS_ACTIVE_JOB_H_
+#define FASCICLE_SERVER_JOBS_ACTIVE_JOB_H_
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+
+#include "core/sim/simulation.h"
+#include "server/jobs/eta.h"
+#include "server/jobs/job_manager.h"
+#include "server/store/store.h"
+
+namespace fascicle::server {
+
+// A job that has not ended: its record, and what changes too often to be stored each time. Thread-safe.
+class ActiveJob {
+ public:
+  // `record` is kept without its spec.
+  ActiveJob(Store& store, JobRecord record);
+
+  const std::string& id() const { return id_; }
+  JobRecord record() const;
+
+  // Applies `change` to the record, with progress and counts as they are now. It is stored first and only then seen by
+  // others; when `change` returns false nothing happens. Throws StoreError, and then nothing has changed.
+  using Change = std::function<bool(JobRecord&)>;
+  void Update(const Change& change);
+  // The same without storing it: for the end of a job whose store has failed.
+  void UpdateUnstored(const Change& change);
+
+  // For every step: cheap.
+  void SetProgress(const Progress& progress);
+  void SetFrames(std::shared_ptr<FrameStore> frames);
+  std::shared_ptr<FrameStore> frames() const;
+
+  // `stored` with all that is known here; queue_position stays 0.
+  JobView View(JobRecord stored) const;
+
+  void RequestStop() { stop_.request_stop(); }
+  std::stop_token stop_token() const { return stop_.get_token(); }
+
+ private:
+  void FillIn(JobRecord& record) const;  // progress and counts; needs mutex_
+
+  Store& store_;
+  const std::string id_;
+  std::stop_source stop_;
+  std::mutex update_mutex_;   // one update at a time; taken before mutex_
+  mutable std::mutex mutex_;  // guards what follows; never held during disk access
+  JobRecord record_;
+  Progress progress_;
+  EtaEstimator eta_;
+  std::shared_ptr<FrameStore> frames_;
+};
+
+// Of a record alone: a job that is not active.
+JobView ViewOf(JobRecord record);
+
+// [us] since the Unix epoch.
+std::int64_t UnixTimeUs();
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_JOBS_ACTIVE_JOB_H_

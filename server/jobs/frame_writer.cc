@@ -1,0 +1,101 @@
+#include "server/jobs/frame_writer.h"
+
+#include <utility>
+#include <vector>
+
+namespace fascicle::server {
+namespace {
+
+constexpr std::chrono::seconds kProgressInterval{1};
+
+}  // namespace
+
+FrameWriter::FrameWriter(ActiveJob& job, Encode encode, std::function<void()> notify)
+    : job_(job),
+      frames_(job.frames()),
+      encode_(std::move(encode)),
+      notify_(std::move(notify)),
+      next_progress_(std::chrono::steady_clock::now() + kProgressInterval),
+      thread_([this] { Loop(); }) {}
+
+FrameWriter::~FrameWriter() { Close(); }
+
+bool FrameWriter::PutFrame(Frame frame, std::string checkpoint) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return waiting_.size() < kMaxWaiting || error_; });
+  if (error_) return false;
+  waiting_.push_back({std::move(frame), std::move(checkpoint)});
+  changed_.notify_all();
+  return true;
+}
+
+void FrameWriter::Finish() {
+  Close();
+  if (error_) std::rethrow_exception(error_);
+}
+
+void FrameWriter::Close() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    is_closed_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void FrameWriter::Loop() {
+  std::unique_lock lock(mutex_);
+  while (!error_) {
+    changed_.wait_until(lock, next_progress_, [this] { return !waiting_.empty() || is_closed_; });
+    if (waiting_.empty() && is_closed_) return;
+    std::exception_ptr error;
+    if (!waiting_.empty()) {
+      const Item item = std::move(waiting_.front());
+      waiting_.pop_front();
+      changed_.notify_all();
+      lock.unlock();
+      try {
+        Store(item);
+      } catch (...) {
+        error = std::current_exception();
+      }
+    } else {
+      lock.unlock();
+    }
+    if (!error) StoreProgressRarely();
+    lock.lock();
+    error_ = error;
+  }
+  waiting_.clear();
+  changed_.notify_all();
+}
+
+void FrameWriter::Store(const Item& item) {
+  const Frame& frame = item.frame;
+  const std::string bytes = encode_(frame);
+  const FrameRecord record{frame.index, frame.time, frame.step, static_cast<std::int64_t>(bytes.size()),
+                           std::string(frame.digest.begin(), frame.digest.end())};
+  // A replaced frame must never be read under the old generation, so the generation goes first; should this process end
+  // in between, the next one replaces the frame and counts once more.
+  if (frame.index < frames_->frame_count()) {
+    const std::vector<FrameRecord> stored = frames_->ListFrames(frame.index, 1);
+    const bool is_same = !stored.empty() && stored.front().digest == record.digest;
+    if (!is_same) job_.Update([](JobRecord& job) { return ++job.generation > 0; });
+  }
+  frames_->PutFrame(record, bytes, item.checkpoint);
+  notify_();
+}
+
+void FrameWriter::StoreProgressRarely() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_progress_) return;
+  next_progress_ = now + kProgressInterval;
+  try {
+    job_.Update([](JobRecord&) { return true; });
+  } catch (const StoreError&) {
+    // Progress is a convenience: whatever is wrong, the next frame or the end of the job will tell.
+  }
+}
+
+}  // namespace fascicle::server

@@ -1,0 +1,65 @@
+#ifndef FASCICLE_SERVER_JOBS_FRAME_WRITER_H_
+#define FASCICLE_SERVER_JOBS_FRAME_WRITER_H_
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "core/sim/frame.h"
+#include "core/sim/simulation.h"
+#include "server/jobs/active_job.h"
+
+namespace fascicle::server {
+
+// Takes the frames of a run and stores them from a thread of its own: the solver goes on while a frame is encoded and
+// brought to the disk, and waits only when kMaxWaiting frames are queued. Also stores the progress now and then.
+class FrameWriter final : public FrameSink {
+ public:
+  using Encode = std::function<std::string(const Frame&)>;
+
+  // `job` has its frame store. `notify` is called after each frame that was stored.
+  FrameWriter(ActiveJob& job, Encode encode, std::function<void()> notify);
+  // Finishes; an error is lost.
+  ~FrameWriter() override;
+
+  bool PutFrame(Frame frame, std::string checkpoint) override;
+  void PutProgress(const Progress& progress) override { job_.SetProgress(progress); }
+
+  // Returns when every frame is stored; throws what went wrong with the first that could not be.
+  void Finish();
+
+ private:
+  static constexpr std::size_t kMaxWaiting = 3;
+
+  struct Item {
+    Frame frame;
+    std::string checkpoint;
+  };
+
+  void Loop();
+  void Store(const Item& item);
+  void StoreProgressRarely();
+  void Close();
+
+  ActiveJob& job_;
+  const std::shared_ptr<FrameStore> frames_;
+  const Encode encode_;
+  const std::function<void()> notify_;
+  std::chrono::steady_clock::time_point next_progress_;  // of the thread alone
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Item> waiting_;
+  bool is_closed_ = false;
+  std::exception_ptr error_;
+  std::thread thread_;
+};
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_JOBS_FRAME_WRITER_H_

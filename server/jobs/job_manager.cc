@@ -1,0 +1,250 @@
+#include "server/jobs/job_manager.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "server/jobs/active_job.h"
+#include "server/jobs/job_id.h"
+#include "server/jobs/job_run.h"
+#include "server/jobs/notifier.h"
+
+namespace fascicle::server {
+namespace {
+
+const std::vector<JobState>& UnfinishedStates() {
+  static const std::vector<JobState> states = {JobState::kQueued, JobState::kStarting, JobState::kRunning,
+                                               JobState::kCancelling};
+  return states;
+}
+
+std::string NewestId(Store& store) {
+  const std::vector<JobRecord> newest = store.ListJobs(1, "", {});
+  return newest.empty() ? std::string() : newest.front().id;
+}
+
+// A job that another process has left in the middle: queued again, or cancelled when that was asked for.
+void Resume(Store& store, JobRecord& record) {
+  if (record.state == JobState::kQueued) return;
+  const bool is_cancelled = record.state == JobState::kCancelling;
+  record.state = is_cancelled ? JobState::kCancelled : JobState::kQueued;
+  if (is_cancelled) record.end_time_us = UnixTimeUs();
+  try {
+    if (const std::shared_ptr<FrameStore> frames = store.OpenFrames(record.id)) {
+      record.frame_count = frames->frame_count();
+      record.stored_bytes = frames->stored_bytes();
+    }
+  } catch (const StoreError&) {
+    // A damaged file fails its own job, when that is taken up, and nothing else.
+  }
+  store.UpdateJob(record);
+}
+
+}  // namespace
+
+struct JobManager::Impl {
+  Impl(Store& the_store, JobCodec the_codec, JobManagerOptions the_options)
+      : store(the_store), codec(std::move(the_codec)), options(the_options), ids(NewestId(the_store)) {
+    TakeUpUnfinished();
+    for (int i = 0; i < std::max(1, options.workers); ++i) workers.emplace_back([this] { Work(); });
+  }
+
+  ~Impl() { Drain(); }
+
+  void TakeUpUnfinished() {
+    constexpr int kPage = 500;
+    std::string before;
+    while (true) {
+      std::vector<JobRecord> page = store.ListJobs(kPage, before, UnfinishedStates());
+      if (page.empty()) return;
+      before = page.back().id;
+      for (JobRecord& record : page) {
+        Resume(store, record);
+        if (!IsFinal(record.state)) Enqueue(std::move(record));
+      }
+    }
+  }
+
+  void Enqueue(JobRecord record) {
+    auto job = std::make_shared<ActiveJob>(store, std::move(record));
+    {
+      const std::lock_guard lock(mutex);
+      queue.insert(job->id());
+      active[job->id()] = job;
+    }
+    queue_changed.notify_one();
+  }
+
+  std::shared_ptr<ActiveJob> FindActive(std::string_view id) {
+    const std::lock_guard lock(mutex);
+    const auto found = active.find(id);
+    return found == active.end() ? nullptr : found->second;
+  }
+
+  void Forget(std::string_view id) {
+    const std::lock_guard lock(mutex);
+    if (const auto found = queue.find(id); found != queue.end()) queue.erase(found);
+    if (const auto found = active.find(id); found != active.end()) active.erase(found);
+  }
+
+  // The record as it is now, where `stored` was read after `job` was looked up.
+  JobView View(const std::shared_ptr<ActiveJob>& job, JobRecord stored) {
+    if (job == nullptr) return ViewOf(std::move(stored));
+    JobView view = job->View(std::move(stored));
+    const std::lock_guard lock(mutex);
+    const auto place = queue.find(view.record.id);
+    if (place != queue.end()) view.queue_position = static_cast<int>(std::distance(queue.begin(), place));
+    return view;
+  }
+
+  // Waits for the next job; nullptr when there will be none.
+  std::shared_ptr<ActiveJob> TakeNext() {
+    std::unique_lock lock(mutex);
+    queue_changed.wait(lock, [this] { return is_draining || !queue.empty(); });
+    if (is_draining) return nullptr;
+    const std::string id = *queue.begin();
+    queue.erase(queue.begin());
+    return *running.insert(active.at(id)).first;
+  }
+
+  void Work() {
+    while (const std::shared_ptr<ActiveJob> job = TakeNext()) {
+      RunJob({store, codec, options}, *job, [this, &job] { notifier.Notify(job->id()); });
+      const bool is_final = IsFinal(job->record().state) && IsStored(*job);
+      const std::lock_guard lock(mutex);
+      running.erase(job);
+      if (is_final) active.erase(job->id());
+    }
+  }
+
+  // False while the store has failed to take the job's end: then it is known here alone.
+  bool IsStored(const ActiveJob& job) {
+    try {
+      const std::optional<JobRecord> stored = store.GetJob(job.id());
+      return !stored || IsFinal(stored->state);
+    } catch (const StoreError&) {
+      return false;
+    }
+  }
+
+  void Drain() {
+    const std::lock_guard drain_lock(drain_mutex);
+    {
+      const std::lock_guard lock(mutex);
+      is_draining = true;
+      for (const std::shared_ptr<ActiveJob>& job : running) job->RequestStop();
+    }
+    queue_changed.notify_all();
+    for (std::thread& worker : workers) worker.join();
+    workers.clear();
+  }
+
+  Store& store;
+  const JobCodec codec;
+  const JobManagerOptions options;
+  JobIdGenerator ids;
+  Notifier notifier;
+
+  std::mutex mutex;  // guards what follows; never held during disk access
+  std::condition_variable queue_changed;
+  std::map<std::string, std::shared_ptr<ActiveJob>, std::less<>> active;
+  std::set<std::string, std::less<>> queue;      // in order of creation; all of them active
+  std::set<std::shared_ptr<ActiveJob>> running;  // with a worker
+  bool is_draining = false;
+
+  std::mutex drain_mutex;  // one drain at a time; guards workers
+  std::vector<std::thread> workers;
+};
+
+JobManager::JobManager(Store& store, JobCodec codec, JobManagerOptions options)
+    : impl_(std::make_unique<Impl>(store, std::move(codec), options)) {}
+
+JobManager::~JobManager() = default;
+
+JobView JobManager::Submit(JobRecord record, bool* repeated) {
+  record.create_time_us = UnixTimeUs();
+  record.id = impl_->ids.Next(record.create_time_us / 1000);
+  record.state = JobState::kQueued;
+  JobRecord existing;
+  const bool is_new = impl_->store.CreateJob(record, &existing);
+  if (repeated != nullptr) *repeated = !is_new;
+  if (!is_new) return impl_->View(impl_->FindActive(existing.id), std::move(existing));
+  impl_->Enqueue(record);
+  impl_->notifier.Notify(record.id);
+  return impl_->View(impl_->FindActive(record.id), std::move(record));
+}
+
+std::optional<JobView> JobManager::Get(std::string_view id) {
+  const std::shared_ptr<ActiveJob> job = impl_->FindActive(id);
+  std::optional<JobRecord> record = impl_->store.GetJob(id);
+  if (!record) return std::nullopt;
+  return impl_->View(job, *std::move(record));
+}
+
+std::vector<JobView> JobManager::List(int limit, std::string_view before_id, const std::vector<JobState>& states) {
+  std::map<std::string, std::shared_ptr<ActiveJob>, std::less<>> active;
+  {
+    const std::lock_guard lock(impl_->mutex);
+    active = impl_->active;
+  }
+  std::vector<JobView> views;
+  for (JobRecord& record : impl_->store.ListJobs(limit, before_id, states)) {
+    const auto found = active.find(record.id);
+    views.push_back(impl_->View(found == active.end() ? nullptr : found->second, std::move(record)));
+  }
+  return views;
+}
+
+std::optional<JobView> JobManager::Cancel(std::string_view id) {
+  std::shared_ptr<ActiveJob> job;
+  while ((job = impl_->FindActive(id)) == nullptr) {
+    std::optional<JobView> view = Get(id);
+    if (!view || IsFinal(view->record.state)) return view;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // stored, and about to be queued by Submit
+  }
+  job->Update([](JobRecord& record) {
+    if (IsFinal(record.state) || record.state == JobState::kCancelling) return false;
+    const bool is_queued = record.state == JobState::kQueued;
+    record.state = is_queued ? JobState::kCancelled : JobState::kCancelling;
+    if (is_queued) record.end_time_us = UnixTimeUs();
+    return true;
+  });
+  job->RequestStop();
+  std::optional<JobView> view = Get(id);
+  if (job->record().state == JobState::kCancelled) impl_->Forget(id);
+  impl_->notifier.Notify(id);
+  return view;
+}
+
+JobManager::DeleteResult JobManager::Delete(std::string_view id) {
+  if (const std::shared_ptr<ActiveJob> job = impl_->FindActive(id)) {
+    if (!IsFinal(job->record().state)) return DeleteResult::kActive;
+  } else {
+    const std::optional<JobRecord> record = impl_->store.GetJob(id);
+    if (!record) return DeleteResult::kNotFound;
+    if (!IsFinal(record->state)) return DeleteResult::kActive;  // accepted a moment ago
+  }
+  const bool is_deleted = impl_->store.DeleteJob(id);
+  impl_->Forget(id);
+  impl_->notifier.Notify(id);
+  return is_deleted ? DeleteResult::kDeleted : DeleteResult::kNotFound;
+}
+
+std::shared_ptr<FrameStore> JobManager::Frames(std::string_view id) {
+  if (const std::shared_ptr<ActiveJob> job = impl_->FindActive(id)) {
+    if (std::shared_ptr<FrameStore> frames = job->frames()) return frames;
+  }
+  return impl_->store.OpenFrames(id);
+}
+
+JobManager::Subscription JobManager::Subscribe(std::string_view id, std::function<void()> listener) {
+  return impl_->notifier.Subscribe(id, std::move(listener));
+}
+
+void JobManager::Drain() { impl_->Drain(); }
+
+}  // namespace fascicle::server

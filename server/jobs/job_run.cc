@@ -1,0 +1,154 @@
+#include "server/jobs/job_run.h"
+
+#include <chrono>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "server/jobs/frame_writer.h"
+
+namespace fascicle::server {
+namespace {
+
+// False when the job was cancelled in the queue at the last moment.
+bool Start(ActiveJob& job) {
+  bool has_started = false;
+  job.Update([&](JobRecord& record) {
+    if (record.state != JobState::kQueued) return false;
+    record.state = JobState::kStarting;
+    ++record.attempt;
+    if (record.start_time_us == 0) record.start_time_us = UnixTimeUs();
+    has_started = true;
+    return true;
+  });
+  return has_started;
+}
+
+void SetRunning(ActiveJob& job) {
+  job.Update([](JobRecord& record) {
+    if (record.state != JobState::kStarting) return false;  // being cancelled
+    record.state = JobState::kRunning;
+    return true;
+  });
+}
+
+// At the stored checkpoint when that fits the scene and the stored frames, else at rest.
+std::unique_ptr<Simulation> MakeSimulation(std::shared_ptr<const Scene> scene, int threads, FrameStore& frames) {
+  if (const std::optional<std::string> checkpoint = frames.GetCheckpoint()) {
+    auto simulation = std::make_unique<Simulation>(scene, threads);
+    if (simulation->Restore(*checkpoint) && simulation->next_frame() <= frames.frame_count()) return simulation;
+  }
+  return std::make_unique<Simulation>(std::move(scene), threads);
+}
+
+Outcome Simulate(const RunContext& context, ActiveJob& job, const std::function<void()>& notify) {
+  const std::optional<JobRecord> record = context.store.GetJob(job.id());
+  if (!record) throw StoreError("job " + job.id() + " has gone");
+  std::shared_ptr<const Scene> scene = context.codec.decode_scene(record->spec, context.store);
+  if (scene == nullptr) throw std::runtime_error("the scene can't be built");
+  const std::shared_ptr<FrameStore> frames = context.store.OpenFrames(job.id());
+  if (frames == nullptr) throw StoreError("job " + job.id() + " has gone");
+  job.SetFrames(frames);
+
+  const int threads = record->threads > 0 ? record->threads : context.options.default_threads;
+  const std::unique_ptr<Simulation> simulation = MakeSimulation(scene, threads, *frames);
+  frames->PutGeometry(context.codec.encode_geometry(*scene, simulation->series()));
+  SetRunning(job);
+  notify();
+
+  FrameWriter writer(job, context.codec.encode_frame, notify);
+  const Outcome outcome = simulation->Run(writer, job.stop_token(), context.options.checkpoint_interval);
+  writer.Finish();
+  return outcome;
+}
+
+Outcome Failed(std::string reason, const char* message, std::string advice, const ActiveJob& job) {
+  const Progress progress = job.View({}).progress;
+  Failure failure;
+  failure.reason = std::move(reason);
+  failure.message = message;
+  failure.step = progress.step;
+  failure.time = progress.time;
+  failure.advice = std::move(advice);
+  return {Outcome::Kind::kFailed, failure};
+}
+
+// As Simulate, with failures in place of exceptions.
+Outcome SimulateSafely(const RunContext& context, ActiveJob& job, const std::function<void()>& notify) {
+  try {
+    return Simulate(context, job, notify);
+  } catch (const StoreError& error) {
+    return Failed("STORAGE", error.what(), "look at the server's disk: its space, its health", job);
+  } catch (const std::exception& error) {
+    return Failed("INTERNAL", error.what(), "", job);
+  } catch (...) {
+    return Failed("INTERNAL", "unknown exception", "", job);
+  }
+}
+
+std::string Encode(const JobCodec& codec, const Failure& failure) {
+  try {
+    return codec.encode_failure(failure);
+  } catch (...) {
+    return {};  // that the job has failed matters more than why
+  }
+}
+
+// What the record becomes.
+ActiveJob::Change EndOf(const JobCodec& codec, const Outcome& outcome) {
+  return [&codec, &outcome](JobRecord& record) {
+    const bool is_cancelling = record.state == JobState::kCancelling;
+    switch (outcome.kind) {
+      case Outcome::Kind::kSucceeded:
+        record.state = JobState::kSucceeded;
+        break;
+      case Outcome::Kind::kFailed:
+        record.state = JobState::kFailed;
+        record.failure = Encode(codec, outcome.failure);
+        break;
+      case Outcome::Kind::kCancelled:
+        record.state = is_cancelling ? JobState::kCancelled : JobState::kQueued;  // drained
+        break;
+    }
+    if (IsFinal(record.state)) record.end_time_us = UnixTimeUs();
+    return true;
+  };
+}
+
+void End(const RunContext& context, ActiveJob& job, const Outcome& outcome) {
+  constexpr int kTries = 3;
+  std::string error;
+  for (int i = 0; i < kTries; ++i) {
+    if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    try {
+      return job.Update(EndOf(context.codec, outcome));
+    } catch (const std::exception& caught) {
+      error = caught.what();
+    }
+  }
+  // The store still has the job as running, so that the next process goes on with it; this one can't.
+  if (outcome.kind == Outcome::Kind::kFailed) return job.UpdateUnstored(EndOf(context.codec, outcome));
+  const Outcome failed =
+      Failed("STORAGE", error.c_str(), "look at the server's disk; the job goes on when the server restarts", job);
+  job.UpdateUnstored(EndOf(context.codec, failed));
+}
+
+}  // namespace
+
+void RunJob(const RunContext& context, ActiveJob& job, const std::function<void()>& notify) {
+  Outcome outcome;
+  try {
+    if (!Start(job)) return;
+    notify();
+    outcome = SimulateSafely(context, job, notify);
+  } catch (const std::exception& error) {
+    outcome = Failed("STORAGE", error.what(), "look at the server's disk: its space, its health", job);
+  }
+  End(context, job, outcome);
+  notify();
+}
+
+}  // namespace fascicle::server

@@ -1,0 +1,24 @@
+#ifndef FASCICLE_SERVER_JOBS_JOB_RUN_H_
+#define FASCICLE_SERVER_JOBS_JOB_RUN_H_
+
+#include <functional>
+
+#include "server/jobs/active_job.h"
+#include "server/jobs/job_manager.h"
+
+namespace fascicle::server {
+
+// What all runs share.
+struct RunContext {
+  Store& store;
+  const JobCodec& codec;
+  const JobManagerOptions& options;
+};
+
+// Runs a queued job, from its checkpoint where it has one, to its end or until it is asked to stop; then its record
+// says what has become of it: final, or queued again. Every frame is stored before that. Never throws.
+void RunJob(const RunContext& context, ActiveJob& job, const std::function<void()>& notify);
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_JOBS_JOB_RUN_H_
