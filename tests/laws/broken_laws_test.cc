@@ -1,0 +1,261 @@
+// The battery's checks must find a broken law. Each law here is broken in one place, as such mistakes are made; the
+// check that is meant for it must report it, and those that have nothing to do with it must not.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/materials/isochoric.h"
+#include "core/materials/material.h"
+#include "law_checks.h"
+
+namespace fascicle {
+namespace {
+
+constexpr std::array kYoungPoisson = {1e5, 0.3};
+constexpr std::array kMuscle = {500.0, 500.0, 1e7, 3e5, 1.4, 0.05, 6.6, 1.4};
+constexpr double kFound = 1e-3;  // a broken law's error is at least this
+constexpr double kSound = 1e-6;  // the battery's tolerance
+
+// Sign of the volume term in P.
+struct WrongSign : NeoHookean {
+  WrongSign() : NeoHookean(kYoungPoisson) {}
+  Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
+    return 2 * ShearModulus() * F - NeoHookean::Stress(F, fibre);
+  }
+};
+
+// P = K dU/dJ on top of U = K/2 (ln J)^2: K counted twice, as a paper prints it.
+struct BulkCountedTwice : Muscle {
+  BulkCountedTwice() : Muscle(kMuscle) {}
+  Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
+    const IsochoricKinematics k(F);
+    return Muscle::Stress(F, fibre) + BulkModulus() * k.log_J * k.inverse_transpose;
+  }
+};
+
+// W_lambda read as dF2/dlambda instead of dW/d(lambda^2).
+struct WrongFibreDerivative : Muscle {
+  WrongFibreDerivative() : Muscle(kMuscle) {}
+  Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
+    const IsochoricKinematics k(F);
+    const double stretch = k.FibreStretch(fibre.direction);
+    const double slope = FibreStress(stretch, fibre.activation) / stretch;
+    const Eigen::Matrix<double, 9, 1> gradient = FibreStretchSquaredGradient(F, k, fibre.direction);
+    return Muscle::Stress(F, fibre) + (slope - slope / (2 * stretch)) * gradient.reshaped(3, 3);
+  }
+};
+
+// The derivative of F^-T forgotten in the tangent.
+struct TangentWithoutGeometricTerm : NeoHookean {
+  TangentWithoutGeometricTerm() : NeoHookean(kYoungPoisson) {}
+  Mat9 Tangent(const Mat3& F, const FibreState& fibre) const {
+    const IsochoricKinematics k(F);
+    const double lambda = BulkModulus() - 2 * ShearModulus() / 3;
+    Mat9 tangent = NeoHookean::Tangent(F, fibre);
+    AddTransposedProduct(lambda * k.log_J - ShearModulus(), k.inverse_transpose, tangent);
+    return tangent;
+  }
+};
+
+// dR/dF forgotten: the rotation held fixed.
+struct TangentWithFrozenRotation : CorotatedLinear {
+  TangentWithFrozenRotation() : CorotatedLinear(kYoungPoisson) {}
+  Mat9 Tangent(const Mat3& F, const FibreState&) const {
+    const Vec9 r = Flatten(NearestRotation(F));
+    return 2 * ShearModulus() * Mat9::Identity() + (BulkModulus() - 2 * ShearModulus() / 3) * r * r.transpose();
+  }
+};
+
+// Curvature of the fibre energy forgotten.
+struct TangentWithoutFibreCurvature : Muscle {
+  TangentWithoutFibreCurvature() : Muscle(kMuscle) {}
+  Mat9 Tangent(const Mat3& F, const FibreState& fibre) const {
+    const IsochoricKinematics k(F);
+    const double stretch = k.FibreStretch(fibre.direction);
+    const double W4 = FibreStress(stretch, fibre.activation) / (2 * stretch * stretch);
+    return NearlyIncompressibleTangent(F, k, FibreWeight(kMuscle[0], W4, fibre.direction), kMuscle[1], kMuscle[2]);
+  }
+};
+
+struct UnsymmetricTangent : NeoHookean {
+  UnsymmetricTangent() : NeoHookean(kYoungPoisson) {}
+  Mat9 Tangent(const Mat3& F, const FibreState& fibre) const {
+    Mat9 tangent = NeoHookean::Tangent(F, fibre);
+    tangent(1, 5) *= 1.01;
+    return tangent;
+  }
+};
+
+// Adds a term in the components of F themselves, with its exact derivatives.
+struct NotObjective : NeoHookean {
+  NotObjective() : NeoHookean(kYoungPoisson) {}
+  double Energy(const Mat3& F, const FibreState& fibre) const {
+    return NeoHookean::Energy(F, fibre) + 0.5 * ShearModulus() * F(0, 1) * F(0, 1);
+  }
+  Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
+    Mat3 P = NeoHookean::Stress(F, fibre);
+    P(0, 1) += ShearModulus() * F(0, 1);
+    return P;
+  }
+  Mat9 Tangent(const Mat3& F, const FibreState& fibre) const {
+    Mat9 tangent = NeoHookean::Tangent(F, fibre);
+    tangent(3, 3) += ShearModulus();
+    return tangent;
+  }
+};
+
+// Adds a function of C_11: objective, but the material x axis is singled out.
+struct NotIsotropic : NeoHookean {
+  NotIsotropic() : NeoHookean(kYoungPoisson) {}
+  double Energy(const Mat3& F, const FibreState& fibre) const {
+    const double excess = F.col(0).squaredNorm() - 1;
+    return NeoHookean::Energy(F, fibre) + 0.25 * ShearModulus() * excess * excess;
+  }
+  Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
+    Mat3 P = NeoHookean::Stress(F, fibre);
+    P.col(0) += ShearModulus() * (F.col(0).squaredNorm() - 1) * F.col(0);
+    return P;
+  }
+};
+
+// The constant pressure that keeps the undeformed body free of stress forgotten: W + mu (J - 1).
+struct StressAtRest : NeoHookean {
+  StressAtRest() : NeoHookean(kYoungPoisson) {}
+  double Energy(const Mat3& F, const FibreState& fibre) const {
+    return NeoHookean::Energy(F, fibre) + ShearModulus() * (DeterminantOf(F, Cofactor(F)) - 1);
+  }
+  Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
+    return NeoHookean::Stress(F, fibre) + ShearModulus() * Cofactor(F);
+  }
+};
+
+// The constant of integration of the energy forgotten: W + mu.
+struct EnergyAtRest : NeoHookean {
+  EnergyAtRest() : NeoHookean(kYoungPoisson) {}
+  double Energy(const Mat3& F, const FibreState& fibre) const { return NeoHookean::Energy(F, fibre) + ShearModulus(); }
+};
+
+// Reports c1 + c2 for the shear modulus.
+struct WrongModulus : Muscle {
+  WrongModulus() : Muscle(kMuscle) {}
+  double ShearModulus() const { return 0.5 * Muscle::ShearModulus(); }
+};
+
+// The largest error that each check reports.
+struct Report {
+  double stress = 0, tangent = 0, asymmetry = 0, objectivity = 0, symmetry = 0, rest = 0, moduli = 0;
+};
+
+template <class Law>
+Report Examine(const Law& law) {
+  const std::array kinks = {0.56, 0.84, 1.4, 1.96, 2.24};
+  laws::Sampler sampler(3);
+  Report worst;
+  const auto keep = [](double& value, double error) { value = std::max(value, error); };
+  for (int i = 0; i < 60; ++i) {
+    const laws::Sample sample = sampler.Draw(i, 0.5);
+    if (laws::NearKink(sample, kinks)) continue;
+    const Mat3 Q = sampler.Rotation();
+    keep(worst.stress, laws::StressError(law, sample));
+    keep(worst.tangent, laws::TangentError(law, sample));
+    keep(worst.asymmetry, laws::TangentAsymmetry(law, sample));
+    keep(worst.objectivity, laws::ObjectivityError(law, sample, Q));
+    keep(worst.symmetry, laws::SymmetryError(law, sample, Q));
+    keep(worst.rest, laws::RestError(law, sample.fibre.direction));
+  }
+  keep(worst.moduli, laws::ModuliError(law, 0));
+  return worst;
+}
+
+TEST(BrokenLaws, SoundLawsPassEveryCheck) {
+  for (const Report& r :
+       {Examine(NeoHookean(kYoungPoisson)), Examine(CorotatedLinear(kYoungPoisson)), Examine(Muscle(kMuscle))}) {
+    for (const double error : {r.stress, r.tangent, r.asymmetry, r.objectivity, r.symmetry, r.rest, r.moduli}) {
+      EXPECT_LE(error, kSound);
+    }
+  }
+}
+
+TEST(BrokenLaws, WrongSign) {
+  const Report r = Examine(WrongSign());
+  EXPECT_GT(r.stress, kFound);
+  EXPECT_GT(r.tangent, kFound);
+  EXPECT_LE(r.objectivity, kSound);
+}
+
+TEST(BrokenLaws, BulkModulusCountedTwice) {
+  const Report r = Examine(BulkCountedTwice());
+  EXPECT_GT(r.stress, kFound);
+  EXPECT_GT(r.tangent, kFound);
+  EXPECT_LE(r.objectivity, kSound);
+  EXPECT_LE(r.rest, kSound);
+}
+
+TEST(BrokenLaws, FibreDerivativeByStretchInsteadOfItsSquare) {
+  const Report r = Examine(WrongFibreDerivative());
+  EXPECT_GT(r.stress, kFound);
+  EXPECT_LE(r.objectivity, kSound);
+  EXPECT_LE(r.symmetry, kSound);
+  EXPECT_LE(r.rest, kSound);  // slack there: only a difference finds it
+}
+
+TEST(BrokenLaws, TangentThatMissesATerm) {
+  for (const Report& r : {Examine(TangentWithoutGeometricTerm()), Examine(TangentWithFrozenRotation()),
+                          Examine(TangentWithoutFibreCurvature())}) {
+    EXPECT_GT(r.tangent, kFound);
+    EXPECT_LE(r.stress, kSound);
+    EXPECT_LE(r.asymmetry, kSound);
+    EXPECT_LE(r.objectivity, kSound);
+  }
+}
+
+TEST(BrokenLaws, UnsymmetricTangent) {
+  const Report r = Examine(UnsymmetricTangent());
+  EXPECT_GT(r.asymmetry, 1e-4);
+  EXPECT_GT(r.tangent, 1e-4);
+  EXPECT_LE(r.stress, kSound);
+}
+
+TEST(BrokenLaws, NotObjective) {
+  const Report r = Examine(NotObjective());
+  EXPECT_GT(r.objectivity, kFound);
+  EXPECT_LE(r.stress, kSound);
+  EXPECT_LE(r.tangent, kSound);
+  EXPECT_LE(r.rest, kSound);
+}
+
+TEST(BrokenLaws, NotIsotropic) {
+  const Report r = Examine(NotIsotropic());
+  EXPECT_GT(r.symmetry, kFound);
+  EXPECT_LE(r.objectivity, kSound);
+  EXPECT_LE(r.stress, kSound);
+  EXPECT_LE(r.rest, kSound);
+}
+
+TEST(BrokenLaws, StressAtRest) {
+  const Report r = Examine(StressAtRest());
+  EXPECT_GT(r.rest, kFound);
+  EXPECT_LE(r.stress, kSound);
+  EXPECT_LE(r.objectivity, kSound);
+  EXPECT_LE(r.symmetry, kSound);
+}
+
+TEST(BrokenLaws, EnergyAtRest) {
+  const Report r = Examine(EnergyAtRest());
+  EXPECT_GT(r.rest, kFound);
+  EXPECT_LE(r.stress, kSound);
+  EXPECT_LE(r.tangent, kSound);
+}
+
+TEST(BrokenLaws, ModulusThatIsNotTheTangents) {
+  const Report r = Examine(WrongModulus());
+  EXPECT_GT(r.moduli, kFound);
+  EXPECT_LE(r.stress, kSound);
+  EXPECT_LE(r.tangent, kSound);
+}
+
+}  // namespace
+}  // namespace fascicle
