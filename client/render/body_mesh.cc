@@ -1,0 +1,96 @@
+#include "client/render/body_mesh.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellType.h>
+#include <vtkDataSetSurfaceFilter.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkStreamTracer.h>
+
+#include <algorithm>
+
+#include "client/render/field_values.h"
+
+namespace fascicle::client {
+namespace {
+
+vtkSmartPointer<vtkPoints> MakePoints(const std::vector<Vec3>& positions) {
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(positions.size()));
+  for (std::size_t i = 0; i < positions.size(); ++i) points->SetPoint(static_cast<vtkIdType>(i), positions[i].data());
+  return points;
+}
+
+// Every n-th centroid, the same ones in every frame.
+vtkSmartPointer<vtkPolyData> MakeSeeds(const BodyShape& shape, const std::vector<Vec3>& positions, int seeds) {
+  const std::size_t count = shape.tetrahedra.size();
+  const std::size_t stride = std::max<std::size_t>(1, count / static_cast<std::size_t>(seeds));
+  std::vector<Vec3> centroids;
+  for (std::size_t e = stride / 2; e < count; e += stride) {
+    const auto& t = shape.tetrahedra[e];
+    centroids.push_back((positions[t[0]] + positions[t[1]] + positions[t[2]] + positions[t[3]]) / 4);
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(MakePoints(centroids));
+  return data;
+}
+
+}  // namespace
+
+vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std::vector<Vec3>& positions,
+                                              const std::vector<double>& values) {
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  grid->SetPoints(MakePoints(positions));
+  vtkNew<vtkCellArray> cells;
+  for (const auto& t : shape.tetrahedra) {
+    cells->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}, vtkIdType{t[3]}});
+  }
+  grid->SetCells(VTK_TETRA, cells);
+  if (!values.empty()) {
+    vtkNew<vtkDoubleArray> colour;
+    colour->SetName("colour");
+    colour->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+    std::copy(values.begin(), values.end(), colour->GetPointer(0));
+    grid->GetPointData()->SetScalars(colour);
+  }
+  return grid;
+}
+
+vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid) {
+  vtkNew<vtkDataSetSurfaceFilter> surface;
+  surface->SetInputData(&grid);
+  vtkNew<vtkPolyDataNormals> normals;
+  normals->SetInputConnection(surface->GetOutputPort());
+  normals->SetFeatureAngle(40);
+  normals->SplittingOn();
+  normals->Update();
+  return normals->GetOutput();
+}
+
+vtkSmartPointer<vtkPolyData> MakeFibreLines(const BodyShape& shape, const std::vector<Vec3>& positions, int seeds) {
+  if (shape.fibres.empty()) return vtkSmartPointer<vtkPolyData>::New();
+  const auto grid = MakeGrid(shape, positions, {});
+  vtkNew<vtkDoubleArray> directions;
+  directions->SetName("fibre");
+  directions->SetNumberOfComponents(3);
+  for (const Vec3& direction : FibresAtNodes(shape, positions)) directions->InsertNextTuple(direction.data());
+  grid->GetPointData()->SetVectors(directions);
+  vtkNew<vtkStreamTracer> tracer;
+  tracer->SetInputData(grid);
+  tracer->SetSourceData(MakeSeeds(shape, positions, seeds));
+  tracer->SetIntegratorTypeToRungeKutta4();
+  tracer->SetIntegrationDirectionToBoth();
+  tracer->SetIntegrationStepUnit(vtkStreamTracer::CELL_LENGTH_UNIT);
+  tracer->SetInitialIntegrationStep(0.3);
+  tracer->SetMaximumPropagation(grid->GetLength());
+  tracer->SetMaximumNumberOfSteps(1000);
+  tracer->SetComputeVorticity(false);
+  tracer->Update();
+  return tracer->GetOutput();
+}
+
+}  // namespace fascicle::client

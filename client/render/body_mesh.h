@@ -1,0 +1,26 @@
+#ifndef FASCICLE_CLIENT_RENDER_BODY_MESH_H_
+#define FASCICLE_CLIENT_RENDER_BODY_MESH_H_
+
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <vector>
+
+#include "client/lib/decode.h"
+
+namespace fascicle::client {
+
+// The tetrahedra at given positions, with one value (`colour`) for each node when `values` is not empty.
+vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std::vector<Vec3>& positions,
+                                              const std::vector<double>& values);
+
+// Outer triangles with normals for smooth shading; edges sharper than 40 degrees stay sharp.
+vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid);
+
+// Lines along the fibres in the deformed body, through about `seeds` points; empty without fibres.
+vtkSmartPointer<vtkPolyData> MakeFibreLines(const BodyShape& shape, const std::vector<Vec3>& positions, int seeds);
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_RENDER_BODY_MESH_H_

@@ -1,0 +1,45 @@
+#ifndef FASCICLE_CLIENT_RENDER_CANVAS_H_
+#define FASCICLE_CLIENT_RENDER_CANVAS_H_
+
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "client/render/display.h"
+
+namespace fascicle::client {
+
+// Size of a picture [pixel].
+struct PictureSize {
+  int width = 1200;
+  int height = 900;
+};
+
+// A drawing surface that no one sees, saved as PNG. Drawn at twice the size and averaged down, so that edges and thin
+// lines are smooth; line widths and positions in pixels must be multiplied by kSampling, text scales by itself.
+// One at a time in a process, from one thread.
+class Canvas {
+ public:
+  static constexpr int kSampling = 2;
+
+  // 16 to 8,192 pixels a side. Throws std::runtime_error when there is no display to draw on.
+  explicit Canvas(PictureSize size);
+
+  vtkRenderWindow& window() { return *window_; }
+  int width() const { return size_.width * kSampling; }    // [pixel drawn]
+  int height() const { return size_.height * kSampling; }  // [pixel drawn]
+
+  // Draws and writes the file, whole or not at all. Throws std::runtime_error with a message for people.
+  void Save(const std::filesystem::path& path);
+
+ private:
+  PictureSize size_;
+  std::unique_ptr<Display> display_;  // outlives the window
+  vtkNew<vtkRenderWindow> window_;
+};
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_RENDER_CANVAS_H_

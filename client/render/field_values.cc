@@ -1,0 +1,115 @@
+#include "client/render/field_values.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+
+namespace fascicle::client {
+namespace {
+
+Mat3 Edges(const std::vector<Vec3>& x, const std::array<std::uint32_t, 4>& t) {
+  Mat3 edges;
+  for (int i = 0; i < 3; ++i) edges.col(i) = x[t[static_cast<std::size_t>(i) + 1]] - x[t[0]];
+  return edges;
+}
+
+// Mean of the values of the tetrahedra around each node, weighted by rest volume.
+std::vector<double> AverageAtNodes(const BodyShape& shape, const std::vector<double>& values) {
+  std::vector<double> sums(shape.positions.size(), 0.0), weights(shape.positions.size(), 0.0);
+  for (std::size_t e = 0; e < shape.tetrahedra.size(); ++e) {
+    const double volume = std::abs(Edges(shape.positions, shape.tetrahedra[e]).determinant());
+    for (const std::uint32_t node : shape.tetrahedra[e]) {
+      sums[node] += volume * values[e];
+      weights[node] += volume;
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = weights[i] > 0 ? sums[i] / weights[i] : 0.0;
+  return sums;
+}
+
+struct Tuples {
+  std::vector<double> values;
+  std::size_t components = 1;
+  bool at_nodes = true;
+  std::string unit;
+};
+
+Tuples FindField(const BodyShape& shape, const v1::BodyFrame& frame, const std::string& name) {
+  if (name == "displacement") {
+    Tuples tuples{{}, 3, true, "m"};
+    const std::vector<Vec3> positions = DecodePositions(frame, shape.positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const Vec3 u = positions[i] - shape.positions[i];
+      tuples.values.insert(tuples.values.end(), u.data(), u.data() + 3);
+    }
+    return tuples;
+  }
+  std::string known = "displacement";
+  for (const v1::FieldValues& field : frame.fields()) {
+    if (field.name() == name) {
+      return {DecodeField(field, shape), static_cast<std::size_t>(field.components()),
+              field.location() == v1::FieldValues::LOCATION_NODE, field.unit()};
+    }
+    known += ", " + field.name();
+  }
+  throw std::runtime_error("there is no field `" + name + "` in the frame; there are: " + known +
+                           " (the scene's output.fields says which are kept)");
+}
+
+std::vector<std::string> ComponentNames(std::size_t components) {
+  if (components == 3) return {"x", "y", "z"};
+  if (components == 6) return {"xx", "yy", "zz", "xy", "yz", "xz"};
+  return {};
+}
+
+// One value a tuple: a component or, of vectors, the magnitude.
+std::vector<double> Reduce(const Tuples& tuples, const std::string& field, const std::string& component) {
+  const std::size_t n = tuples.components;
+  std::size_t chosen = 0;
+  if (!component.empty() || n > 3) {
+    const std::vector<std::string> names = ComponentNames(n);
+    while (chosen < names.size() && names[chosen] != component) ++chosen;
+    if (chosen == names.size()) {
+      std::string hint;
+      for (const std::string& name : names) hint += " " + field + "/" + name;
+      throw std::runtime_error(names.empty() ? "field `" + field + "` has no components"
+                                             : "give one of the components:" + hint);
+    }
+  }
+  std::vector<double> values(tuples.values.size() / n);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double* tuple = &tuples.values[i * n];
+    values[i] = n == 3 && component.empty() ? Eigen::Map<const Vec3>(tuple).norm() : tuple[chosen];
+  }
+  return values;
+}
+
+}  // namespace
+
+NodeValues ValuesAtNodes(const BodyShape& shape, const v1::BodyFrame& frame, const std::string& field) {
+  const std::size_t slash = field.find('/');
+  const std::string name = field.substr(0, slash);
+  const std::string component = slash == std::string::npos ? "" : field.substr(slash + 1);
+  const Tuples tuples = FindField(shape, frame, name);
+  NodeValues result{Reduce(tuples, name, component), component.empty() ? name : name + " " + component, tuples.unit};
+  if (!tuples.at_nodes) result.values = AverageAtNodes(shape, result.values);
+  return result;
+}
+
+std::vector<Vec3> FibresAtNodes(const BodyShape& shape, const std::vector<Vec3>& positions) {
+  std::vector<Vec3> sums(shape.positions.size(), Vec3::Zero());
+  for (std::size_t e = 0; e < shape.fibres.size(); ++e) {
+    const auto& t = shape.tetrahedra[e];
+    const Mat3 rest = Edges(shape.positions, t);
+    const Vec3 fibre = Edges(positions, t) * rest.inverse() * shape.fibres[e];
+    const double weight = std::abs(rest.determinant()) / fibre.norm();
+    if (!std::isfinite(weight)) continue;
+    for (const std::uint32_t node : t) sums[node] += (sums[node].dot(fibre) < 0 ? -weight : weight) * fibre;
+  }
+  for (Vec3& sum : sums) {
+    if (sum.norm() > 0) sum.normalize();
+  }
+  return sums;
+}
+
+}  // namespace fascicle::client

@@ -1,0 +1,139 @@
+#include "client/render/plot.h"
+
+#include <vtkAxis.h>
+#include <vtkChartLegend.h>
+#include <vtkChartXY.h>
+#include <vtkContextActor.h>
+#include <vtkContextScene.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPen.h>
+#include <vtkPlot.h>
+#include <vtkRenderer.h>
+#include <vtkTable.h>
+#include <vtkTextProperty.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace fascicle::client {
+namespace {
+
+// Told apart also by the colour-blind [Okabe and Ito].
+constexpr std::array<std::array<unsigned char, 3>, 8> kColours = {{{0, 114, 178},
+                                                                   {213, 94, 0},
+                                                                   {0, 158, 115},
+                                                                   {204, 121, 167},
+                                                                   {230, 159, 0},
+                                                                   {86, 180, 233},
+                                                                   {90, 90, 90},
+                                                                   {150, 60, 40}}};
+constexpr std::array<int, 3> kStyles = {vtkPen::SOLID_LINE, vtkPen::DASH_LINE, vtkPen::DOT_LINE};
+
+struct Extent {
+  double lowest = INFINITY, highest = -INFINITY;
+  void Add(double value) {
+    lowest = std::min(lowest, value);
+    highest = std::max(highest, value);
+  }
+};
+
+vtkSmartPointer<vtkTable> MakeTable(const PlotLine& line, Extent& x_extent, Extent& y_extent) {
+  vtkNew<vtkDoubleArray> x, y;
+  x->SetName("x");
+  y->SetName(line.name.c_str());
+  for (std::size_t i = 0; i < std::min(line.x.size(), line.y.size()); ++i) {
+    if (!std::isfinite(line.x[i]) || !std::isfinite(line.y[i])) continue;
+    x->InsertNextValue(line.x[i]);
+    y->InsertNextValue(line.y[i]);
+    x_extent.Add(line.x[i]);
+    y_extent.Add(line.y[i]);
+  }
+  auto table = vtkSmartPointer<vtkTable>::New();
+  table->AddColumn(x);
+  table->AddColumn(y);
+  return table;
+}
+
+void StyleAxis(vtkAxis& axis, const std::string& label) {
+  axis.SetTitle(label);
+  axis.GetTitleProperties()->SetFontSize(15);
+  axis.GetTitleProperties()->BoldOff();
+  axis.GetLabelProperties()->SetFontSize(13);
+  axis.SetNotation(vtkAxis::PRINTF_NOTATION);
+  axis.SetLabelFormat("%.6g");
+  axis.GetPen()->SetWidth(Canvas::kSampling);
+  axis.GetPen()->SetColor(60, 60, 60);
+  axis.GetGridPen()->SetWidth(Canvas::kSampling);
+  axis.GetGridPen()->SetColor(232, 232, 232);
+}
+
+// Leaves a margin, and room around a line that is level up to round-off.
+void SetRange(const Extent& extent, double margin, vtkAxis& axis) {
+  const double size = std::max(std::abs(extent.lowest), std::abs(extent.highest));
+  double half = margin * (extent.highest - extent.lowest);
+  if (!(extent.highest - extent.lowest > 1e-12 * size)) half = size > 0 ? 0.05 * size : 1;
+  axis.SetBehavior(vtkAxis::FIXED);
+  axis.SetRange(extent.lowest - half, extent.highest + half);
+}
+
+vtkSmartPointer<vtkChartXY> MakeChart(const PlotPanel& panel) {
+  auto chart = vtkSmartPointer<vtkChartXY>::New();
+  chart->SetAutoSize(false);
+  chart->SetTitle(panel.title);
+  chart->GetTitleProperties()->SetFontSize(17);
+  chart->GetTitleProperties()->BoldOn();
+  Extent x_extent, y_extent;
+  for (std::size_t i = 0; i < panel.lines.size(); ++i) {
+    const auto table = MakeTable(panel.lines[i], x_extent, y_extent);
+    if (table->GetNumberOfRows() == 0) continue;
+    vtkPlot& plot = *chart->AddPlot(vtkChart::LINE);
+    plot.SetInputData(table, 0, 1);
+    const auto& colour = kColours[i % kColours.size()];
+    plot.SetColor(colour[0], colour[1], colour[2], 255);
+    plot.SetWidth(2 * Canvas::kSampling);
+    plot.GetPen()->SetLineType(kStyles[i / kColours.size() % kStyles.size()]);
+  }
+  StyleAxis(*chart->GetAxis(vtkAxis::BOTTOM), panel.x_label);
+  StyleAxis(*chart->GetAxis(vtkAxis::LEFT), panel.y_label);
+  if (x_extent.lowest <= x_extent.highest) {
+    SetRange(x_extent, 0, *chart->GetAxis(vtkAxis::BOTTOM));
+    SetRange(y_extent, 0.06, *chart->GetAxis(vtkAxis::LEFT));
+  }
+  chart->SetShowLegend(true);
+  vtkChartLegend& legend = *chart->GetLegend();
+  legend.SetInline(false);
+  legend.SetHorizontalAlignment(vtkChartLegend::RIGHT);
+  legend.SetVerticalAlignment(vtkChartLegend::TOP);
+  legend.GetLabelProperties()->SetFontSize(13);
+  legend.GetPen()->SetOpacity(0);
+  return chart;
+}
+
+}  // namespace
+
+void DrawPlot(const std::vector<PlotPanel>& panels, PictureSize size, const std::filesystem::path& path) {
+  if (panels.empty()) throw std::runtime_error("there is nothing to plot");
+  Canvas canvas(size);
+  vtkNew<vtkRenderer> renderer;
+  renderer->SetBackground(1, 1, 1);
+  canvas.window().AddRenderer(renderer);
+  vtkNew<vtkContextActor> actor;
+  renderer->AddActor(actor);
+  vtkContextScene& scene = *actor->GetScene();
+  scene.SetRenderer(renderer);
+  const float margin = 8 * Canvas::kSampling;
+  const float height = static_cast<float>(canvas.height()) / static_cast<float>(panels.size());
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const auto chart = MakeChart(panels[i]);
+    const float bottom = height * static_cast<float>(panels.size() - 1 - i);
+    chart->SetSize(
+        vtkRectf(margin, bottom + margin, static_cast<float>(canvas.width()) - 2 * margin, height - 2 * margin));
+    scene.AddItem(chart);
+  }
+  canvas.Save(path);
+}
+
+}  // namespace fascicle::client
