@@ -1,8 +1,14 @@
 #ifndef FASCICLE_SERVER_EMBEDDED_SERVER_H_
 #define FASCICLE_SERVER_EMBEDDED_SERVER_H_
 
+#include <chrono>
+#include <cstdint>
 #include <memory>
 #include <string>
+
+namespace spdlog {
+class logger;
+}
 
 namespace fascicle::server {
 
@@ -11,7 +17,13 @@ struct ServerOptions {
   std::string data_directory;          // empty: in memory
   int workers = 2;
   int default_threads = 1;
-  bool allow_remote = false;           // refuses other addresses than loopback when false
+  bool allow_remote = false;  // refuses other addresses than loopback when false
+
+  std::int64_t max_asset_size = std::int64_t{4} << 30;                             // [byte]
+  std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2);         // of running jobs
+  std::chrono::milliseconds heartbeat_interval = std::chrono::seconds(10);         // of frame streams, at the latest
+  std::chrono::milliseconds progress_interval = std::chrono::milliseconds(1'000);  // ... when a job got further
+  std::shared_ptr<spdlog::logger> log;  // null: warnings and errors to stderr
 };
 
 // A whole server in this process: `fascicled` and `fascicle run` are thin layers over it.

@@ -1,0 +1,73 @@
+#include "server/config.h"
+
+#include <cstdlib>
+#include <ostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace fascicle::server {
+namespace {
+
+// As the XDG base directory specification has it; empty when there is no home.
+std::string DefaultDataDirectory() {
+  const char* data_home = std::getenv("XDG_DATA_HOME");
+  if (data_home != nullptr && data_home[0] == '/') return std::string(data_home) + "/fascicle";
+  const char* home = std::getenv("HOME");
+  return home != nullptr && home[0] != '\0' ? std::string(home) + "/.local/share/fascicle" : "";
+}
+
+constexpr const char* kFooter = R"(
+Examples:
+  fascicled                                  serve this machine on port 7300
+  fascicled --listen 127.0.0.1:0             on a free port, which is printed
+  fascicled --data /srv/fascicle --workers 4 four jobs at once, kept in /srv/fascicle
+  fascicled --listen 0.0.0.0:7300 --allow-remote
+                                             other machines too: only in a network that you trust
+
+It prints `listening on HOST:PORT` when it is ready. SIGTERM or SIGINT stop it: running jobs keep a checkpoint and go on
+with the next start. A second signal ends it at once.
+Exit codes: 0 stopped, 1 could not start, 2 bad options.)";
+
+}  // namespace
+
+std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  Config config;
+  config.server.listen = "127.0.0.1:7300";
+  config.server.data_directory = DefaultDataDirectory();
+  std::string level = "info";
+
+  CLI::App app("fascicled runs simulations of muscle and soft tissue for clients.", "fascicled");
+  app.footer(kFooter);
+  app.set_version_flag("--version", std::string("fascicled ") + FASCICLE_VERSION);
+  app.add_option("--listen", config.server.listen, "Address to listen on")
+      ->type_name("HOST:PORT")
+      ->capture_default_str();
+  app.add_option("--data", config.server.data_directory, "Folder for jobs, frames and assets; on a local disk")
+      ->type_name("DIR")
+      ->capture_default_str();
+  app.add_option("--workers", config.server.workers, "Jobs that run at the same time")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app.add_option("--threads", config.server.default_threads, "Threads of a job that does not ask for a number")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app.add_flag("--allow-remote", config.server.allow_remote,
+               "Allow other addresses than this machine's own; there is no TLS and no login");
+  app.add_option("--log-level", level, "What is logged to stderr")
+      ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}))
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e, out, err) == 0 ? 0 : 2;
+  }
+  if (config.server.data_directory.empty()) {
+    err << "fascicled: there is no home folder: say where to keep the data with --data\n";
+    return 2;
+  }
+  config.log_level = spdlog::level::from_str(level);
+  return config;
+}
+
+}  // namespace fascicle::server

@@ -1,0 +1,111 @@
+#include "server/embedded_server.h"
+
+#include <mutex>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include <spdlog/logger.h>
+#include <spdlog/sinks/stdout_sinks.h>
+
+#include "server/jobs/job_manager.h"
+#include "server/rpc/rpc_server.h"
+#include "server/store/store.h"
+#include "server/translate/job_codec.h"
+
+namespace fascicle::server {
+namespace {
+
+// "HOST" of "HOST:PORT" or "[HOST]:PORT".
+std::string HostOf(const std::string& listen) {
+  const std::size_t colon = listen.rfind(':');
+  const std::string port = colon == std::string::npos ? "" : listen.substr(colon + 1);
+  const bool digits = !port.empty() && port.size() <= 5 && port.find_first_not_of("0123456789") == std::string::npos;
+  if (colon == 0 || !digits || std::stoi(port) > 65535) {
+    throw std::runtime_error("cannot listen on \"" + listen + "\": it must be HOST:PORT");
+  }
+  return listen.substr(0, colon);
+}
+
+bool IsLoopback(std::string_view host) {
+  return host == "localhost" || host == "[::1]" ||
+         (host.starts_with("127.") && host.find_first_not_of("0123456789.") == std::string_view::npos);
+}
+
+std::shared_ptr<spdlog::logger> DefaultLog() {
+  auto log = std::make_shared<spdlog::logger>("fascicle", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  log->set_level(spdlog::level::warn);
+  return log;
+}
+
+std::unique_ptr<Store> OpenStore(const std::string& data_directory) {
+  if (data_directory.empty()) return MakeMemoryStore();
+  try {
+    return OpenSqliteStore(data_directory);
+  } catch (const StoreError& e) {
+    throw std::runtime_error("cannot use the data directory " + data_directory + ": " + e.what());
+  }
+}
+
+class Server : public EmbeddedServer {
+ public:
+  explicit Server(const ServerOptions& options)
+      : host_(HostOf(options.listen)),
+        log_(options.log ? options.log : DefaultLog()),
+        store_(OpenStore(options.data_directory)),
+        jobs_(*store_, MakeJobCodec(),
+              JobManagerOptions{options.workers, options.default_threads, options.checkpoint_interval}),
+        rpc_(options.listen, *store_, jobs_, log_, SettingsOf(options)) {
+    log_->info("listening on {}, data in {}", address(),
+               options.data_directory.empty() ? "memory" : options.data_directory);
+  }
+
+  ~Server() override { Stop(); }
+
+  std::string address() const override { return host_ + ":" + std::to_string(rpc_.port()); }
+  int port() const override { return rpc_.port(); }
+
+  void Stop() override {
+    std::lock_guard lock(stop_mutex_);
+    if (std::exchange(stopped_, true)) return;
+    log_->info("shutting down");
+    rpc_.Stop();  // first, so that no client sees a job stand still
+    jobs_.Drain();
+    log_->info("stopped");
+  }
+
+ private:
+  static RpcSettings SettingsOf(const ServerOptions& options) {
+    return {options.workers, options.default_threads, options.max_asset_size, options.heartbeat_interval,
+            options.progress_interval};
+  }
+
+  const std::string host_;
+  const std::shared_ptr<spdlog::logger> log_;
+  const std::unique_ptr<Store> store_;
+  JobManager jobs_;
+  RpcServer rpc_;
+  std::mutex stop_mutex_;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<EmbeddedServer> EmbeddedServer::Start(const ServerOptions& options) {
+  const std::string host = HostOf(options.listen);
+  if (!options.allow_remote && !IsLoopback(host)) {
+    throw std::runtime_error("refusing to listen on " + options.listen +
+                             ": anyone who reaches this address could run jobs, and nothing is encrypted. "
+                             "Allow it explicitly, or listen on 127.0.0.1");
+  }
+  if (options.workers < 1 || options.default_threads < 1) {
+    throw std::runtime_error("workers and threads must be at least 1");
+  }
+  try {
+    return std::make_unique<Server>(options);
+  } catch (const StoreError& e) {
+    throw std::runtime_error(std::string("the storage failed: ") + e.what());
+  }
+}
+
+}  // namespace fascicle::server

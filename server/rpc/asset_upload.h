@@ -1,0 +1,53 @@
+#ifndef FASCICLE_SERVER_RPC_ASSET_UPLOAD_H_
+#define FASCICLE_SERVER_RPC_ASSET_UPLOAD_H_
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "fascicle/v1/simulation_service.pb.h"
+#include "server/rpc/rpc_context.h"
+#include "server/store/store.h"
+
+namespace fascicle::server {
+
+// One call of UploadAsset: one chunk is read, then written to the store on an executor, then the next.
+class AssetUpload : public grpc::ServerReadReactor<v1::UploadAssetRequest>,
+                    public std::enable_shared_from_this<AssetUpload> {
+ public:
+  AssetUpload(RpcContext& context, v1::UploadAssetResponse& response) : context_(context), response_(response) {}
+
+  // Begins to read; returns the reactor for gRPC, which lives until the call is done.
+  static grpc::ServerReadReactor<v1::UploadAssetRequest>* Launch(std::shared_ptr<AssetUpload> upload);
+
+  void OnReadDone(bool ok) override;
+  void OnCancel() override { FinishOnce(grpc::Status::CANCELLED); }
+  void OnDone() override;
+
+ private:
+  // Each takes the message just read, on the executor. Not OK, or `complete_`: the call is over.
+  grpc::Status Take();
+  grpc::Status Begin();
+  grpc::Status Commit();
+  void FinishOnce(const grpc::Status& status);
+
+  RpcContext& context_;
+  v1::UploadAssetResponse& response_;
+  std::shared_ptr<AssetUpload> self_;  // until OnDone
+
+  v1::UploadAssetRequest message_;
+  bool begun_ = false;
+  bool complete_ = false;  // answered early: the asset is there
+  std::string name_;
+  std::int64_t size_ = 0;
+  std::int64_t received_ = 0;
+  std::unique_ptr<AssetStore::Upload> upload_;
+
+  std::mutex mutex_;
+  bool finished_ = false;
+};
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_RPC_ASSET_UPLOAD_H_

@@ -1,0 +1,59 @@
+#ifndef FASCICLE_SERVER_RPC_ERRORS_H_
+#define FASCICLE_SERVER_RPC_ERRORS_H_
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <grpcpp/server_context.h>
+#include <grpcpp/support/status.h>
+#include <spdlog/logger.h>
+
+#include "core/base/problems.h"
+
+namespace fascicle::server {
+
+// Errors as clients see them: a status whose details (grpc-status-details-bin) are a google.rpc.Status with an
+// ErrorInfo{reason, domain "fascicle"} and the message that belongs to the code. README.md has the table.
+
+// Bytes of details that every gRPC client takes: the default limit of a trailer is 8 KiB for all of it, in base64.
+constexpr std::size_t kDefaultDetailsLimit = 5000;
+
+// How many bytes of details this caller takes: what its metadata `fascicle-details-limit` says (at most 256 KiB), or
+// the default.
+std::size_t DetailsLimit(const grpc::ServerContextBase& call);
+
+// INVALID_ARGUMENT with a BadRequest of every problem, as far as `details_limit` [byte] allows; the rest is counted in
+// a last entry. A description is the message and, on a second line, the hint.
+grpc::Status InvalidArgument(const Problems& problems, std::size_t details_limit = kDefaultDetailsLimit);
+// The same with one problem.
+grpc::Status InvalidArgument(const std::string& field, const std::string& message);
+// As InvalidArgument with a reason of its own.
+grpc::Status InvalidArgument(const std::string& reason, const std::string& field, const std::string& message);
+
+// NOT_FOUND with ResourceInfo. `type` is `job` or `asset`.
+grpc::Status NotFound(const std::string& type, const std::string& name);
+// ALREADY_EXISTS with ResourceInfo.
+grpc::Status AlreadyExists(const std::string& reason, const std::string& type, const std::string& name,
+                           const std::string& message);
+// FAILED_PRECONDITION with one PreconditionFailure.Violation of type `reason` for each subject.
+grpc::Status FailedPrecondition(const std::string& reason, const std::vector<std::string>& subjects,
+                                const std::string& message, std::size_t details_limit = kDefaultDetailsLimit);
+// RESOURCE_EXHAUSTED with QuotaFailure.
+grpc::Status ResourceExhausted(const std::string& reason, const std::string& subject, const std::string& message);
+// UNAVAILABLE with RetryInfo.
+grpc::Status Unavailable(const std::string& reason, const std::string& message, std::chrono::milliseconds retry_after);
+grpc::Status ShuttingDown();
+grpc::Status Aborted(const std::string& reason, const std::string& message);
+grpc::Status OutOfRange(const std::string& reason, const std::string& message);
+grpc::Status Internal(const std::string& reason, const std::string& message);
+
+// Runs `body`. What it throws is logged under `what` and becomes an INTERNAL error: STORAGE for a StoreError,
+// OUT_OF_MEMORY, or INTERNAL.
+grpc::Status Guarded(spdlog::logger& log, const char* what, const std::function<grpc::Status()>& body) noexcept;
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_RPC_ERRORS_H_

@@ -1,0 +1,52 @@
+#ifndef FASCICLE_SERVER_RPC_EXECUTOR_H_
+#define FASCICLE_SERVER_RPC_EXECUTOR_H_
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace fascicle::server {
+
+// Threads for everything that may block (disk, locks, translation of scenes). gRPC's own threads are as few as the
+// machine's cores: one reaction that waits there holds up every call of the server. Thread-safe.
+class Executor {
+ public:
+  using Task = std::function<void()>;
+
+  // `on_error` hears of exceptions that leave a task; it must not throw.
+  Executor(int threads, std::function<void(const std::string& what)> on_error);
+  // Runs what was posted without delay, drops what was delayed, and joins.
+  ~Executor();
+  Executor(const Executor&) = delete;
+  Executor& operator=(const Executor&) = delete;
+
+  void Post(Task task);
+  void PostAfter(std::chrono::milliseconds delay, Task task);
+  // Tasks that wait for a thread.
+  std::size_t pending() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void Work();
+  void Run(const Task& task) noexcept;
+
+  const std::function<void(const std::string&)> on_error_;
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<Task> ready_;
+  std::multimap<Clock::time_point, Task> delayed_;
+  bool stopping_ = false;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_RPC_EXECUTOR_H_

@@ -1,0 +1,76 @@
+#include "server/rpc/frame_service.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "server/rpc/frame_stream.h"
+#include "server/rpc/geometry_stream.h"
+#include "server/rpc/names.h"
+
+namespace fascicle::server {
+namespace {
+
+// Ends a call at once.
+class EndedStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
+ public:
+  explicit EndedStream(const grpc::Status& status) { Finish(status); }
+  void OnDone() override { delete this; }
+};
+
+template <class Message>
+std::optional<Message> Parse(const grpc::ByteBuffer& bytes) {
+  grpc::ByteBuffer copy(bytes);  // shares the bytes; parsing consumes it
+  Message message;
+  if (!grpc::SerializationTraits<Message>::Deserialize(&copy, &message).ok()) return std::nullopt;
+  return message;
+}
+
+grpc::Status NotAMessage() { return InvalidArgument("", "the request is not the message that this call takes"); }
+
+}  // namespace
+
+grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::GetGeometry(grpc::CallbackServerContext*,
+                                                                          const grpc::ByteBuffer* request) {
+  const auto parsed = Parse<v1::GetGeometryRequest>(*request);
+  if (!parsed) return new EndedStream(NotAMessage());
+  return OutStream::Launch(std::make_shared<GeometryStream>(context_, parsed->name()));
+}
+
+grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::StreamFrames(grpc::CallbackServerContext*,
+                                                                           const grpc::ByteBuffer* request) {
+  auto parsed = Parse<v1::StreamFramesRequest>(*request);
+  if (!parsed) return new EndedStream(NotAMessage());
+  return OutStream::Launch(std::make_shared<FrameStream>(context_, std::move(*parsed)));
+}
+
+grpc::ServerUnaryReactor* FrameServiceImpl::ListFrames(grpc::CallbackServerContext* call,
+                                                       const v1::ListFramesRequest* request,
+                                                       v1::ListFramesResponse* response) {
+  return RunUnary(context_, context_.quick, call, "ListFrames",
+                  [this, request, response] { return List(*request, *response); });
+}
+
+grpc::Status FrameServiceImpl::List(const v1::ListFramesRequest& request, v1::ListFramesResponse& response) {
+  Problems problems;
+  const std::optional<std::string> id = ParseJobName(request.name());
+  if (!id) problems.Add("name", "must be jobs/{id}");
+  if (request.start_index() < 0) problems.Add("start_index", "must not be negative");
+  if (request.page_size() < 0 || request.page_size() > 10'000) problems.Add("page_size", "must lie in [0, 10000]");
+  if (!problems.empty()) return InvalidArgument(problems);
+  const std::shared_ptr<FrameStore> frames = context_.jobs.Frames(*id);
+  if (!frames) return NotFound("job", request.name());
+  const int page_size = request.page_size() == 0 ? 1000 : request.page_size();
+  for (const FrameRecord& record : frames->ListFrames(request.start_index(), page_size)) {
+    v1::FrameInfo* info = response.add_frames();
+    info->set_index(record.index);
+    info->set_time(record.time);
+    info->set_step(record.step);
+    info->set_size(record.size);
+    info->set_digest(record.digest);
+  }
+  return grpc::Status::OK;
+}
+
+}  // namespace fascicle::server

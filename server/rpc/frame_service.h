@@ -1,0 +1,35 @@
+#ifndef FASCICLE_SERVER_RPC_FRAME_SERVICE_H_
+#define FASCICLE_SERVER_RPC_FRAME_SERVICE_H_
+
+#include <grpcpp/support/byte_buffer.h>
+
+#include "fascicle/v1/simulation_service.grpc.pb.h"
+#include "server/rpc/rpc_context.h"
+
+namespace fascicle::server {
+
+using FrameServiceBase =
+    v1::FrameService::WithRawCallbackMethod_GetGeometry<v1::FrameService::WithRawCallbackMethod_StreamFrames<
+        v1::FrameService::WithCallbackMethod_ListFrames<v1::FrameService::Service>>>;
+
+// What jobs produce. The streams are raw, so that frames go from the store to the network without a copy.
+class FrameServiceImpl : public FrameServiceBase {
+ public:
+  explicit FrameServiceImpl(RpcContext& context) : context_(context) {}
+
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* GetGeometry(grpc::CallbackServerContext* call,
+                                                          const grpc::ByteBuffer* request) override;
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* StreamFrames(grpc::CallbackServerContext* call,
+                                                           const grpc::ByteBuffer* request) override;
+  grpc::ServerUnaryReactor* ListFrames(grpc::CallbackServerContext* call, const v1::ListFramesRequest* request,
+                                       v1::ListFramesResponse* response) override;
+
+ private:
+  grpc::Status List(const v1::ListFramesRequest& request, v1::ListFramesResponse& response);
+
+  RpcContext& context_;
+};
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_RPC_FRAME_SERVICE_H_

@@ -1,0 +1,177 @@
+#include "server/rpc/frame_stream.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "server/rpc/chunk_message.h"
+#include "server/rpc/job_messages.h"
+#include "server/rpc/names.h"
+
+namespace fascicle::server {
+namespace {
+
+using Response = v1::StreamFramesResponse;
+
+void CheckRequest(const v1::StreamFramesRequest& request, Problems& problems) {
+  if (!ParseJobName(request.name())) problems.Add("name", "must be jobs/{id}");
+  if (request.start_index() < 0) problems.Add("start_index", "must not be negative");
+  if (request.end_index() < 0) problems.Add("end_index", "must not be negative");
+  if (request.stride() < 0 || request.stride() > 1'000'000) problems.Add("stride", "must lie in [0, 1000000]");
+  if (!v1::StreamFramesRequest::Mode_IsValid(request.mode())) problems.Add("mode", "is not known");
+}
+
+}  // namespace
+
+void FrameStream::Fill() {
+  if (!open_ && !Open()) return;
+  while (HasRoom()) {
+    if (!current_) {
+      Advance();
+      if (!current_) return;
+    } else {
+      PushChunk();
+    }
+  }
+}
+
+bool FrameStream::Open() {
+  Problems problems;
+  CheckRequest(request_, problems);
+  if (!problems.empty()) {
+    Complete(InvalidArgument(problems));
+    return false;
+  }
+  job_id_ = *ParseJobName(request_.name());
+  frames_ = context_.jobs.Frames(job_id_);
+  if (!frames_) {
+    Complete(NotFound("job", request_.name()));
+    return false;
+  }
+  Follow(job_id_);  // before the first look, so that nothing is missed
+  next_index_ = request_.start_index();
+  stride_ = std::max<std::int64_t>(request_.stride(), 1);
+  generation_ = request_.generation();
+  if (!Refresh()) return false;
+  generation_ = view_.record.generation;
+  if (IsFinal(view_.record.state) && next_index_ > known_count_) {
+    Complete(OutOfRange("START_INDEX", "start_index " + std::to_string(next_index_) + " lies beyond the " +
+                                           std::to_string(known_count_) + " frames of " + request_.name()));
+    return false;
+  }
+  open_ = true;
+  Response message;
+  message.mutable_header()->set_generation(generation_);
+  message.mutable_header()->set_next_index(next_index_);
+  message.mutable_header()->set_frame_count(known_count_);
+  Push(Serialize(message));
+  last_message_ = Clock::now();
+  return true;
+}
+
+bool FrameStream::Refresh() {
+  // The state before the content: a job that is final has stored all that it ever will.
+  std::optional<JobView> view = context_.jobs.Get(job_id_);
+  if (!view) {
+    Complete(NotFound("job", request_.name()));
+    return false;
+  }
+  view_ = std::move(*view);
+  known_count_ = frames_->frame_count();
+  last_look_ = Clock::now();
+  if (generation_ != 0 && view_.record.generation != generation_) {
+    Complete(Aborted("GENERATION_CHANGED", "the frames of " + request_.name() + " were rewritten: start again"));
+    return false;
+  }
+  return true;
+}
+
+void FrameStream::Advance() {
+  const bool latest = request_.mode() == v1::StreamFramesRequest::MODE_LATEST;
+  if (latest && !AllWritten()) return;  // the newest is chosen when the reader is ready for it
+  const std::int64_t wanted_end = request_.end_index() > 0 ? request_.end_index() : INT64_MAX;
+  const bool look =
+      latest || next_index_ >= known_count_ || Clock::now() - last_look_ >= context_.settings.progress_interval;
+  if (look && !Refresh()) return;
+  Beat();
+  if (latest) next_index_ = NewestIndex();
+  if (next_index_ < std::min(known_count_, wanted_end)) {
+    BeginFrame(next_index_);
+  } else if (next_index_ >= wanted_end || !request_.follow() || IsFinal(view_.record.state)) {
+    PushEnd();
+  } else {
+    WakeAfter(std::min(context_.settings.progress_interval, context_.settings.heartbeat_interval));
+  }
+}
+
+std::int64_t FrameStream::NewestIndex() const {
+  std::int64_t count = known_count_;
+  if (request_.end_index() > 0) count = std::min(count, request_.end_index());
+  if (count <= next_index_) return next_index_;
+  return next_index_ + (count - 1 - next_index_) / stride_ * stride_;
+}
+
+void FrameStream::BeginFrame(std::int64_t index) {
+  constexpr int kReadAhead = 64;
+  auto found = std::find_if(listed_.begin(), listed_.end(), [index](const FrameRecord& r) { return r.index == index; });
+  if (found == listed_.end()) {
+    listed_ = frames_->ListFrames(index, stride_ == 1 ? kReadAhead : 1);
+    found = listed_.begin();
+    if (listed_.empty() || found->index != index)
+      throw std::runtime_error("frame " + std::to_string(index) + " is gone");
+  }
+  current_ = *found;
+  offset_ = 0;
+}
+
+void FrameStream::PushChunk() {
+  std::optional<std::string> bytes = frames_->ReadChunk(current_->index, offset_ / FrameStore::kChunkSize);
+  if (!bytes) throw std::runtime_error("a chunk of frame " + std::to_string(current_->index) + " is gone");
+  ChunkSource source;
+  source.frame_index = current_->index;
+  source.offset = offset_;
+  source.size = bytes->size();
+  offset_ += static_cast<std::int64_t>(bytes->size());
+  source.last = offset_ >= current_->size;
+  source.bytes = std::make_shared<const std::string>(std::move(*bytes));
+  if (source.last && offset_ > FrameStore::kChunkSize) {
+    // A frame of several chunks may have been rewritten between two of them.
+    const std::vector<FrameRecord> now = frames_->ListFrames(current_->index, 1);
+    if (now.empty() || now.front().digest != current_->digest) {
+      Complete(Aborted("GENERATION_CHANGED", "the frames of " + request_.name() + " were rewritten: start again"));
+      return;
+    }
+  }
+  if (source.last) {
+    next_index_ = current_->index + stride_;
+    current_.reset();
+  }
+  Push(ChunkMessage(Response::kChunkFieldNumber, source));
+  last_message_ = Clock::now();
+}
+
+void FrameStream::Beat() {
+  const Clock::time_point now = Clock::now();
+  v1::Progress progress = ProgressOf(view_);
+  const std::string told = std::to_string(StateOf(view_)) + progress.SerializeAsString();
+  const bool news =
+      told != last_progress_ && !IsFinal(view_.record.state) && now - last_beat_ >= context_.settings.progress_interval;
+  if (!news && now - last_message_ < context_.settings.heartbeat_interval) return;
+  Response message;
+  message.mutable_heartbeat()->set_next_index(next_index_);
+  message.mutable_heartbeat()->set_state(StateOf(view_));
+  *message.mutable_heartbeat()->mutable_progress() = std::move(progress);
+  Push(Serialize(message));
+  last_progress_ = told;
+  last_beat_ = last_message_ = now;
+}
+
+void FrameStream::PushEnd() {
+  Response message;
+  *message.mutable_end()->mutable_job() = ToMessage(view_);
+  message.mutable_end()->set_next_index(next_index_);
+  Push(Serialize(message));
+  Complete(grpc::Status::OK);
+}
+
+}  // namespace fascicle::server

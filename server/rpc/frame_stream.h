@@ -1,0 +1,64 @@
+#ifndef FASCICLE_SERVER_RPC_FRAME_STREAM_H_
+#define FASCICLE_SERVER_RPC_FRAME_STREAM_H_
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fascicle/v1/simulation_service.pb.h"
+#include "server/rpc/out_stream.h"
+
+namespace fascicle::server {
+
+// One call of StreamFrames. Everything is read from the store: for a live job, a late joiner, a reconnect and a
+// finished job the same code reads from the wanted index and then waits for more.
+class FrameStream : public OutStream {
+ public:
+  FrameStream(RpcContext& context, v1::StreamFramesRequest request)
+      : OutStream(context, "StreamFrames"), request_(std::move(request)) {}
+
+ protected:
+  void Fill() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  // Checks the request and sends the header. False when the stream was completed with an error.
+  bool Open();
+  // Looks again what job and store hold. False when the stream was completed with an error.
+  bool Refresh();
+  // Chooses the next frame, if one is stored; otherwise ends, or waits for more.
+  void Advance();
+  // The frame to send next when `request_` asks for the newest only.
+  std::int64_t NewestIndex() const;
+  void BeginFrame(std::int64_t index);
+  void PushChunk();
+  // A heartbeat when there is news of the progress, or nothing was sent for long.
+  void Beat();
+  void PushEnd();
+
+  const v1::StreamFramesRequest request_;
+  bool open_ = false;
+  std::string job_id_;
+  std::shared_ptr<FrameStore> frames_;
+  JobView view_;  // as of the last Refresh
+  std::int64_t generation_ = 0;
+  std::int64_t next_index_ = 0;  // the next frame to send
+  std::int64_t stride_ = 1;
+  std::int64_t known_count_ = 0;        // frames stored, as of the last Refresh
+  std::vector<FrameRecord> listed_;     // records read ahead
+  std::optional<FrameRecord> current_;  // being sent
+  std::int64_t offset_ = 0;             // of the next chunk in it [byte]
+
+  Clock::time_point last_look_;  // Refresh
+  Clock::time_point last_message_;
+  Clock::time_point last_beat_;
+  std::string last_progress_;  // as in the last heartbeat
+};
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_RPC_FRAME_STREAM_H_

@@ -1,0 +1,34 @@
+#ifndef FASCICLE_SERVER_RPC_GEOMETRY_STREAM_H_
+#define FASCICLE_SERVER_RPC_GEOMETRY_STREAM_H_
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "server/rpc/out_stream.h"
+
+namespace fascicle::server {
+
+// One call of GetGeometry: waits until the geometry is stored, then sends it in chunks.
+class GeometryStream : public OutStream {
+ public:
+  GeometryStream(RpcContext& context, std::string job_name)
+      : OutStream(context, "GetGeometry"), job_name_(std::move(job_name)) {}
+
+ protected:
+  void Fill() override;
+
+ private:
+  // False while the geometry is not there, or when the stream was completed with an error.
+  bool Load();
+
+  const std::string job_name_;
+  std::string job_id_;
+  bool following_ = false;
+  std::shared_ptr<const std::string> bytes_;
+  std::size_t sent_ = 0;
+};
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_RPC_GEOMETRY_STREAM_H_

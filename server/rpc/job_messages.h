@@ -1,0 +1,24 @@
+#ifndef FASCICLE_SERVER_RPC_JOB_MESSAGES_H_
+#define FASCICLE_SERVER_RPC_JOB_MESSAGES_H_
+
+#include <string>
+
+#include "fascicle/v1/job.pb.h"
+#include "server/jobs/job_manager.h"
+
+namespace fascicle::server {
+
+// What a job keeps as its spec: a v1::Job with scene and threads alone; equal jobs give equal bytes.
+std::string SpecOf(const v1::Job& requested);
+
+// The message of a job, without its scene.
+v1::Job ToMessage(const JobView& view);
+// The message of a job with its scene, as GetJob gives it.
+v1::Job ToMessageWithScene(const JobView& view);
+
+v1::Progress ProgressOf(const JobView& view);
+v1::Job::State StateOf(const JobView& view);
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_RPC_JOB_MESSAGES_H_

@@ -1,0 +1,163 @@
+#include "server/rpc/job_service.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/digest.h"
+#include "server/rpc/job_messages.h"
+#include "server/rpc/names.h"
+#include "server/translate/translate.h"
+
+namespace fascicle::server {
+namespace {
+
+void CheckRequest(const v1::CreateJobRequest& request, Problems& problems) {
+  if (!request.job().has_scene()) problems.Add("job.scene", "is missing");
+  if (request.job().threads() < 0 || request.job().threads() > 256) {
+    problems.Add("job.threads", "must lie in [0, 256]", "0 takes the server's default");
+  }
+  if (request.request_id().size() > 64) problems.Add("request_id", "is longer than 64 characters");
+}
+
+grpc::Status BadJobName() { return InvalidArgument("name", "must be jobs/{id}"); }
+
+}  // namespace
+
+grpc::ServerUnaryReactor* JobServiceImpl::CreateJob(grpc::CallbackServerContext* call,
+                                                    const v1::CreateJobRequest* request, v1::Job* response) {
+  constexpr std::size_t kMostWaiting = 64;
+  if (context_.slow.pending() > kMostWaiting) {
+    grpc::ServerUnaryReactor* reactor = call->DefaultReactor();
+    reactor->Finish(Unavailable("OVERLOADED", "too many jobs are being submitted", std::chrono::seconds(2)));
+    return reactor;
+  }
+  return RunUnary(context_, context_.slow, call, "CreateJob", [this, request, response, limit = DetailsLimit(*call)] {
+    return Create(*request, *response, limit);
+  });
+}
+
+grpc::Status JobServiceImpl::Create(const v1::CreateJobRequest& request, v1::Job& response, std::size_t details_limit) {
+  Problems problems;
+  CheckRequest(request, problems);
+  if (!problems.empty()) return InvalidArgument(problems, details_limit);
+  if (grpc::Status status = CheckScene(request.job().scene(), details_limit); !status.ok()) return status;
+  if (request.validate_only()) {
+    response.set_scene_name(request.job().scene().name());
+    response.set_threads(request.job().threads());
+    return grpc::Status::OK;
+  }
+  JobRecord record;
+  record.scene_name = request.job().scene().name();
+  record.threads = request.job().threads();
+  record.spec = SpecOf(request.job());
+  record.request_id = request.request_id();
+  record.request_digest = Hex(Sha256Of(record.spec));
+  const std::string digest = record.request_digest;
+  bool repeated = false;
+  const JobView view = context_.jobs.Submit(std::move(record), &repeated);
+  if (repeated && view.record.request_digest != digest) {
+    return AlreadyExists("REQUEST_ID_REUSED", "job", JobName(view.record.id),
+                         "request_id " + request.request_id() + " was used for another job");
+  }
+  response = ToMessage(view);
+  return grpc::Status::OK;
+}
+
+grpc::Status JobServiceImpl::CheckScene(const v1::Scene& scene, std::size_t details_limit) {
+  std::vector<std::string> missing;
+  for (const std::string& sha256_hex : AssetsOf(scene)) {
+    if (!context_.store.HasAsset(sha256_hex)) missing.push_back(AssetName(sha256_hex));
+  }
+  if (!missing.empty()) {
+    return FailedPrecondition("MISSING_ASSET", missing, "an asset of the scene was not uploaded", details_limit);
+  }
+  const auto read = [this](const std::string& sha256_hex) { return context_.store.ReadAsset(sha256_hex); };
+  Problems found;
+  if (TranslateScene(scene, read, found)) return grpc::Status::OK;
+  Problems problems;
+  problems.Append("job.scene", found);
+  if (problems.empty()) return Internal("INTERNAL", "the scene could not be translated");
+  return InvalidArgument(problems, details_limit);
+}
+
+grpc::ServerUnaryReactor* JobServiceImpl::GetJob(grpc::CallbackServerContext* call, const v1::GetJobRequest* request,
+                                                 v1::Job* response) {
+  return RunUnary(context_, context_.quick, call, "GetJob", [this, request, response] {
+    const std::optional<std::string> id = ParseJobName(request->name());
+    if (!id) return BadJobName();
+    const std::optional<JobView> view = context_.jobs.Get(*id);
+    if (!view) return NotFound("job", request->name());
+    *response = ToMessageWithScene(*view);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* JobServiceImpl::ListJobs(grpc::CallbackServerContext* call,
+                                                   const v1::ListJobsRequest* request, v1::ListJobsResponse* response) {
+  return RunUnary(context_, context_.quick, call, "ListJobs",
+                  [this, request, response] { return List(*request, *response); });
+}
+
+grpc::Status JobServiceImpl::List(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
+  Problems problems;
+  if (request.page_size() < 0 || request.page_size() > 1000) problems.Add("page_size", "must lie in [0, 1000]");
+  std::vector<JobState> states;
+  std::string filter;
+  for (int i = 0; i < request.states_size(); ++i) {
+    const int state = request.states(i);
+    if (state < v1::Job::STATE_QUEUED || state > v1::Job::STATE_CANCELLED) {
+      problems.Add(IndexPath("states", static_cast<std::size_t>(i)), "is no state of a job");
+    }
+    states.push_back(static_cast<JobState>(state));
+    filter += static_cast<char>('0' + state);
+  }
+  std::optional<std::string> before = std::string();
+  if (!request.page_token().empty()) before = ParsePageToken(request.page_token(), filter);
+  if (!before) problems.Add("page_token", "is not from an earlier answer to this request");
+  if (!problems.empty()) return InvalidArgument(problems);
+
+  const int page_size = request.page_size() == 0 ? 50 : request.page_size();
+  const std::vector<JobView> views = context_.jobs.List(page_size + 1, *before, states);
+  for (const JobView& view : views) {
+    if (response.jobs_size() == page_size) {  // one more is there
+      const std::string& last = response.jobs(page_size - 1).name();
+      response.set_next_page_token(MakePageToken(*ParseJobName(last), filter));
+      break;
+    }
+    *response.add_jobs() = ToMessage(view);
+  }
+  return grpc::Status::OK;
+}
+
+grpc::ServerUnaryReactor* JobServiceImpl::CancelJob(grpc::CallbackServerContext* call,
+                                                    const v1::CancelJobRequest* request, v1::Job* response) {
+  return RunUnary(context_, context_.quick, call, "CancelJob", [this, request, response] {
+    const std::optional<std::string> id = ParseJobName(request->name());
+    if (!id) return BadJobName();
+    const std::optional<JobView> view = context_.jobs.Cancel(*id);
+    if (!view) return NotFound("job", request->name());
+    *response = ToMessage(*view);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* JobServiceImpl::DeleteJob(grpc::CallbackServerContext* call,
+                                                    const v1::DeleteJobRequest* request, google::protobuf::Empty*) {
+  return RunUnary(context_, context_.quick, call, "DeleteJob", [this, request] {
+    const std::optional<std::string> id = ParseJobName(request->name());
+    if (!id) return BadJobName();
+    switch (context_.jobs.Delete(*id)) {
+      case JobManager::DeleteResult::kNotFound:
+        return NotFound("job", request->name());
+      case JobManager::DeleteResult::kActive:
+        return FailedPrecondition("JOB_ACTIVE", {request->name()}, "the job is not in a final state: cancel it first");
+      case JobManager::DeleteResult::kDeleted:
+        break;
+    }
+    return grpc::Status::OK;
+  });
+}
+
+}  // namespace fascicle::server

@@ -1,0 +1,36 @@
+#ifndef FASCICLE_SERVER_RPC_JOB_SERVICE_H_
+#define FASCICLE_SERVER_RPC_JOB_SERVICE_H_
+
+#include "fascicle/v1/simulation_service.grpc.pb.h"
+#include "server/rpc/rpc_context.h"
+
+namespace fascicle::server {
+
+// Submit, look, cancel, delete.
+class JobServiceImpl : public v1::JobService::CallbackService {
+ public:
+  explicit JobServiceImpl(RpcContext& context) : context_(context) {}
+
+  grpc::ServerUnaryReactor* CreateJob(grpc::CallbackServerContext* call, const v1::CreateJobRequest* request,
+                                      v1::Job* response) override;
+  grpc::ServerUnaryReactor* GetJob(grpc::CallbackServerContext* call, const v1::GetJobRequest* request,
+                                   v1::Job* response) override;
+  grpc::ServerUnaryReactor* ListJobs(grpc::CallbackServerContext* call, const v1::ListJobsRequest* request,
+                                     v1::ListJobsResponse* response) override;
+  grpc::ServerUnaryReactor* CancelJob(grpc::CallbackServerContext* call, const v1::CancelJobRequest* request,
+                                      v1::Job* response) override;
+  grpc::ServerUnaryReactor* DeleteJob(grpc::CallbackServerContext* call, const v1::DeleteJobRequest* request,
+                                      google::protobuf::Empty* response) override;
+
+ private:
+  grpc::Status Create(const v1::CreateJobRequest& request, v1::Job& response, std::size_t details_limit);
+  grpc::Status List(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
+  // OK when every asset that the scene names is there and the scene can be run.
+  grpc::Status CheckScene(const v1::Scene& scene, std::size_t details_limit);
+
+  RpcContext& context_;
+};
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_RPC_JOB_SERVICE_H_

@@ -1,0 +1,157 @@
+#include "server/rpc/out_stream.h"
+
+#include <utility>
+
+namespace fascicle::server {
+
+grpc::ServerWriteReactor<grpc::ByteBuffer>* OutStream::Launch(std::shared_ptr<OutStream> stream) {
+  OutStream* reactor = stream.get();
+  reactor->self_ = stream;
+  const std::weak_ptr<OutStream> weak = stream;
+  const bool added = reactor->context_.streams.Add(reactor, [weak](const grpc::Status& status) {
+    if (const auto open = weak.lock()) open->Abort(status);
+  });
+  if (added) {
+    reactor->Wake();
+  } else {
+    reactor->Abort(ShuttingDown());
+  }
+  return reactor;
+}
+
+void OutStream::Wake() {
+  {
+    std::lock_guard lock(mutex_);
+    if (stopped_) return;
+    if (filling_) {
+      fill_again_ = true;
+      return;
+    }
+    filling_ = true;
+  }
+  context_.quick.Post([stream = shared_from_this()] { stream->RunFill(); });
+}
+
+void OutStream::RunFill() {
+  bool again = true;
+  while (again) {
+    {
+      std::lock_guard lock(mutex_);
+      fill_again_ = false;
+    }
+    const grpc::Status status = Guarded(context_.log, method_, [this] {
+      Fill();
+      return grpc::Status::OK;
+    });
+    if (!status.ok()) Abort(status);
+    std::lock_guard lock(mutex_);
+    again = fill_again_ && !stopped_;
+    if (!again) filling_ = false;
+  }
+}
+
+bool OutStream::HasRoom() const {
+  std::lock_guard lock(mutex_);
+  return !stopped_ && ready_.size() < kAhead;
+}
+
+bool OutStream::AllWritten() const {
+  std::lock_guard lock(mutex_);
+  return ready_.empty() && !writing_;
+}
+
+void OutStream::Push(grpc::ByteBuffer message) {
+  std::unique_lock lock(mutex_);
+  if (stopped_) return;
+  ready_.push_back(std::move(message));
+  Pump(lock);
+}
+
+void OutStream::Complete(grpc::Status status) {
+  std::unique_lock lock(mutex_);
+  if (stopped_) return;
+  stopped_ = true;
+  last_ = std::move(status);
+  Pump(lock);
+}
+
+void OutStream::Abort(const grpc::Status& status) {
+  std::unique_lock lock(mutex_);
+  if (!finished_) last_ = status;
+  stopped_ = true;
+  ready_.clear();
+  Pump(lock);
+}
+
+void OutStream::Follow(const std::string& job_id) {
+  const std::weak_ptr<OutStream> weak = weak_from_this();
+  JobManager::Subscription subscription = context_.jobs.Subscribe(job_id, [weak] {
+    if (const auto stream = weak.lock()) stream->Wake();
+  });
+  std::lock_guard lock(mutex_);
+  if (!finished_) subscription_.swap(subscription);
+}
+
+void OutStream::WakeAfter(std::chrono::milliseconds delay) {
+  {
+    std::lock_guard lock(mutex_);
+    if (timer_set_ || stopped_) return;
+    timer_set_ = true;
+  }
+  context_.quick.PostAfter(delay, [weak = weak_from_this()] {
+    const auto stream = weak.lock();
+    if (!stream) return;
+    {
+      std::lock_guard lock(stream->mutex_);
+      stream->timer_set_ = false;
+    }
+    stream->Wake();
+  });
+}
+
+void OutStream::Pump(std::unique_lock<std::mutex>& lock) {
+  if (writing_ || finished_) return;
+  if (!ready_.empty()) {
+    in_flight_ = std::move(ready_.front());
+    ready_.pop_front();
+    writing_ = true;
+    lock.unlock();
+    StartWrite(&in_flight_);
+  } else if (last_) {
+    finished_ = true;
+    const grpc::Status status = *last_;
+    lock.unlock();
+    Finish(status);
+  }
+}
+
+void OutStream::OnWriteDone(bool ok) {
+  {
+    std::unique_lock lock(mutex_);
+    writing_ = false;
+    in_flight_.Clear();
+    if (!ok) {  // the client is gone
+      stopped_ = true;
+      ready_.clear();
+      if (!last_) last_ = grpc::Status::CANCELLED;
+    }
+    Pump(lock);
+  }
+  Wake();
+}
+
+void OutStream::OnCancel() { Abort(grpc::Status::CANCELLED); }
+
+void OutStream::OnDone() {
+  context_.streams.Remove(this);
+  JobManager::Subscription subscription;
+  {
+    std::lock_guard lock(mutex_);
+    subscription.swap(subscription_);
+  }
+  // Letting go may wait for a listener that is being called: not here.
+  if (subscription) context_.quick.Post([subscription = std::move(subscription)] {});
+  self_.reset();
+}
+
+}  // namespace fascicle::server

@@ -1,0 +1,79 @@
+#ifndef FASCICLE_SERVER_RPC_OUT_STREAM_H_
+#define FASCICLE_SERVER_RPC_OUT_STREAM_H_
+
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/server_callback.h>
+#include <grpcpp/support/status.h>
+
+#include "server/rpc/rpc_context.h"
+
+namespace fascicle::server {
+
+// A server stream that is filled from an executor: one message in flight, at most kAhead more made in advance, so a
+// slow reader costs a few MiB and no thread. Derived classes make the messages in Fill.
+class OutStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std::enable_shared_from_this<OutStream> {
+ public:
+  static constexpr std::size_t kAhead = 2;
+
+  OutStream(RpcContext& context, const char* method) : context_(context), method_(method) {}
+
+  // Begins to fill; returns the reactor for gRPC, which lives until the call is done.
+  static grpc::ServerWriteReactor<grpc::ByteBuffer>* Launch(std::shared_ptr<OutStream> stream);
+
+  // There may be more to send: calls Fill on the executor. Any thread.
+  void Wake();
+
+  void OnWriteDone(bool ok) final;
+  void OnCancel() final;
+  void OnDone() final;
+
+ protected:
+  // Makes messages while HasRoom(), until Complete or until there is nothing to send now. On an executor, never
+  // twice at a time; called again after Wake, after each write, and when `subscription` tells.
+  virtual void Fill() = 0;
+
+  // The rest is called from Fill only.
+  bool HasRoom() const;
+  bool AllWritten() const;
+  void Push(grpc::ByteBuffer message);
+  // Ends the stream once all is written.
+  void Complete(grpc::Status status);
+  // Wakes this stream whenever the job changes, until the end.
+  void Follow(const std::string& job_id);
+  // Wakes this stream after `delay`, or earlier.
+  void WakeAfter(std::chrono::milliseconds delay);
+
+  RpcContext& context_;
+
+ private:
+  void RunFill();
+  void Abort(const grpc::Status& status);
+  // Starts the next operation of the call, if there is one; releases the lock.
+  void Pump(std::unique_lock<std::mutex>& lock);
+
+  const char* const method_;
+  std::shared_ptr<OutStream> self_;  // until OnDone
+
+  mutable std::mutex mutex_;
+  std::deque<grpc::ByteBuffer> ready_;
+  grpc::ByteBuffer in_flight_;
+  bool writing_ = false;
+  bool filling_ = false;
+  bool fill_again_ = false;
+  bool timer_set_ = false;
+  bool stopped_ = false;              // no more messages are wanted
+  bool finished_ = false;             // Finish was called
+  std::optional<grpc::Status> last_;  // sent after `ready_`
+  JobManager::Subscription subscription_;
+};
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_RPC_OUT_STREAM_H_

@@ -1,0 +1,56 @@
+#ifndef FASCICLE_SERVER_RPC_RPC_CONTEXT_H_
+#define FASCICLE_SERVER_RPC_RPC_CONTEXT_H_
+
+#include <chrono>
+#include <cstdint>
+#include <utility>
+
+#include <grpcpp/server_context.h>
+#include <grpcpp/support/server_callback.h>
+#include <spdlog/logger.h>
+
+#include "server/jobs/job_manager.h"
+#include "server/rpc/errors.h"
+#include "server/rpc/executor.h"
+#include "server/rpc/open_streams.h"
+#include "server/store/store.h"
+
+namespace fascicle::server {
+
+// What the services tell about themselves and how they behave.
+struct RpcSettings {
+  int workers = 2;
+  int default_threads = 1;
+  std::int64_t max_asset_size = std::int64_t{4} << 30;                             // [byte]
+  std::chrono::milliseconds heartbeat_interval = std::chrono::seconds(10);         // at the latest
+  std::chrono::milliseconds progress_interval = std::chrono::milliseconds(1'000);  // when something changed
+};
+
+// What every service works with. Outlives all calls.
+struct RpcContext {
+  Store& store;
+  JobManager& jobs;
+  Executor& quick;  // reads and short writes
+  Executor& slow;   // translation of scenes, uploads
+  OpenStreams& streams;
+  spdlog::logger& log;
+  RpcSettings settings;
+};
+
+// Answers a unary call with `body` (() -> grpc::Status) on an executor. Request and response live until then.
+template <class Body>
+grpc::ServerUnaryReactor* RunUnary(RpcContext& context, Executor& executor, grpc::CallbackServerContext* call,
+                                   const char* method, Body body) {
+  grpc::ServerUnaryReactor* reactor = call->DefaultReactor();
+  if (context.streams.draining()) {
+    reactor->Finish(ShuttingDown());
+    return reactor;
+  }
+  executor.Post(
+      [&context, reactor, method, body = std::move(body)] { reactor->Finish(Guarded(context.log, method, body)); });
+  return reactor;
+}
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_RPC_RPC_CONTEXT_H_

@@ -1,0 +1,102 @@
+#include "server/rpc/rpc_server.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/server.h>
+#include <grpcpp/server_builder.h>
+
+#include "server/rpc/asset_service.h"
+#include "server/rpc/frame_service.h"
+#include "server/rpc/job_service.h"
+#include "server/rpc/server_service.h"
+
+namespace fascicle::server {
+namespace {
+
+constexpr int kLargestMessage = 4 << 20;  // [byte]; frames and files travel in chunks of 1 MiB
+constexpr int kConcurrentStreams = 256;   // of one connection
+constexpr int kKeepaliveTime = 30'000;    // [ms]
+// [ms]; a client that computes or draws for some seconds between two reads must not be taken for dead.
+constexpr int kKeepaliveTimeout = 20'000;
+constexpr int kShortestPingInterval = 10'000;  // [ms]
+
+constexpr int kQuickThreads = 4;
+constexpr int kSlowThreads = 2;
+
+void Configure(grpc::ServerBuilder& builder) {
+  builder.SetMaxReceiveMessageSize(kLargestMessage);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kConcurrentStreams);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveTime);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeout);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, kShortestPingInterval);
+  // Otherwise a second server would take the same port silently and get half of the calls.
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+}
+
+}  // namespace
+
+struct RpcServer::Impl {
+  Impl(Store& store, JobManager& jobs, std::shared_ptr<spdlog::logger> log, const RpcSettings& settings)
+      : logger(std::move(log)),
+        context{store, jobs, quick, slow, streams, *logger, settings},
+        quick(kQuickThreads, [this](const std::string& what) { logger->error("executor: {}", what); }),
+        slow(kSlowThreads, [this](const std::string& what) { logger->error("executor: {}", what); }) {}
+
+  std::shared_ptr<spdlog::logger> logger;
+  OpenStreams streams;
+  RpcContext context;
+  JobServiceImpl job_service{context};
+  AssetServiceImpl asset_service{context};
+  FrameServiceImpl frame_service{context};
+  ServerServiceImpl server_service{context};
+  // Destroyed in reverse: every call ends, then the executors' last tasks, then what they use.
+  Executor quick;
+  Executor slow;
+  std::unique_ptr<grpc::Server> server;
+  int port = 0;
+  bool stopped = false;
+};
+
+RpcServer::RpcServer(const std::string& listen, Store& store, JobManager& jobs, std::shared_ptr<spdlog::logger> log,
+                     const RpcSettings& settings)
+    : impl_(std::make_unique<Impl>(store, jobs, std::move(log), settings)) {
+  // Both are switches of the process; turning them on twice does nothing.
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+  grpc::ServerBuilder builder;
+  Configure(builder);
+  builder.AddListeningPort(listen, grpc::InsecureServerCredentials(), &impl_->port);
+  builder.RegisterService(&impl_->job_service);
+  builder.RegisterService(&impl_->asset_service);
+  builder.RegisterService(&impl_->frame_service);
+  builder.RegisterService(&impl_->server_service);
+  impl_->server = builder.BuildAndStart();
+  if (!impl_->server || impl_->port == 0) {
+    throw std::runtime_error("cannot listen on " + listen +
+                             ": the address is not of this machine or the port is in use");
+  }
+  grpc::HealthCheckServiceInterface* health = impl_->server->GetHealthCheckService();
+  for (const char* service : {v1::JobService::service_full_name(), v1::AssetService::service_full_name(),
+                              v1::FrameService::service_full_name(), v1::ServerService::service_full_name()}) {
+    health->SetServingStatus(service, true);
+  }
+}
+
+RpcServer::~RpcServer() { Stop(); }
+
+int RpcServer::port() const { return impl_->port; }
+
+void RpcServer::Stop() {
+  if (std::exchange(impl_->stopped, true) || !impl_->server) return;
+  impl_->server->GetHealthCheckService()->SetServingStatus(false);
+  impl_->streams.Drain();
+  impl_->streams.WaitUntilEmpty(std::chrono::seconds(2));
+  // What is left after that (a reader that stands still, a health watch) is cut.
+  impl_->server->Shutdown(std::chrono::system_clock::now() + std::chrono::seconds(1));
+}
+
+}  // namespace fascicle::server

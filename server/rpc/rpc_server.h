@@ -1,0 +1,36 @@
+#ifndef FASCICLE_SERVER_RPC_RPC_SERVER_H_
+#define FASCICLE_SERVER_RPC_RPC_SERVER_H_
+
+#include <memory>
+#include <string>
+
+#include <spdlog/logger.h>
+
+#include "server/jobs/job_manager.h"
+#include "server/rpc/rpc_context.h"
+#include "server/store/store.h"
+
+namespace fascicle::server {
+
+// The services on a port, with health (grpc.health.v1) and reflection.
+class RpcServer {
+ public:
+  // Listens on `listen` ("HOST:PORT"; port 0 picks a free one). The rest must outlive this. Throws std::runtime_error
+  // when it cannot listen there.
+  RpcServer(const std::string& listen, Store& store, JobManager& jobs, std::shared_ptr<spdlog::logger> log,
+            const RpcSettings& settings);
+  ~RpcServer();
+
+  int port() const;
+  // Health tells NOT_SERVING, every stream ends with UNAVAILABLE, then the port is closed. Idempotent; waits for calls
+  // that are being answered.
+  void Stop();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_RPC_RPC_SERVER_H_
