@@ -19,9 +19,9 @@ struct MeshReport {
 };
 
 // Checks a mesh in metres: no tetrahedra, indices out of range, non-finite coordinates, inverted, degenerate and
-// duplicate tetrahedra, nodes of no tetrahedron, coincident nodes, more than one component, a size that no muscle has (over 10 m or
-// under 0.1 mm: names the likely unit). Adds every problem it finds, a line for each kind with count and first
-// examples. Paths are left empty.
+// duplicate tetrahedra, nodes of no tetrahedron, coincident nodes, more than one component, a size that no muscle has
+// (over 10 m or under 0.1 mm: names the likely unit). Adds every problem it finds, a line for each kind with count and
+// first examples. Paths are left empty.
 MeshReport CheckMesh(const TetMesh& mesh, Problems& problems);
 
 // Turns round tetrahedra with negative volume when all of them are (a file with the other convention); a mixture is

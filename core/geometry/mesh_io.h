@@ -12,7 +12,7 @@ namespace fascicle {
 
 // The bytes of a mesh file. The views must outlive the call only.
 struct MeshFile {
-  std::string_view name;           // its extension tells the format: .msh .vtu .vtk .mesh .node
+  std::string_view name;  // its extension tells the format: .msh .vtu .vtk .mesh .node
   std::string_view bytes;
   std::string_view element_bytes;  // TetGen only: the bytes of the .ele file
 };

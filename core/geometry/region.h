@@ -11,11 +11,23 @@
 namespace fascicle {
 
 // The selectors of scene.proto, lengths in [m], directions of any non-zero length.
-struct TagSelector { std::int32_t tag = 0; };
-struct PlaneSelector { Vec3 point, normal; };
-struct BoxSelector { Vec3 min, max; };
-struct SphereSelector { Vec3 center; double radius = 0; };
-struct SideSelector { Vec3 direction; double max_angle = 0; };  // [rad]
+struct TagSelector {
+  std::int32_t tag = 0;
+};
+struct PlaneSelector {
+  Vec3 point, normal;
+};
+struct BoxSelector {
+  Vec3 min, max;
+};
+struct SphereSelector {
+  Vec3 center;
+  double radius = 0;
+};
+struct SideSelector {
+  Vec3 direction;
+  double max_angle = 0;
+};  // [rad]
 using Selector = std::variant<TagSelector, PlaneSelector, BoxSelector, SphereSelector, SideSelector>;
 
 // A named part of a mesh.
@@ -26,7 +38,8 @@ struct Region {
 };
 
 // Round-off allowance of plane, box and sphere: 1e-9 of the mesh's diagonal. May be empty.
-Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name, const Selector& selector);
+Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name,
+                    const Selector& selector);
 
 }  // namespace fascicle
 

@@ -14,11 +14,11 @@ using Triangle = std::array<std::int32_t, 3>;     // node indices; counter-clock
 
 // Tetrahedra with what their file says about them. Plain data: see mesh_checks.h for what makes one fit to simulate.
 struct TetMesh {
-  std::vector<Vec3> nodes;                      // [m] (readers: the file's own unit)
+  std::vector<Vec3> nodes;  // [m] (readers: the file's own unit)
   std::vector<Tetrahedron> tetrahedra;
-  std::vector<std::int32_t> tetrahedron_tags;   // physical tag of each tetrahedron; empty when the file has none
-  std::vector<Triangle> tagged_triangles;       // triangles listed in the file, in its own orientation
-  std::vector<std::int32_t> triangle_tags;      // physical tag of each of them
+  std::vector<std::int32_t> tetrahedron_tags;  // physical tag of each tetrahedron; empty when the file has none
+  std::vector<Triangle> tagged_triangles;      // triangles listed in the file, in its own orientation
+  std::vector<std::int32_t> triangle_tags;     // physical tag of each of them
 };
 
 // det[X1-X0, X2-X0, X3-X0] / 6 [m^3].

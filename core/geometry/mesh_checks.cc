@@ -1,0 +1,289 @@
+#include "core/geometry/mesh_checks.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "core/geometry/faces.h"
+
+namespace fascicle {
+namespace {
+
+constexpr std::size_t kExamples = 5;
+// A tetrahedron is degenerate when it fills less than this part of the cube of its longest edge.
+constexpr double kFlat = 1e-12;
+// Nodes closer than this part of the diagonal are one.
+constexpr double kCoincident = 1e-9;
+constexpr double kLargest = 10, kSmallest = 1e-4;  // [m]
+
+// "3 tetrahedra are inverted: 4, 7, 9 (counted from 0)".
+class Findings {
+ public:
+  void Add(std::string example) {
+    if (++count_ <= kExamples) examples_ += (count_ > 1 ? ", " : "") + std::move(example);
+  }
+  void Add(std::size_t index) { Add(std::to_string(index)); }
+  std::size_t count() const { return count_; }
+
+  // `one` and `many` follow the count: "tetrahedron is inverted", "tetrahedra are inverted".
+  void Report(const std::string& one, const std::string& many, const std::string& hint, Problems& problems) const {
+    if (count_ == 0) return;
+    const std::string more = count_ > kExamples ? ", ..." : "";
+    problems.Add(
+        "", std::to_string(count_) + " " + (count_ == 1 ? one : many) + ": " + examples_ + more + " (counted from 0)",
+        hint);
+  }
+
+ private:
+  std::size_t count_ = 0;
+  std::string examples_;
+};
+
+void CheckNotEmpty(const TetMesh& mesh, Problems& problems) {
+  if (mesh.tetrahedra.empty()) {
+    problems.Add("", "the mesh has no tetrahedra", "fill the surface with tetrahedra of four nodes");
+  }
+}
+
+void CheckCoordinates(const TetMesh& mesh, Problems& problems) {
+  Findings findings;
+  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+    if (!mesh.nodes[n].allFinite()) findings.Add(n);
+  }
+  findings.Report("node has a coordinate that is not a finite number",
+                  "nodes have coordinates that are not finite numbers", "write the mesh again", problems);
+}
+
+template <class Cell>
+bool InRange(const Cell& cell, std::size_t nodes) {
+  return std::all_of(cell.begin(), cell.end(), [&](std::int32_t n) { return n >= 0 && std::size_t(n) < nodes; });
+}
+
+void CheckIndices(const TetMesh& mesh, Problems& problems) {
+  Findings tetrahedra, triangles;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    if (!InRange(mesh.tetrahedra[t], mesh.nodes.size())) tetrahedra.Add(t);
+  }
+  for (std::size_t t = 0; t < mesh.tagged_triangles.size(); ++t) {
+    if (!InRange(mesh.tagged_triangles[t], mesh.nodes.size())) triangles.Add(t);
+  }
+  const std::string hint = "the mesh has " + std::to_string(mesh.nodes.size()) + " nodes";
+  tetrahedra.Report("tetrahedron names a node that does not exist", "tetrahedra name nodes that do not exist", hint,
+                    problems);
+  triangles.Report("triangle names a node that does not exist", "triangles name nodes that do not exist", hint,
+                   problems);
+}
+
+bool IsDegenerate(const TetMesh& mesh, std::size_t t, double volume) {
+  double longest = 0;
+  for (int a = 0; a < 4; ++a) {
+    for (int b = a + 1; b < 4; ++b) {
+      longest = std::max(longest, (mesh.nodes[mesh.tetrahedra[t][a]] - mesh.nodes[mesh.tetrahedra[t][b]]).norm());
+    }
+  }
+  return !(std::abs(volume) > kFlat * longest * longest * longest);
+}
+
+void CheckVolumes(const TetMesh& mesh, Problems& problems) {
+  Findings inverted, degenerate;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const double volume = SignedVolume(mesh, t);
+    if (!std::isfinite(volume)) continue;  // see CheckCoordinates
+    if (IsDegenerate(mesh, t, volume)) {
+      degenerate.Add(t);
+    } else if (volume < 0) {
+      inverted.Add(t);
+    }
+  }
+  inverted.Report("tetrahedron is inverted (negative volume)", "tetrahedra are inverted (negative volume)",
+                  "swap two nodes of each, or mesh the body again", problems);
+  degenerate.Report("tetrahedron is degenerate (no volume)", "tetrahedra are degenerate (no volume)",
+                    "mesh the body again, with optimization switched on", problems);
+}
+
+void CheckDuplicates(const TetMesh& mesh, Problems& problems) {
+  std::vector<std::pair<Tetrahedron, std::size_t>> sorted(mesh.tetrahedra.size());
+  for (std::size_t t = 0; t < sorted.size(); ++t) {
+    sorted[t] = {mesh.tetrahedra[t], t};
+    std::sort(sorted[t].first.begin(), sorted[t].first.end());
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::set<std::size_t> duplicates;
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i].first == sorted[i - 1].first) duplicates.insert(sorted[i].second);
+  }
+  Findings findings;
+  for (const std::size_t t : duplicates) findings.Add(t);
+  findings.Report("tetrahedron has the same nodes as another", "tetrahedra have the same nodes as others",
+                  "remove the duplicates", problems);
+}
+
+void CheckUnusedNodes(const TetMesh& mesh, Problems& problems) {
+  std::vector<char> used(mesh.nodes.size());
+  for (const Tetrahedron& tetrahedron : mesh.tetrahedra) {
+    for (const std::int32_t n : tetrahedron) used[n] = 1;
+  }
+  Findings findings;
+  for (std::size_t n = 0; n < used.size(); ++n) {
+    if (!used[n]) findings.Add(n);
+  }
+  findings.Report("node belongs to no tetrahedron", "nodes belong to no tetrahedron",
+                  "remove them, or write volume elements only", problems);
+}
+
+using Cell = std::array<std::int64_t, 3>;
+
+// Nodes in one cell of a fine grid are one; so are those that a cell's wall parts by less than a tenth of its width.
+// Each cell but the first of its kind is looked up in the few others that near: O(n log n).
+void CheckCoincidentNodes(const TetMesh& mesh, const MeshReport& report, Problems& problems) {
+  const double width = kCoincident * (report.highest - report.lowest).norm();
+  if (!(width > 0)) return;
+  const auto cell_of = [&](const Vec3& x) {
+    const Vec3 at = ((x - report.lowest) / width).array().floor();
+    return Cell{std::int64_t(at.x()), std::int64_t(at.y()), std::int64_t(at.z())};
+  };
+  std::vector<std::pair<Cell, std::size_t>> cells;
+  cells.reserve(mesh.nodes.size());
+  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+    if (mesh.nodes[n].allFinite()) cells.push_back({cell_of(mesh.nodes[n]), n});
+  }
+  std::sort(cells.begin(), cells.end());
+  // The lowest node of a cell, or none.
+  const auto first_in = [&](const Cell& cell) {
+    const auto found = std::lower_bound(cells.begin(), cells.end(), std::pair(cell, std::size_t{0}));
+    return found != cells.end() && found->first == cell ? found->second : std::numeric_limits<std::size_t>::max();
+  };
+  Findings findings;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto& [cell, n] = cells[i];
+    std::size_t twin = i > 0 && cells[i - 1].first == cell ? first_in(cell) : std::numeric_limits<std::size_t>::max();
+    for (int corner = 0; corner < 8; ++corner) {
+      Vec3 shift;
+      for (int axis = 0; axis < 3; ++axis) shift[axis] = (corner >> axis & 1 ? 0.1 : -0.1) * width;
+      const Cell near = cell_of(mesh.nodes[n] + shift);
+      if (near != cell) twin = std::min(twin, first_in(near));
+    }
+    if (twin < n) findings.Add(std::to_string(twin) + " and " + std::to_string(n));
+  }
+  findings.Report("node coincides with another", "nodes coincide with others", "merge them: the body falls apart there",
+                  problems);
+}
+
+// Face-connected parts, by union-find; also finds faces with more than two sides.
+int CheckComponents(const TetMesh& mesh, Problems& problems) {
+  std::vector<std::int64_t> parent(mesh.tetrahedra.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](std::int64_t t) {
+    while (parent[t] != t) t = parent[t] = parent[parent[t]];
+    return t;
+  };
+  Findings crowded;
+  const std::vector<Face> faces = SortedFaces(mesh.tetrahedra);
+  for (std::size_t i = 1; i < faces.size(); ++i) {
+    if (faces[i].nodes != faces[i - 1].nodes) continue;
+    const std::int64_t a = root(faces[i].side / 4), b = root(faces[i - 1].side / 4);
+    parent[std::max(a, b)] = std::min(a, b);
+    if (i >= 2 && faces[i - 2].nodes == faces[i].nodes) crowded.Add(std::size_t(faces[i].side / 4));
+  }
+  crowded.Report("tetrahedron lies on a face that two others share already",
+                 "tetrahedra lie on faces that two others share already", "tetrahedra overlap: mesh the body again",
+                 problems);
+  Findings parts;
+  for (std::size_t t = 0; t < parent.size(); ++t) {
+    if (root(std::int64_t(t)) == std::int64_t(t)) parts.Add("tetrahedron " + std::to_string(t));
+  }
+  if (parts.count() > 1) {
+    parts.Report("", "parts that share no face; they begin at",
+                 "give each part as a body of its own, or merge their nodes", problems);
+  }
+  return static_cast<int>(parts.count());
+}
+
+std::string Metres(double length) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.3g m", length);
+  return text;
+}
+
+void CheckSize(const MeshReport& report, Problems& problems) {
+  const double longest = (report.highest - report.lowest).maxCoeff();
+  if (longest > kLargest) {
+    // A muscle in centimetres is 1 to 100 m long, one in millimetres 10 to 1000 m.
+    const std::string hint =
+        longest >= 100 ? "it is in millimetres: set \"unit\": \"mm\""
+                       : "its lengths are likely in centimetres or millimetres: set \"unit\": \"cm\" or \"mm\"";
+    problems.Add("", "the body is " + Metres(longest) + " long; no muscle is longer than 10 m", hint);
+  } else if (longest < kSmallest && longest > 0) {
+    problems.Add("", "the body is " + Metres(longest) + " long; no muscle is shorter than 0.1 mm",
+                 "its lengths are likely in a larger unit: set \"unit\": \"m\"");
+  }
+}
+
+void MeasureBox(const TetMesh& mesh, MeshReport& report) {
+  bool any = false;
+  for (const Vec3& node : mesh.nodes) {
+    if (!node.allFinite()) continue;
+    report.lowest = any ? Vec3(report.lowest.cwiseMin(node)) : node;
+    report.highest = any ? Vec3(report.highest.cwiseMax(node)) : node;
+    any = true;
+  }
+}
+
+// Smallest angle between two sides of one tetrahedron.
+double SmallestDihedralAngle(const TetMesh& mesh) {
+  double smallest = mesh.tetrahedra.empty() ? 0 : std::numbers::pi;
+  for (const Tetrahedron& tetrahedron : mesh.tetrahedra) {
+    std::array<Vec3, 4> normals;
+    for (int side = 0; side < 4; ++side) {
+      const auto& [a, b, c] = OutwardTriangle(tetrahedron, side);
+      normals[side] = (mesh.nodes[b] - mesh.nodes[a]).cross(mesh.nodes[c] - mesh.nodes[a]);
+    }
+    for (int a = 0; a < 4; ++a) {
+      for (int b = a + 1; b < 4; ++b) {
+        smallest = std::min(smallest, std::atan2(normals[a].cross(normals[b]).norm(), -normals[a].dot(normals[b])));
+      }
+    }
+  }
+  return smallest;
+}
+
+}  // namespace
+
+MeshReport CheckMesh(const TetMesh& mesh, Problems& problems) {
+  MeshReport report;
+  MeasureBox(mesh, report);
+  CheckNotEmpty(mesh, problems);
+  CheckCoordinates(mesh, problems);
+  CheckSize(report, problems);
+  CheckCoincidentNodes(mesh, report, problems);
+  const std::size_t before = problems.count();
+  CheckIndices(mesh, problems);
+  if (problems.count() > before) return report;  // the rest follows the indices
+  CheckVolumes(mesh, problems);
+  CheckDuplicates(mesh, problems);
+  CheckUnusedNodes(mesh, problems);
+  report.components = CheckComponents(mesh, problems);
+  report.volume = TotalVolume(mesh);
+  report.smallest_dihedral_angle = SmallestDihedralAngle(mesh);
+  return report;
+}
+
+bool OrientConsistently(TetMesh& mesh) {
+  if (mesh.tetrahedra.empty()) return false;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    if (!InRange(mesh.tetrahedra[t], mesh.nodes.size()) || !(SignedVolume(mesh, t) < 0)) return false;
+  }
+  for (Tetrahedron& tetrahedron : mesh.tetrahedra) std::swap(tetrahedron[2], tetrahedron[3]);
+  return true;
+}
+
+}  // namespace fascicle

@@ -1,0 +1,170 @@
+#include "core/geometry/mesh_io.h"
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "core/geometry/mesh_readers.h"
+#include "core/geometry/text_scanner.h"
+
+namespace fascicle {
+namespace {
+
+constexpr std::int64_t kMaxIndex = std::numeric_limits<std::int32_t>::max();
+
+std::string Extension(std::string_view name) {
+  const std::size_t dot = name.rfind('.');
+  std::string extension(dot == std::string_view::npos ? std::string_view() : name.substr(dot));
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+// Orders the nodes by their numbers; false when two are the same.
+bool SortNodes(RawMesh& raw, Problems& problems) {
+  std::vector<std::int64_t>& numbers = raw.node_numbers;
+  if (!std::is_sorted(numbers.begin(), numbers.end())) {
+    std::vector<std::size_t> order(numbers.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return numbers[a] < numbers[b]; });
+    std::vector<Vec3> nodes(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) nodes[i] = raw.nodes[order[i]];
+    raw.nodes = std::move(nodes);
+    std::sort(numbers.begin(), numbers.end());
+  }
+  const auto twin = std::adjacent_find(numbers.begin(), numbers.end());
+  if (twin == numbers.end()) return true;
+  problems.Add("", "node " + std::to_string(*twin) + " is given twice", "number the nodes uniquely");
+  return false;
+}
+
+// Finds nodes by their numbers.
+class NodeFinder {
+ public:
+  explicit NodeFinder(const RawMesh& raw)
+      : numbers_(raw.node_numbers), first_(raw.first_node), count_(raw.nodes.size()) {
+    if (numbers_.empty()) return;
+    first_ = numbers_.front();
+    // The numbers are sorted and unique, and their range does not overflow: they are contiguous exactly if it is as
+    // long as their count.
+    contiguous_ = std::uint64_t(numbers_.back()) - std::uint64_t(first_) == count_ - 1;
+  }
+
+  // Index, or -1.
+  std::int32_t Find(std::int64_t number) const {
+    if (contiguous_) {
+      const std::uint64_t index = std::uint64_t(number) - std::uint64_t(first_);
+      return index < count_ ? static_cast<std::int32_t>(index) : -1;
+    }
+    const auto found = std::lower_bound(numbers_.begin(), numbers_.end(), number);
+    return found != numbers_.end() && *found == number ? static_cast<std::int32_t>(found - numbers_.begin()) : -1;
+  }
+
+ private:
+  const std::vector<std::int64_t>& numbers_;
+  std::int64_t first_;
+  std::size_t count_;
+  bool contiguous_ = true;
+};
+
+// Looks up the nodes of cells; reports the first that does not exist, and how many cells have such a node.
+template <std::size_t N>
+void FindNodes(const NodeFinder& finder, const std::vector<std::array<std::int64_t, N>>& cells,
+               std::vector<std::array<std::int32_t, N>>& found, const char* kind, Problems& problems) {
+  std::size_t bad = 0, first_bad = 0;
+  std::int64_t missing = 0;
+  found.resize(cells.size());
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    bool complete = true;
+    for (std::size_t i = 0; i < N; ++i) {
+      found[c][i] = finder.Find(cells[c][i]);
+      if (found[c][i] >= 0) continue;
+      if (bad == 0 && complete) missing = cells[c][i];
+      complete = false;
+    }
+    if (!complete && bad++ == 0) first_bad = c;
+  }
+  if (bad == 0) return;
+  problems.Add("",
+               std::to_string(bad) + " " + kind + " name nodes that do not exist: the first is number " +
+                   std::to_string(first_bad) + " (counted from 0), which names node " + std::to_string(missing),
+               "is the file complete, and does its numbering start where the format says?");
+}
+
+// Tags as 32-bit numbers; empty when all are zero, which stands for none.
+std::vector<std::int32_t> NarrowTags(const std::vector<std::int64_t>& tags, Problems& problems) {
+  if (std::all_of(tags.begin(), tags.end(), [](std::int64_t tag) { return tag == 0; })) return {};
+  std::vector<std::int32_t> narrow(tags.size());
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    narrow[i] = static_cast<std::int32_t>(tags[i]);
+    if (narrow[i] == tags[i]) continue;
+    problems.Add("", "the physical tag " + std::to_string(tags[i]) + " does not fit 32 bits", "use smaller tags");
+    return {};
+  }
+  return narrow;
+}
+
+void ReportNothingToRead(const RawMesh& raw, Problems& problems) {
+  std::string left_out;
+  if (raw.second_order > 0) left_out = std::to_string(raw.second_order) + " of second order";
+  const std::size_t rest = raw.others + raw.triangles.size();
+  if (rest > 0) left_out += (left_out.empty() ? "" : " and ") + std::to_string(rest) + " cells of other kinds";
+  problems.Add("", "the file has no tetrahedra of four nodes" + (left_out.empty() ? "" : ", but " + left_out),
+               raw.second_order > 0 ? "write the mesh with element order 1"
+                                    : "fill the surface with tetrahedra, and write the volume elements");
+}
+
+std::optional<TetMesh> Finish(RawMesh raw, Problems& problems) {
+  if (raw.tetrahedra.empty()) {
+    ReportNothingToRead(raw, problems);
+    return std::nullopt;
+  }
+  if (std::int64_t(raw.nodes.size()) > kMaxIndex || std::int64_t(raw.tetrahedra.size()) > kMaxIndex) {
+    problems.Add("", "the mesh has more than 2^31 nodes or tetrahedra", "use a coarser mesh");
+    return std::nullopt;
+  }
+  const std::size_t before = problems.count();
+  TetMesh mesh;
+  if (!SortNodes(raw, problems)) return std::nullopt;
+  const NodeFinder finder(raw);
+  FindNodes(finder, raw.tetrahedra, mesh.tetrahedra, "tetrahedra", problems);
+  FindNodes(finder, raw.triangles, mesh.tagged_triangles, "triangles", problems);
+  mesh.tetrahedron_tags = NarrowTags(raw.tetrahedron_tags, problems);
+  mesh.triangle_tags = NarrowTags(raw.triangle_tags, problems);
+  if (mesh.triangle_tags.empty()) mesh.tagged_triangles.clear();
+  if (problems.count() > before) return std::nullopt;
+  mesh.nodes = std::move(raw.nodes);
+  return mesh;
+}
+
+}  // namespace
+
+std::string KnownMeshExtensions() { return ".msh, .vtu, .vtk, .mesh, .node"; }
+
+std::optional<TetMesh> ReadMesh(const MeshFile& file, Problems& problems) {
+  const std::string extension = Extension(file.name);
+  const std::size_t before = problems.count();
+  RawMesh raw;
+  if (extension == ".msh") {
+    raw = ReadGmsh(file.bytes, problems);
+  } else if (extension == ".vtu") {
+    raw = ReadVtu(file.bytes, problems);
+  } else if (extension == ".vtk") {
+    raw = ReadVtkLegacy(file.bytes, problems);
+  } else if (extension == ".mesh") {
+    raw = ReadMedit(file.bytes, problems);
+  } else if (extension == ".node") {
+    raw = ReadTetgen(file.bytes, file.element_bytes, problems);
+  } else {
+    const bool surface = extension == ".stl" || extension == ".obj" || extension == ".ply" || extension == ".off";
+    problems.Add("", "the file extension " + Quoted(extension) + " is not that of a mesh that can be read",
+                 extension == ".ele" ? "give the .node file as the mesh and this one as its elements"
+                 : surface ? "a surface is not enough: fill it with tetrahedra; known are " + KnownMeshExtensions()
+                           : "known are " + KnownMeshExtensions());
+  }
+  if (problems.count() > before) return std::nullopt;
+  return Finish(std::move(raw), problems);
+}
+
+}  // namespace fascicle

@@ -1,0 +1,39 @@
+#include "core/geometry/tet_mesh.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+#include "core/geometry/faces.h"
+
+namespace fascicle {
+
+double SignedVolume(const TetMesh& mesh, std::size_t tetrahedron) {
+  const auto& [a, b, c, d] = mesh.tetrahedra[tetrahedron];
+  const Vec3& origin = mesh.nodes[a];
+  return (mesh.nodes[b] - origin).cross(mesh.nodes[c] - origin).dot(mesh.nodes[d] - origin) / 6;
+}
+
+double TotalVolume(const TetMesh& mesh) {
+  double volume = 0;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) volume += SignedVolume(mesh, t);
+  return volume;
+}
+
+std::vector<Triangle> BoundaryTriangles(const TetMesh& mesh) {
+  const std::vector<Face> faces = SortedFaces(mesh.tetrahedra);
+  std::vector<std::int64_t> boundary;  // Face::side
+  for (std::size_t i = 0; i < faces.size();) {
+    std::size_t end = i + 1;
+    while (end < faces.size() && faces[end].nodes == faces[i].nodes) ++end;
+    if (end == i + 1) boundary.push_back(faces[i].side);
+    i = end;
+  }
+  std::sort(boundary.begin(), boundary.end());
+  std::vector<Triangle> triangles;
+  triangles.reserve(boundary.size());
+  for (const std::int64_t side : boundary) triangles.push_back(OutwardTriangle(mesh.tetrahedra[side / 4], side % 4));
+  return triangles;
+}
+
+}  // namespace fascicle

@@ -1,0 +1,130 @@
+#include "core/geometry/text_scanner.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+namespace fascicle {
+namespace {
+
+bool IsSpace(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+constexpr const char* kCutOff = "is the file complete?";
+
+template <class Number>
+bool Parse(std::string_view token, Number& value) {
+  if (token.starts_with('+')) token.remove_prefix(1);
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
+  return error == std::errc() && end == token.data() + token.size();
+}
+
+}  // namespace
+
+bool ParseInt(std::string_view token, std::int64_t& value) { return Parse(token, value); }
+bool ParseDouble(std::string_view token, double& value) { return Parse(token, value); }
+
+std::string Quoted(std::string_view token) {
+  constexpr std::size_t kLongest = 40;
+  std::string text = "`";
+  for (const char c : token.substr(0, kLongest)) text += c >= ' ' && c <= '~' ? c : '?';
+  return text + (token.size() > kLongest ? "...`" : "`");
+}
+
+void TextScanner::SkipSpace() {
+  std::size_t i = 0;
+  for (bool in_comment = false; i < rest_.size(); ++i) {
+    const char c = rest_[i];
+    if (c == '\n') {
+      ++line_;
+      in_comment = false;
+    } else if (!in_comment && comment_ != '\0' && c == comment_) {
+      in_comment = true;
+    } else if (!in_comment && !IsSpace(c)) {
+      break;
+    }
+  }
+  rest_.remove_prefix(i);
+}
+
+std::string_view TextScanner::Peek() {
+  SkipSpace();
+  const auto end = std::find_if(rest_.begin(), rest_.end(),
+                                [this](char c) { return IsSpace(c) || (comment_ != '\0' && c == comment_); });
+  return rest_.substr(0, end - rest_.begin());
+}
+
+std::string_view TextScanner::Token() {
+  const std::string_view token = Peek();
+  rest_.remove_prefix(token.size());
+  return token;
+}
+
+std::string_view TextScanner::Line() {
+  const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+  const std::string_view text = rest_.substr(0, end);
+  if (end < rest_.size()) ++line_;
+  rest_.remove_prefix(std::min(end + 1, rest_.size()));
+  return text.ends_with('\r') ? text.substr(0, text.size() - 1) : text;
+}
+
+std::string_view TextScanner::Bytes(std::size_t size, std::string_view what) {
+  if (!Holds(std::int64_t(std::min(size, rest_.size() + 1)), what, 1)) return {};
+  const std::string_view bytes = rest_.substr(0, size);
+  rest_.remove_prefix(size);
+  return bytes;
+}
+
+std::int64_t TextScanner::Int(std::string_view what) {
+  const std::string_view token = Token();
+  std::int64_t value = 0;
+  if (ParseInt(token, value)) return value;
+  FailAt(token, what);
+  return 0;
+}
+
+double TextScanner::Double(std::string_view what) {
+  const std::string_view token = Token();
+  double value = 0;
+  if (ParseDouble(token, value)) return value;
+  FailAt(token, what);
+  return 0;
+}
+
+std::size_t TextScanner::Count(std::string_view what, std::size_t bytes_each) {
+  const std::int64_t count = Int("the number of " + std::string(what));
+  return Holds(count, what, bytes_each) ? static_cast<std::size_t>(count) : 0;
+}
+
+bool TextScanner::Holds(std::int64_t count, std::string_view what, std::size_t bytes_each) {
+  if (failed_) return false;
+  if (count < 0) {
+    Fail("the number of " + std::string(what) + " is " + std::to_string(count));
+  } else if (static_cast<std::uint64_t>(count) > (rest_.size() + 1) / bytes_each) {
+    // One more, as the last thing may end without a new line.
+    Fail(std::to_string(count) + " " + std::string(what) + " are announced, but the file ends after " +
+             std::to_string(rest_.size()) + " bytes more",
+         kCutOff);
+  }
+  return !failed_;
+}
+
+void TextScanner::Expect(std::string_view word) {
+  const std::string_view token = Token();
+  if (token != word) FailAt(token, word);
+}
+
+void TextScanner::FailAt(std::string_view token, std::string_view what) {
+  if (token.empty()) {
+    Fail("the file ends where " + std::string(what) + " should follow", kCutOff);
+  } else {
+    Fail("expected " + std::string(what) + " but found " + Quoted(token));
+  }
+}
+
+void TextScanner::Fail(const std::string& message, std::string hint) {
+  if (!failed_) problems_.Add("", "line " + std::to_string(line_) + ": " + message, std::move(hint));
+  failed_ = true;
+  rest_ = {};
+}
+
+}  // namespace fascicle

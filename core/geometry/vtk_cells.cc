@@ -1,0 +1,65 @@
+#include "core/geometry/vtk_cells.h"
+
+#include <algorithm>
+
+namespace fascicle {
+namespace {
+
+// VTK's cell types.
+constexpr std::int64_t kTriangle = 5, kTetrahedron = 10, kQuadraticTetrahedron = 24, kLagrangeTetrahedron = 71;
+
+template <std::size_t N>
+void AddCell(const std::int64_t* nodes, std::int64_t first_node, std::vector<std::array<std::int64_t, N>>& cells) {
+  auto& cell = cells.emplace_back();
+  for (std::size_t i = 0; i < N; ++i) cell[i] = nodes[i] + first_node;
+}
+
+}  // namespace
+
+bool IsTagArray(std::string_view name) {
+  return name == "physical" || name == "gmsh:physical" || name == "medit:ref" || name == "tag";
+}
+
+std::string AddCells(const VtkCells& cells, std::int64_t node_count, std::int64_t first_node, RawMesh& raw) {
+  const std::size_t count = cells.types.size();
+  if (cells.ends.size() != count) {
+    return std::to_string(count) + " cell types but " + std::to_string(cells.ends.size()) + " cells";
+  }
+  if (!cells.tags.empty() && cells.tags.size() != count) {
+    return std::to_string(cells.tags.size()) + " tags for " + std::to_string(count) + " cells";
+  }
+  std::int64_t begin = 0;
+  for (std::size_t c = 0; c < count; ++c) {
+    const auto name = [c] { return "cell " + std::to_string(c); };
+    const std::int64_t end = cells.ends[c];
+    if (end < begin || end > static_cast<std::int64_t>(cells.connectivity.size())) {
+      return name() + " has its nodes beyond the list of nodes";
+    }
+    const std::int64_t* nodes = cells.connectivity.data() + begin;
+    const std::int64_t size = end - begin;
+    begin = end;
+    const std::int64_t type = cells.types[c];
+    if (type != kTetrahedron && type != kTriangle) {
+      ++(type == kQuadraticTetrahedron || type == kLagrangeTetrahedron ? raw.second_order : raw.others);
+      continue;
+    }
+    if (size != (type == kTetrahedron ? 4 : 3))
+      return name() + " of " + std::to_string(size) + " nodes has the wrong type";
+    const auto outside = std::find_if(nodes, nodes + size, [&](std::int64_t n) { return n < 0 || n >= node_count; });
+    if (outside != nodes + size) {
+      return name() + " names node " + std::to_string(*outside) + " of " + std::to_string(node_count) +
+             " (counted from 0)";
+    }
+    const std::int64_t tag = cells.tags.empty() ? 0 : cells.tags[c];
+    if (type == kTetrahedron) {
+      AddCell(nodes, first_node, raw.tetrahedra);
+      raw.tetrahedron_tags.push_back(tag);
+    } else {
+      AddCell(nodes, first_node, raw.triangles);
+      raw.triangle_tags.push_back(tag);
+    }
+  }
+  return {};
+}
+
+}  // namespace fascicle
