@@ -1,0 +1,61 @@
+#include <map>
+#include <utility>
+
+#include "core/scene/checks.h"
+
+namespace fascicle::scene_checks {
+namespace {
+
+bool SameCurve(const Curve& a, const Curve& b) {
+  return a.times == b.times && a.values == b.values && a.interpolation == b.interpolation;
+}
+
+bool SameCurve(const std::optional<Curve>& a, const std::optional<Curve>& b) {
+  return a.has_value() == b.has_value() && (!a || SameCurve(*a, *b));
+}
+
+bool SameRotation(const std::optional<Rotation>& a, const std::optional<Rotation>& b) {
+  return a.has_value() == b.has_value() &&
+         (!a || (a->point == b->point && a->axis == b->axis && SameCurve(a->angle, b->angle)));
+}
+
+// Whether both ask for the same motion along one axis.
+bool Agree(const Constraint& a, const Constraint& b, int axis) {
+  return SameCurve(a.motion.translation[axis], b.motion.translation[axis]) &&
+         SameRotation(a.motion.rotation, b.motion.rotation);
+}
+
+void CheckBody(const Body& body, const std::string& path, Problems& problems) {
+  std::map<std::pair<std::int32_t, int>, std::size_t> holder;  // the first constraint on a node and axis
+  for (std::size_t k = 0; k < body.constraints.size(); ++k) {
+    const Constraint& constraint = body.constraints[k];
+    const std::string where = JoinPath(path, IndexPath("constraints", k));
+    if (constraint.region < 0 || constraint.region >= static_cast<std::int32_t>(body.regions.size())) {
+      problems.Add(JoinPath(where, "region"), "there is no such region");
+      continue;
+    }
+    const Region& region = body.regions[constraint.region];
+    if (region.nodes.empty()) problems.Add(JoinPath(where, "region"), "region `" + region.name + "` has no nodes");
+    bool reported = false;
+    for (const std::int32_t node : region.nodes) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!constraint.axes[axis]) continue;
+        const auto [first, is_new] = holder.try_emplace({node, axis}, k);
+        if (is_new || reported || Agree(body.constraints[first->second], constraint, axis)) continue;
+        problems.Add(where,
+                     "asks node " + std::to_string(node) + " to move differently along " + "xyz"[axis] + " than " +
+                         IndexPath("constraints", first->second) + " does",
+                     "regions that share nodes need the same motion, or different axes");
+        reported = true;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void CheckConstraints(const Scene& scene, Problems& problems) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) CheckBody(scene.bodies[i], IndexPath("bodies", i), problems);
+}
+
+}  // namespace fascicle::scene_checks

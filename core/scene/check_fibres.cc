@@ -1,0 +1,38 @@
+#include <cmath>
+
+#include "core/scene/checks.h"
+
+namespace fascicle::scene_checks {
+namespace {
+
+void CheckBody(const Body& body, const std::string& path, Problems& problems) {
+  const bool needed = std::visit([](const auto& law) { return law.kNeedsFibres; }, body.material);
+  if (body.fibres.empty()) {
+    if (needed) {
+      problems.Add(path, "this material needs fibre directions",
+                   "give constant, file or harmonic fibres, or choose an isotropic material");
+    }
+    return;
+  }
+  if (body.fibres.size() != body.mesh.tetrahedra.size()) {
+    problems.Add(path, std::to_string(body.fibres.size()) + " fibre directions for " +
+                           std::to_string(body.mesh.tetrahedra.size()) + " tetrahedra");
+    return;
+  }
+  for (std::size_t e = 0; e < body.fibres.size(); ++e) {
+    // Rounding leaves unit vectors within some 1e-16 of length 1; 1e-6 also lets through those kept in float.
+    if (std::abs(body.fibres[e].norm() - 1) < 1e-6) continue;
+    problems.Add(path, "the fibre direction of tetrahedron " + std::to_string(e) + " is not a unit vector");
+    return;
+  }
+}
+
+}  // namespace
+
+void CheckFibres(const Scene& scene, Problems& problems) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    CheckBody(scene.bodies[i], JoinPath(IndexPath("bodies", i), "fibres"), problems);
+  }
+}
+
+}  // namespace fascicle::scene_checks

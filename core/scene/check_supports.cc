@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/scene/checks.h"
+
+namespace fascicle::scene_checks {
+namespace {
+
+// Resultant of a load at scale 1 [N].
+Vec3 Resultant(const Body& body, const Load& load) {
+  if (const auto* force = std::get_if<NodalForce>(&load.kind)) return force->total;
+  const auto& X = body.mesh.nodes;
+  double area = 0;
+  for (const Triangle& t : body.regions[load.region].triangles) {
+    area += 0.5 * (X[t[1]] - X[t[0]]).cross(X[t[2]] - X[t[0]]).norm();
+  }
+  return area * std::get<Traction>(load.kind).vector;
+}
+
+std::array<bool, 3> HeldAxes(const Body& body) {
+  std::array<bool, 3> held = {};
+  for (const Constraint& constraint : body.constraints) {
+    for (int axis = 0; axis < 3; ++axis) held[axis] |= constraint.axes[axis];
+  }
+  return held;
+}
+
+// Whether the loads on a body have a resultant along `axis` at some time, up to round-off. Between the points of their
+// curves the scales lie between those at the points, so the points are enough.
+bool Pushes(const Scene& scene, const Body& body, const std::vector<Vec3>& resultants, double mass, int axis) {
+  std::vector<double> times = scene.gravity.scale.times;
+  for (const Load& load : body.loads) times.insert(times.end(), load.scale.times.begin(), load.scale.times.end());
+  return std::any_of(times.begin(), times.end(), [&](double time) {
+    double net = mass * scene.gravity.acceleration[axis] * scene.gravity.scale.At(time);
+    double size = std::abs(net);
+    for (std::size_t k = 0; k < resultants.size(); ++k) {
+      const double force = resultants[k][axis] * body.loads[k].scale.At(time);
+      net += force;
+      size += std::abs(force);
+    }
+    return std::abs(net) > 1e-9 * size;
+  });
+}
+
+}  // namespace
+
+void CheckSupports(const Scene& scene, Problems& problems) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    const std::array<bool, 3> held = HeldAxes(body);
+    std::vector<Vec3> resultants;
+    for (const Load& load : body.loads) resultants.push_back(Resultant(body, load));
+    const double mass = body.density * TotalVolume(body.mesh);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (held[axis] || !Pushes(scene, body, resultants, mass, axis)) continue;
+      problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
+                   std::string("nothing holds the body against its loads along ") + "xyz"[axis],
+                   "it would fly away: add a constraint, or take out the load or gravity");
+    }
+  }
+}
+
+}  // namespace fascicle::scene_checks

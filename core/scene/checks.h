@@ -1,0 +1,26 @@
+#ifndef FASCICLE_CORE_SCENE_CHECKS_H_
+#define FASCICLE_CORE_SCENE_CHECKS_H_
+
+#include "core/scene/scene.h"
+
+// The checks that CheckScene runs, one to a file. Each adds what it finds to `problems` and leaves the rest alone.
+namespace fascicle::scene_checks {
+
+// At least one body; each with tetrahedra, a positive density and a name of its own.
+void CheckBodies(const Scene& scene, Problems& problems);
+// Fibre directions where the law needs them: one for each tetrahedron, finite and of unit length.
+void CheckFibres(const Scene& scene, Problems& problems);
+// Curves: as many values as times, times increasing, all finite; activations within [0, 1].
+void CheckCurves(const Scene& scene, Problems& problems);
+// Constraints that name a region of the body and do not ask two things of one node.
+void CheckConstraints(const Scene& scene, Problems& problems);
+// Loads on regions that exist, have nodes, and have surface where the load needs one.
+void CheckLoads(const Scene& scene, Problems& problems);
+// A load or gravity that nothing holds against: the body would fly away.
+void CheckSupports(const Scene& scene, Problems& problems);
+// Probes that follow a node that exists; the number of frames; duration.
+void CheckOutput(const Scene& scene, Problems& problems);
+
+}  // namespace fascicle::scene_checks
+
+#endif  // FASCICLE_CORE_SCENE_CHECKS_H_

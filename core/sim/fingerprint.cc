@@ -1,0 +1,132 @@
+#include "core/sim/fingerprint.h"
+
+#include <cmath>
+#include <span>
+
+namespace fascicle {
+namespace {
+
+// Feeds a scene to a digest, field by field.
+class Fingerprint {
+ public:
+  Digest Of(const Scene& scene) {
+    Put(scene.duration);
+    PutItems(scene.gravity.acceleration);
+    Put(scene.gravity.scale);
+    Put(static_cast<int>(scene.method.stepping));
+    Put(scene.method.time_step.value_or(0.0));
+    Put(scene.method.safety);
+    Put(scene.method.solver_tolerance);
+    Put(scene.bodies.size());
+    for (const Body& body : scene.bodies) Put(body);
+    Put(scene.output);
+    return sha_.Finish();
+  }
+
+ private:
+  template <class Value>
+  requires std::is_arithmetic_v<Value>
+  void Put(const Value& value) { sha_.Update(std::as_bytes(std::span(&value, 1))); }
+
+  void Put(const std::string& text) {
+    Put(text.size());
+    sha_.Update(text);
+  }
+
+  template <class Items>
+  void PutItems(const Items& items) {
+    Put(static_cast<std::size_t>(items.size()));
+    sha_.Update(std::as_bytes(std::span(items.data(), static_cast<std::size_t>(items.size()))));
+  }
+
+  void Put(const Curve& curve) {
+    PutItems(curve.times);
+    PutItems(curve.values);
+    Put(static_cast<int>(curve.interpolation));
+  }
+
+  void Put(const std::optional<Curve>& curve) {
+    Put(curve.has_value());
+    if (curve) Put(*curve);
+  }
+
+  void Put(const Motion& motion) {
+    for (const auto& translation : motion.translation) Put(translation);
+    Put(motion.rotation.has_value());
+    if (!motion.rotation) return;
+    PutItems(motion.rotation->point);
+    PutItems(motion.rotation->axis);
+    Put(motion.rotation->angle);
+  }
+
+  // Stretches along, across and between the axes, short and long of every bend in a fibre curve.
+  void Put(const Material& material) {
+    Put(material.index());
+    std::visit(
+        [this](const auto& law) {
+          for (const double stretch : {0.45, 0.7, 0.95, 1.01, 1.05, 1.3, 1.7, 2.5, 4.0}) {
+            Mat3 F = Mat3::Identity() / std::sqrt(stretch);
+            F(0, 0) = 1.01 * stretch;
+            F(0, 1) = 0.1;
+            for (const double activation : {0.0, 1.0}) PutItems(law.Stress(F, FibreState{Vec3::UnitX(), activation}));
+          }
+        },
+        material);
+  }
+
+  void Put(const Body& body) {
+    Put(body.name);
+    PutItems(body.mesh.nodes);
+    PutItems(body.mesh.tetrahedra);
+    Put(body.density);
+    Put(body.material);
+    PutItems(body.fibres);
+    Put(body.regions.size());
+    for (const Region& region : body.regions) {
+      Put(region.name);
+      PutItems(region.nodes);
+      PutItems(region.triangles);
+    }
+    Put(body.constraints.size());
+    for (const Constraint& constraint : body.constraints) {
+      Put(constraint.region);
+      PutItems(constraint.axes);
+      Put(constraint.motion);
+    }
+    Put(body.loads.size());
+    for (const Load& load : body.loads) {
+      Put(load.region);
+      Put(load.kind.index());
+      std::visit([this](const auto& kind) { PutItems(VectorOf(kind)); }, load.kind);
+      Put(load.scale);
+    }
+    Put(body.activation);
+    Put(body.damping.mass_proportional);
+    Put(body.damping.stiffness_proportional);
+    Put(body.damping.viscosity);
+  }
+
+  static const Vec3& VectorOf(const Traction& traction) { return traction.vector; }
+  static const Vec3& VectorOf(const NodalForce& force) { return force.total; }
+
+  void Put(const Output& output) {
+    Put(output.frame_interval);
+    Put(output.fields.size());
+    for (const OutputField field : output.fields) Put(static_cast<int>(field));
+    Put(output.probes.size());
+    for (const Probe& probe : output.probes) {
+      Put(probe.name);
+      Put(probe.body);
+      Put(probe.node);
+    }
+    Put(output.settle_speed.value_or(0.0));
+  }
+
+  Sha256 sha_;
+};
+
+}  // namespace
+
+Digest FingerprintOf(const Scene& scene) { return Fingerprint().Of(scene); }
+
+}  // namespace fascicle

@@ -1,0 +1,149 @@
+#include "core/sim/measure.h"
+
+#include <map>
+
+#include "core/tet/diagnostics.h"
+#include "core/tet/fields.h"
+
+namespace fascicle {
+namespace {
+
+constexpr const char* kAxes[] = {"x", "y", "z"};
+
+// Several constraints may act on one region (different axes): their reactions are one series. In order of first use.
+struct RegionReaction {
+  std::size_t body;
+  std::int32_t region;
+  std::vector<std::size_t> supports;
+};
+
+std::vector<RegionReaction> RegionReactions(const TetModel& model) {
+  std::vector<RegionReaction> reactions;
+  std::map<std::pair<std::size_t, std::int32_t>, std::size_t> places;
+  for (std::size_t s = 0; s < model.supports().size(); ++s) {
+    const Support& support = model.supports()[s];
+    const std::pair key{static_cast<std::size_t>(support.body), support.source->region};
+    const auto [place, is_new] = places.try_emplace(key, reactions.size());
+    if (is_new) reactions.push_back({key.first, key.second, {}});
+    reactions[place->second].supports.push_back(s);
+  }
+  return reactions;
+}
+
+std::size_t NodeOf(const TetModel& model, const Probe& probe) {
+  return model.bodies()[probe.body].node_begin + static_cast<std::size_t>(probe.node);
+}
+
+struct FieldInfo {
+  const char* name;
+  const char* unit;
+};
+
+FieldInfo InfoOf(OutputField field) {
+  switch (field) {
+    case OutputField::kVelocity:
+      return {"velocity", "m/s"};
+    case OutputField::kCauchyStress:
+      return {"cauchy_stress", "Pa"};
+    case OutputField::kVonMisesStress:
+      return {"von_mises_stress", "Pa"};
+    case OutputField::kPressure:
+      return {"pressure", "Pa"};
+    case OutputField::kVolumeRatio:
+      return {"volume_ratio", "1"};
+    case OutputField::kFibreStretch:
+      return {"fibre_stretch", "1"};
+    case OutputField::kFibreDirection:
+      return {"fibre_direction", "1"};
+  }
+  return {"", ""};
+}
+
+}  // namespace
+
+std::vector<SeriesInfo> SeriesOf(const TetModel& model) {
+  std::vector<SeriesInfo> series = {
+      {"energy/elastic", "J", "elastic energy of all bodies, with the potential of active fibres"},
+      {"energy/kinetic", "J", "kinetic energy of all bodies"},
+      {"energy/external_work", "J", "work that loads and gravity have done so far"},
+      {"energy/dissipated", "J", "energy that damping has taken so far"},
+      {"solver/step", "s", "length of the last time step"},
+      {"solver/iterations", "1", "iterations of linear solves since the frame before"},
+  };
+  const std::vector<RegionReaction> reactions = RegionReactions(model);
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const Body& body = *model.bodies()[b].source;
+    series.push_back({body.name + "/volume_ratio", "1", "present volume over rest volume"});
+    series.push_back({body.name + "/min_volume_ratio", "1", "smallest volume ratio J of an element"});
+    series.push_back({body.name + "/activation", "1", "activation"});
+    for (const RegionReaction& reaction : reactions) {
+      if (reaction.body != b) continue;
+      const std::string& region = body.regions[reaction.region].name;
+      for (const char* axis : kAxes) {
+        series.push_back({body.name + "/reaction/" + region + "/" + axis, "N",
+                          "force of the support of `" + region + "` on the body along " + axis});
+      }
+    }
+  }
+  for (const Probe& probe : model.scene().output.probes) {
+    for (const char* axis : kAxes) {
+      series.push_back({"probe/" + probe.name + "/" + axis, "m", std::string("displacement along ") + axis});
+    }
+  }
+  return series;
+}
+
+std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, std::int64_t iterations_before,
+                                  ThreadTeam& team) {
+  TetControls controls;
+  controls.Set(model, state.time);
+  double elastic = 0;
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    elastic += ElasticEnergy(model, b, controls.activation[b], state.positions, team);
+  }
+  std::vector<double> values = {elastic,
+                                KineticEnergy(model, state.velocities, team),
+                                state.external_work,
+                                state.dissipated,
+                                state.time_step,
+                                static_cast<double>(state.iterations - iterations_before)};
+  const std::vector<RegionReaction> reactions = RegionReactions(model);
+  const std::vector<Vec3> forces = Reactions(model, state, team);
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const VolumeRatios ratios = VolumeRatiosOf(model, b, state.positions);
+    values.insert(values.end(), {ratios.total, ratios.smallest, controls.activation[b]});
+    for (const RegionReaction& reaction : reactions) {
+      if (reaction.body != b) continue;
+      Vec3 sum = Vec3::Zero();
+      for (const std::size_t s : reaction.supports) sum += forces[s];
+      values.insert(values.end(), sum.begin(), sum.end());
+    }
+  }
+  for (const Probe& probe : model.scene().output.probes) {
+    const std::size_t n = NodeOf(model, probe);
+    const Vec3 displacement = state.positions[n] - model.rest_positions()[n];
+    values.insert(values.end(), displacement.begin(), displacement.end());
+  }
+  return values;
+}
+
+std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& state, ThreadTeam& team) {
+  TetControls controls;
+  controls.Set(model, state.time);
+  std::vector<BodyFrame> frames(model.bodies().size());
+  for (std::size_t b = 0; b < frames.size(); ++b) {
+    const TetBody& body = model.bodies()[b];
+    frames[b].positions.assign(state.positions.begin() + static_cast<std::ptrdiff_t>(body.node_begin),
+                               state.positions.begin() + static_cast<std::ptrdiff_t>(body.node_end));
+    for (const OutputField field : model.scene().output.fields) {
+      const FieldInfo info = InfoOf(field);
+      const FieldLocation location =
+          field == OutputField::kVelocity ? FieldLocation::kNode : FieldLocation::kTetrahedron;
+      frames[b].fields.push_back({info.name, location, ComponentsOf(field), info.unit,
+                                  FieldValuesOf(model, b, field, controls.activation[b], state, team)});
+    }
+  }
+  return frames;
+}
+
+}  // namespace fascicle

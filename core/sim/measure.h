@@ -1,0 +1,24 @@
+#ifndef FASCICLE_CORE_SIM_MEASURE_H_
+#define FASCICLE_CORE_SIM_MEASURE_H_
+
+#include <vector>
+
+#include "core/sim/frame.h"
+#include "core/tet/solver.h"
+
+// Turns a state into what a frame carries.
+namespace fascicle {
+
+// The series of a scene, in the order in which MeasureSeries gives their values.
+std::vector<SeriesInfo> SeriesOf(const TetModel& model);
+
+// `iterations_before`: of the linear solves up to the frame before.
+std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, std::int64_t iterations_before,
+                                  ThreadTeam& team);
+
+// Positions and the fields that the scene asks for, of every body.
+std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& state, ThreadTeam& team);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_SIM_MEASURE_H_

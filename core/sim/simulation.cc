@@ -1,0 +1,181 @@
+#include "core/sim/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/archive.h"
+#include "core/sim/fingerprint.h"
+#include "core/sim/measure.h"
+#include "core/tet/diagnostics.h"
+
+namespace fascicle {
+namespace {
+
+constexpr const char* kCheckpointKind = "fascicle checkpoint";
+constexpr std::uint32_t kCheckpointVersion = 1;
+
+struct ProblemText {
+  const char* reason;
+  const char* message;
+  const char* advice;
+};
+
+ProblemText TextOf(StepProblem problem) {
+  switch (problem) {
+    case StepProblem::kInvertedElement:
+      return {"INVERTED_ELEMENT", "elements turned inside out, also with the step cut to a thousandth",
+              "load, move or activate more slowly, use a smaller safety, a finer mesh where it bends, or a law that "
+              "resists compression"};
+    case StepProblem::kNotFinite:
+      return {"NOT_FINITE", "stresses are not finite numbers, also with the step cut to a thousandth",
+              "check loads and material parameters for their units"};
+    case StepProblem::kNotConverged:
+      return {"NOT_CONVERGED", "the linear solve of the damping did not reach its tolerance",
+              "use a larger solver_tolerance or less damping"};
+    case StepProblem::kUnstable:
+      return {"STEP_TOO_SMALL", "the motion gains energy, also with the step cut to a thousandth",
+              "leave time_step out, so that a stable step is found, or use a smaller safety"};
+    default:
+      return {"STEP_TOO_SMALL", "the stable step has become too small to get on",
+              "the elements named are the thinnest: load or move more slowly, repair the mesh there, or use a lower "
+              "bulk modulus or a higher density"};
+  }
+}
+
+}  // namespace
+
+struct Simulation::Impl {
+  Impl(std::shared_ptr<const Scene> s, int threads)
+      : scene(std::move(s)), team(threads), model(*scene), solver(model, team), series(SeriesOf(model)) {
+    const double intervals = scene->duration / scene->output.frame_interval;
+    // The allowance keeps rounding from adding a frame to a whole number of intervals.
+    last_frame = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(intervals * (1 - 1e-12))));
+  }
+
+  void StartFromRest() {
+    state = solver.InitialState();
+    next_frame = 0;
+    iterations_at_frame = 0;
+    settled = false;
+  }
+
+  double TimeOfFrame(std::int64_t frame) const {
+    return frame >= last_frame ? scene->duration : static_cast<double>(frame) * scene->output.frame_interval;
+  }
+
+  bool AtEnd() const { return settled || next_frame > last_frame; }
+
+  bool IsSettled() const {
+    return scene->output.settle_speed && state.step > 0 && state.time >= model.curves_end() &&
+           LargestSpeed(state.velocities) <= *scene->output.settle_speed;
+  }
+
+  Frame TakeFrame() {
+    Frame frame;
+    frame.index = next_frame;
+    frame.time = state.time;
+    frame.step = state.step;
+    frame.bodies = MeasureBodies(model, state, team);
+    frame.series = MeasureSeries(model, state, iterations_at_frame, team);
+    frame.digest = DigestOf(frame);
+    ++next_frame;
+    iterations_at_frame = state.iterations;
+    settled = IsSettled();
+    return frame;
+  }
+
+  std::string Checkpoint() const {
+    ArchiveWriter archive(kCheckpointKind, kCheckpointVersion);
+    archive.PutString("scene", Hex(fingerprint));
+    archive.PutInt("next_frame", next_frame);
+    archive.PutInt("iterations_at_frame", iterations_at_frame);
+    archive.PutInt("settled", settled ? 1 : 0);
+    state.Save(archive);
+    return archive.Finish();
+  }
+
+  bool Restore(std::string_view checkpoint) {
+    ArchiveReader archive(checkpoint, kCheckpointKind, kCheckpointVersion);
+    if (archive.GetString("scene") != Hex(fingerprint)) return false;
+    next_frame = archive.GetInt("next_frame");
+    iterations_at_frame = archive.GetInt("iterations_at_frame");
+    settled = archive.GetInt("settled") != 0;
+    state.Load(archive);
+    return archive.AtEnd();
+  }
+
+  Progress ProgressNow() const {
+    return {settled ? 1.0 : std::min(1.0, state.time / scene->duration), state.time, state.step, state.time_step};
+  }
+
+  Failure FailureOf(const StepReport& report) const {
+    const ProblemText text = TextOf(report.problem);
+    return {text.reason,         text.message, state.step, state.time, model.bodies()[report.bad.body].source->name,
+            report.bad.elements, text.advice};
+  }
+
+  std::shared_ptr<const Scene> scene;
+  ThreadTeam team;
+  TetModel model;
+  TetSolver solver;
+  std::vector<SeriesInfo> series;
+  Digest fingerprint = FingerprintOf(*scene);
+  std::int64_t last_frame = 0;
+
+  TetState state;
+  std::int64_t next_frame = 0;
+  std::int64_t iterations_at_frame = 0;
+  bool settled = false;
+};
+
+Simulation::Simulation(std::shared_ptr<const Scene> scene, int threads)
+    : impl_(std::make_unique<Impl>(std::move(scene), threads)) {
+  impl_->StartFromRest();
+}
+
+Simulation::~Simulation() = default;
+
+const std::vector<SeriesInfo>& Simulation::series() const { return impl_->series; }
+
+bool Simulation::Restore(std::string_view checkpoint) {
+  const bool restored = impl_->Restore(checkpoint);
+  if (!restored) impl_->StartFromRest();
+  return restored;
+}
+
+std::int64_t Simulation::next_frame() const { return impl_->next_frame; }
+
+Outcome Simulation::Run(FrameSink& sink, std::stop_token stop, std::chrono::milliseconds checkpoint_interval) {
+  using Clock = std::chrono::steady_clock;
+  Impl& run = *impl_;
+  Clock::time_point last_checkpoint = Clock::now();
+  while (!run.AtEnd()) {
+    const double frame_time = run.TimeOfFrame(run.next_frame);
+    while (run.state.time < frame_time) {
+      if (stop.stop_requested()) return {Outcome::Kind::kCancelled, {}};
+      const StepReport report = run.solver.Advance(run.state, frame_time);
+      if (report.problem != StepProblem::kNone) return {Outcome::Kind::kFailed, run.FailureOf(report)};
+      sink.PutProgress(run.ProgressNow());
+    }
+    Frame frame = run.TakeFrame();
+    std::string checkpoint;
+    if (run.AtEnd() || Clock::now() - last_checkpoint >= checkpoint_interval) {
+      checkpoint = run.Checkpoint();
+      last_checkpoint = Clock::now();
+    }
+    if (!sink.PutFrame(std::move(frame), std::move(checkpoint))) {
+      return {Outcome::Kind::kFailed,
+              {"STORAGE",
+               "a frame could not be stored",
+               run.state.step,
+               run.state.time,
+               {},
+               {},
+               "make room where results are kept, then start the job again"}};
+    }
+  }
+  return {Outcome::Kind::kSucceeded, {}};
+}
+
+}  // namespace fascicle

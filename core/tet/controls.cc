@@ -1,0 +1,70 @@
+#include "core/tet/controls.h"
+
+#include <Eigen/Geometry>
+
+namespace fascicle {
+namespace {
+
+template <class ValueOf>
+void Prescribe(const TetModel& model, const TetControls& controls, const ValueOf& value_of, NodalVector& values) {
+  for (std::size_t s = 0; s < model.supports().size(); ++s) {
+    const Support& support = model.supports()[s];
+    for (std::size_t i = 0; i < support.nodes.size(); ++i) {
+      const std::int32_t n = support.nodes[i];
+      const Vec3 value = value_of(controls.motions[s], model.rest_positions()[n]);
+      for (int c = 0; c < 3; ++c) {
+        if (support.owned[i][c]) values[n][c] = value[c];
+      }
+    }
+  }
+}
+
+}  // namespace
+
+RigidMotion MotionAt(const Motion& motion, double time) {
+  RigidMotion at;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!motion.translation[axis]) continue;
+    at.translation[axis] = motion.translation[axis]->At(time);
+    at.velocity[axis] = motion.translation[axis]->RateAt(time);
+  }
+  if (motion.rotation) {
+    const Rotation& rotation = *motion.rotation;
+    at.rotation = Eigen::AngleAxisd(rotation.angle.At(time), rotation.axis).toRotationMatrix();
+    at.angular_velocity = rotation.angle.RateAt(time) * rotation.axis;
+    at.point = rotation.point;
+  }
+  return at;
+}
+
+void TetControls::Set(const TetModel& model, double at_time) {
+  time = at_time;
+  activation.resize(model.bodies().size());
+  for (std::size_t b = 0; b < activation.size(); ++b) activation[b] = model.bodies()[b].source->activation.At(time);
+  load_scale.resize(model.loads().size());
+  for (std::size_t k = 0; k < load_scale.size(); ++k) load_scale[k] = model.loads()[k].scale->At(time);
+  gravity = model.scene().gravity.scale.At(time) * model.scene().gravity.acceleration;
+  motions.resize(model.supports().size());
+  for (std::size_t s = 0; s < motions.size(); ++s) motions[s] = MotionAt(model.supports()[s].source->motion, time);
+}
+
+void PrescribePositions(const TetModel& model, const TetControls& controls, NodalVector& positions) {
+  Prescribe(
+      model, controls, [](const RigidMotion& motion, const Vec3& X) { return motion.PositionOf(X); }, positions);
+}
+
+void PrescribeVelocities(const TetModel& model, const TetControls& controls, NodalVector& velocities) {
+  Prescribe(
+      model, controls, [](const RigidMotion& motion, const Vec3& X) { return motion.VelocityOf(X); }, velocities);
+}
+
+void ExternalForce(const TetModel& model, const TetControls& controls, ThreadTeam& team, NodalVector& force) {
+  force.resize(model.nodes());
+  ForNodes(team, model.nodes(), [&](std::size_t n) { force[n] = model.mass()[n] * controls.gravity; });
+  for (std::size_t k = 0; k < model.loads().size(); ++k) {
+    const NodalLoad& load = model.loads()[k];
+    for (std::size_t i = 0; i < load.nodes.size(); ++i) force[load.nodes[i]] += controls.load_scale[k] * load.forces[i];
+  }
+}
+
+}  // namespace fascicle

@@ -1,0 +1,86 @@
+#include "core/tet/diagnostics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascicle {
+namespace {
+
+struct NodalForces {
+  TetControls controls;
+  NodalVector elastic, viscous, external;
+
+  NodalForces(const TetModel& model, const TetState& state, ThreadTeam& team) {
+    CornerForceArray corners;
+    controls.Set(model, state.time);
+    ElasticForce(model, controls.activation, state.positions, team, corners, elastic);
+    ViscousForce(model, state.positions, state.velocities, team, corners, viscous);
+    ExternalForce(model, controls, team, external);
+  }
+};
+
+// Difference from now to a little later: a linear curve has no rate but at its points, and there the one after counts.
+Vec3 PrescribedAcceleration(const Motion& motion, const RigidMotion& now, double time, double interval, const Vec3& X) {
+  if (interval <= 0) return Vec3::Zero();
+  return (MotionAt(motion, time + interval).VelocityOf(X) - now.VelocityOf(X)) / interval;
+}
+
+}  // namespace
+
+double KineticEnergy(const TetModel& model, const NodalVector& v, ThreadTeam& team) {
+  return 0.5 * SumOverNodes(team, v.size(), [&](std::size_t n) { return model.mass()[n] * v[n].squaredNorm(); });
+}
+
+VolumeRatios VolumeRatiosOf(const TetModel& model, std::size_t body_index, const NodalVector& x) {
+  const TetBody& body = model.bodies()[body_index];
+  VolumeRatios ratios;
+  double rest = 0, present = 0;
+  for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
+    const double volume = Determinant(EdgeMatrix(x, model.corners()[e])) / 6;
+    const double J = volume / model.rest_volume()[e];
+    rest += model.rest_volume()[e];
+    present += volume;
+    if (e == body.tet_begin || !(J >= ratios.smallest)) ratios.smallest = J;
+  }
+  ratios.total = present / rest;
+  return ratios;
+}
+
+std::vector<Vec3> Reactions(const TetModel& model, const TetState& state, ThreadTeam& team) {
+  const NodalForces forces(model, state, team);
+  std::vector<Vec3> reactions(model.supports().size(), Vec3::Zero());
+  for (std::size_t s = 0; s < reactions.size(); ++s) {
+    const Support& support = model.supports()[s];
+    for (std::size_t i = 0; i < support.nodes.size(); ++i) {
+      const std::int32_t n = support.nodes[i];
+      const Vec3 acceleration = PrescribedAcceleration(support.source->motion, forces.controls.motions[s], state.time,
+                                                       state.time_step, model.rest_positions()[n]);
+      const Vec3 inertia = model.mass()[n] * (acceleration + model.mass_damping()[n] * state.velocities[n]);
+      const Vec3 reaction = inertia - forces.elastic[n] - forces.viscous[n] - forces.external[n];
+      for (int c = 0; c < 3; ++c) {
+        if (support.owned[i][c]) reactions[s][c] += reaction[c];
+      }
+    }
+  }
+  return reactions;
+}
+
+double LargestSpeed(const NodalVector& v) {
+  double largest = 0;
+  for (const Vec3& velocity : v) largest = std::max(largest, velocity.squaredNorm());
+  return std::sqrt(largest);
+}
+
+double EquilibriumResidual(const TetModel& model, const TetState& state, ThreadTeam& team) {
+  const NodalForces forces(model, state, team);
+  double residual = 0, largest = 0;
+  for (std::size_t n = 0; n < model.nodes(); ++n) {
+    const Vec3 free = model.mass()[n] * model.inverse_mass()[n];
+    const Vec3 sum = forces.elastic[n] + forces.viscous[n] + forces.external[n];
+    residual = std::max(residual, free.cwiseProduct(sum).norm());
+    largest = std::max({largest, forces.elastic[n].norm(), forces.viscous[n].norm(), forces.external[n].norm()});
+  }
+  return largest > 0 ? residual / largest : 0;
+}
+
+}  // namespace fascicle

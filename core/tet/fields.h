@@ -1,0 +1,21 @@
+#ifndef FASCICLE_CORE_TET_FIELDS_H_
+#define FASCICLE_CORE_TET_FIELDS_H_
+
+#include <vector>
+
+#include "core/tet/model.h"
+#include "core/tet/state.h"
+
+namespace fascicle {
+
+// Number of components of a field: 1, 3 or 6 (xx yy zz xy yz xz).
+int ComponentsOf(OutputField field);
+
+// Values of a field over the nodes (velocity) or elements (all others) of one body, component fastest, as in
+// scene.proto Field. Stresses are elastic and active, without the viscous part. `activation` is the body's.
+std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body, OutputField field, double activation,
+                                  const TetState& state, ThreadTeam& team);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_TET_FIELDS_H_

@@ -1,0 +1,143 @@
+#include "core/tet/solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascicle {
+namespace {
+
+// Steps between two searches for the stable step: fewer while it changes, more while it does not.
+constexpr std::int64_t kFirstInterval = 64;
+constexpr std::int64_t kShortestInterval = 32;
+constexpr std::int64_t kLongestInterval = 1024;
+constexpr double kMuchChange = 0.05;
+constexpr double kLittleChange = 0.02;
+// An activation that has changed by more since the last search makes another one due.
+constexpr double kActivationChange = 0.1;
+// Searches are not repeated within so many steps for an alarm.
+constexpr std::int64_t kAlarmPause = 16;
+// Good steps after which a cut is taken back.
+constexpr std::int64_t kGrowAfter = 50;
+// A run that needs more steps than that to its next frame goes nowhere.
+constexpr double kMostSteps = 1e9;
+
+}  // namespace
+
+TetSolver::TetSolver(const TetModel& model, ThreadTeam& team)
+    : model_(model), team_(team), method_(model.scene().method) {}
+
+TetState TetSolver::InitialState() {
+  TetState state;
+  controls_now_.Set(model_, 0);
+  state.positions = model_.rest_positions();
+  state.velocities.assign(model_.nodes(), Vec3::Zero());
+  PrescribePositions(model_, controls_now_, state.positions);
+  PrescribeVelocities(model_, controls_now_, state.velocities);
+  if (method_.stepping == Stepping::kExplicit && model_.has_strain_damping()) {
+    ElasticAndViscousForce(model_, controls_now_.activation, state.positions, state.velocities, team_, corners_,
+                           state.force);
+  } else {
+    ElasticForce(model_, controls_now_.activation, state.positions, team_, corners_, state.force);
+  }
+  state.stable.activation.assign(model_.bodies().size(), 0.0);
+  return state;
+}
+
+StepReport TetSolver::Advance(TetState& state, double end) {
+  if (IsStableStepDue(state)) RefreshStableStep(state);
+  for (;;) {
+    const double target = TargetStep(state);
+    const double remaining = end - state.time;
+    // The allowance keeps rounding from adding a step to a whole number of them.
+    const double steps = std::ceil(remaining / target * (1 - 1e-9));
+    if (!(steps < kMostSteps)) {
+      StepReport report;
+      report.problem = std::isnan(target) ? StepProblem::kNotFinite : StepProblem::kStepTooSmall;
+      return Fail(state, report);
+    }
+    const double next_time = steps <= 1 ? end : state.time + remaining / steps;
+    StepReport report = Step(state, next_time, next_);
+    if (report.problem == StepProblem::kNone && report.stiffness_of_motion > 4 &&
+        IsReallyUnstable(state, next_time - state.time)) {
+      report.problem = StepProblem::kUnstable;
+    }
+    if (report.problem == StepProblem::kNone) {
+      Accept(state);
+      return report;
+    }
+    if (state.cuts >= kMaxCuts) return Fail(state, report);
+    ++state.cuts;
+    state.last_cut = state.step;
+    if (state.stable.found_at != state.step) RefreshStableStep(state);
+  }
+}
+
+double TetSolver::StableStepAt(const TetState& state) {
+  controls_now_.Set(model_, state.time);
+  return LargestStableStep(model_, controls_now_.activation, state.positions, method_.stepping == Stepping::kExplicit,
+                           team_, corners_, stable_step_);
+}
+
+bool TetSolver::IsStableStepDue(const TetState& state) {
+  if (method_.time_step) return false;
+  const StableStep& stable = state.stable;
+  if (stable.found_at < 0 || state.step >= stable.found_at + stable.interval) return true;
+  for (std::size_t b = 0; b < model_.bodies().size(); ++b) {
+    const double now = model_.bodies()[b].source->activation.At(state.time);
+    if (std::abs(now - stable.activation[b]) > kActivationChange) return true;
+  }
+  return false;
+}
+
+void TetSolver::RefreshStableStep(TetState& state) {
+  StableStep& stable = state.stable;
+  const double before = stable.limit;
+  stable.limit = StableStepAt(state);
+  if (stable.found_at < 0) {
+    stable.interval = kFirstInterval;
+  } else {
+    const double change = std::abs(stable.limit - before) / before;
+    if (!(change < kMuchChange)) {
+      stable.interval = std::max(stable.interval / 2, kShortestInterval);
+    } else if (change < kLittleChange) {
+      stable.interval = std::min(stable.interval * 2, kLongestInterval);
+    }
+  }
+  stable.found_at = state.step;
+  stable.activation = controls_now_.activation;
+}
+
+double TetSolver::TargetStep(const TetState& state) const {
+  const double whole = method_.time_step ? *method_.time_step : method_.safety * state.stable.limit;
+  return std::ldexp(whole, -state.cuts);
+}
+
+// Motion that is too stiff for the step is the mark of instability, but also of a motion that has just come to rest:
+// the stable step at this state decides.
+bool TetSolver::IsReallyUnstable(TetState& state, double dt) {
+  if (state.stable.found_at < 0 || state.step >= state.stable.found_at + kAlarmPause) RefreshStableStep(state);
+  return !(dt <= state.stable.limit);
+}
+
+void TetSolver::Accept(TetState& state) {
+  next_.stable = state.stable;
+  next_.cuts = state.cuts;
+  next_.last_cut = state.last_cut;
+  if (next_.cuts > 0 && next_.step >= next_.last_cut + kGrowAfter) {
+    --next_.cuts;
+    next_.last_cut = next_.step;
+  }
+  std::swap(state, next_);
+}
+
+// Says where: the elements that the attempt broke, or else the thinnest one, which asks for the smallest step.
+StepReport TetSolver::Fail(const TetState& state, StepReport report) const {
+  if (report.problem == StepProblem::kInvertedElement) {
+    report.bad = FindBadElements(model_, controls_next_.activation, next_.positions);
+    if (!report.bad.inverted) report.problem = StepProblem::kNotFinite;
+  }
+  if (report.bad.elements.empty()) report.bad = FindThinnestElement(model_, state.positions);
+  return report;
+}
+
+}  // namespace fascicle

@@ -1,0 +1,83 @@
+#ifndef FASCICLE_CORE_TET_SOLVER_H_
+#define FASCICLE_CORE_TET_SOLVER_H_
+
+#include "core/linalg/conjugate_gradient.h"
+#include "core/tet/bad_elements.h"
+#include "core/tet/controls.h"
+#include "core/tet/forces.h"
+#include "core/tet/stable_step.h"
+#include "core/tet/state.h"
+
+namespace fascicle {
+
+// What can go wrong with a step.
+enum class StepProblem { kNone, kInvertedElement, kNotFinite, kNotConverged, kUnstable, kStepTooSmall };
+
+struct StepReport {
+  StepProblem problem = StepProblem::kNone;
+  int iterations = 0;  // of linear solves
+  // Curvature of the energy along the motion of this step times dt^2: a Rayleigh quotient of M^-1 K. The central
+  // difference method can't stay above 4.
+  double stiffness_of_motion = 0;
+  BadElements bad;  // where, when a step can't be made
+};
+
+// Steps a model in time by Lagrangian finite volumes [Teran 2003]. One thread at a time.
+class TetSolver {
+ public:
+  // Model and team must outlive the solver.
+  TetSolver(const TetModel& model, ThreadTeam& team);
+
+  // At rest at time 0, with what is prescribed at that time.
+  TetState InitialState();
+
+  // Makes one step towards `end` [s], which it never passes and hits exactly. A step that inverts an element, gives
+  // values that are not finite or gains energy from instability is made again with half the length, up to
+  // kMaxCuts times. On a problem the state keeps its time and motion.
+  StepReport Advance(TetState& state, double end);
+
+  // One attempt to step from `now` to `next_time`, without cutting; fills all of `next` but what Advance looks after.
+  StepReport Step(const TetState& now, double next_time, TetState& next);
+
+  // The largest stable step at a state [s], see LargestStableStep.
+  double StableStepAt(const TetState& state);
+
+  static constexpr int kMaxCuts = 10;
+
+ private:
+  // Central difference method in its kick-drift-kick form; viscous forces take the velocity of the half step.
+  StepReport StepExplicit(const TetState& now, double dt, TetState& next);
+  // Elastic forces explicit, damping implicit [Teran 2003, 4.3].
+  StepReport StepMixed(const TetState& now, double dt, TetState& next);
+
+  void Drift(const TetState& now, double dt, TetState& next);
+  CgResult SolveDamping(const NodalVector& x, const NodalVector& internal, const NodalVector& external,
+                        double half_step, TetState& next);
+  ForceReport UpdateForce(const NodalVector* viscous_velocity, TetState& next);
+  double StiffnessOfMotion(const TetState& now, const TetState& next, double half_step_energy) const;
+  double TwiceKineticEnergyOfFree(const NodalVector& v) const;
+  void AddExternalWork(const TetState& now, TetState& next) const;
+
+  bool IsStableStepDue(const TetState& state);
+  void RefreshStableStep(TetState& state);
+  double TargetStep(const TetState& state) const;
+  bool IsReallyUnstable(TetState& state, double dt);
+  void Accept(TetState& state);
+  StepReport Fail(const TetState& state, StepReport report) const;
+
+  const TetModel& model_;
+  ThreadTeam& team_;
+  const TetMethod& method_;
+  // Scratch: nothing here outlives a step.
+  TetControls controls_now_, controls_next_;
+  NodalVector external_now_, external_next_;
+  NodalVector right_side_, inverse_diagonal_;
+  CornerForceArray corners_;
+  CgWorkspace cg_;
+  StableStepWorkspace stable_step_;
+  TetState next_;
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_TET_SOLVER_H_

@@ -1,0 +1,43 @@
+#include "core/tet/state.h"
+
+#include <span>
+
+namespace fascicle {
+
+void TetState::Save(ArchiveWriter& archive) const {
+  archive.PutDouble("time", time);
+  archive.PutInt("step", step);
+  archive.PutVectors("positions", positions);
+  archive.PutVectors("velocities", velocities);
+  archive.PutVectors("force", force);
+  archive.PutDouble("time_step", time_step);
+  archive.PutDouble("external_work", external_work);
+  archive.PutDouble("dissipated", dissipated);
+  archive.PutDouble("stable.limit", stable.limit);
+  archive.PutInt("stable.found_at", stable.found_at);
+  archive.PutInt("stable.interval", stable.interval);
+  archive.PutDoubles("stable.activation", stable.activation);
+  archive.PutInt("cuts", cuts);
+  archive.PutInt("last_cut", last_cut);
+  archive.PutInt("iterations", iterations);
+}
+
+void TetState::Load(ArchiveReader& archive) {
+  time = archive.GetDouble("time");
+  step = archive.GetInt("step");
+  archive.GetVectors("positions", std::span(positions));
+  archive.GetVectors("velocities", std::span(velocities));
+  archive.GetVectors("force", std::span(force));
+  time_step = archive.GetDouble("time_step");
+  external_work = archive.GetDouble("external_work");
+  dissipated = archive.GetDouble("dissipated");
+  stable.limit = archive.GetDouble("stable.limit");
+  stable.found_at = archive.GetInt("stable.found_at");
+  stable.interval = archive.GetInt("stable.interval");
+  archive.GetDoubles("stable.activation", std::span(stable.activation));
+  cuts = static_cast<std::int32_t>(archive.GetInt("cuts"));
+  last_cut = archive.GetInt("last_cut");
+  iterations = archive.GetInt("iterations");
+}
+
+}  // namespace fascicle

@@ -1,0 +1,177 @@
+// One step of each stepping: TetSolver::Step and what it is made of.
+#include "core/tet/solver.h"
+
+namespace fascicle {
+namespace {
+
+constexpr int kMaxCgIterations = 2000;
+
+StepProblem ProblemOf(const ForceReport& report, const CgResult& solve = {true, 0}) {
+  if (!report.valid) return StepProblem::kInvertedElement;
+  return solve.converged ? StepProblem::kNone : StepProblem::kNotConverged;
+}
+
+}  // namespace
+
+StepReport TetSolver::Step(const TetState& now, double next_time, TetState& next) {
+  const double dt = next_time - now.time;
+  next.time = next_time;
+  next.step = now.step + 1;
+  next.time_step = dt;
+  next.dissipated = now.dissipated;
+  next.iterations = now.iterations;
+  controls_now_.Set(model_, now.time);
+  controls_next_.Set(model_, next_time);
+  ExternalForce(model_, controls_now_, team_, external_now_);
+  ExternalForce(model_, controls_next_, team_, external_next_);
+  const StepReport report =
+      method_.stepping == Stepping::kExplicit ? StepExplicit(now, dt, next) : StepMixed(now, dt, next);
+  AddExternalWork(now, next);
+  return report;
+}
+
+StepReport TetSolver::StepExplicit(const TetState& now, double dt, TetState& next) {
+  StepReport report;
+  const double h = dt / 2;
+  const NodalVector& inverse_mass = model_.inverse_mass();
+  const std::vector<double>& a = model_.mass_damping();
+
+  // v_half = v + dt/2 (M^-1 f - a v)
+  next.velocities.resize(model_.nodes());
+  ForNodes(team_, model_.nodes(), [&](std::size_t n) {
+    next.velocities[n] =
+        (1 - h * a[n]) * now.velocities[n] + h * inverse_mass[n].cwiseProduct(now.force[n] + external_now_[n]);
+  });
+  // x' = x + dt v_half
+  Drift(now, dt, next);
+  // f' = f(x', v_half)
+  const ForceReport forces = UpdateForce(model_.has_strain_damping() ? &next.velocities : nullptr, next);
+  const double half_step_energy = TwiceKineticEnergyOfFree(next.velocities);
+  report.stiffness_of_motion = StiffnessOfMotion(now, next, half_step_energy);
+  next.dissipated += dt * forces.dissipated_power;
+  if (model_.has_mass_damping()) {
+    next.dissipated += dt * SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
+                         return a[n] * model_.mass()[n] * next.velocities[n].squaredNorm();
+                       });
+  }
+  // v' = v_half + dt/2 (M^-1 f' - a v')
+  ForNodes(team_, model_.nodes(), [&](std::size_t n) {
+    next.velocities[n] =
+        (next.velocities[n] + h * inverse_mass[n].cwiseProduct(next.force[n] + external_next_[n])) / (1 + h * a[n]);
+  });
+  PrescribeVelocities(model_, controls_next_, next.velocities);
+  report.problem = ProblemOf(forces);
+  return report;
+}
+
+StepReport TetSolver::StepMixed(const TetState& now, double dt, TetState& next) {
+  StepReport report;
+  // (M - dt/2 D) v_half = M v + dt/2 f(x)
+  next.velocities = now.velocities;
+  const CgResult first = SolveDamping(now.positions, now.force, external_now_, dt / 2, next);
+  // x' = x + dt v_half
+  Drift(now, dt, next);
+  // f' = f(x')
+  const ForceReport forces = UpdateForce(nullptr, next);
+  report.stiffness_of_motion = StiffnessOfMotion(now, next, TwiceKineticEnergyOfFree(next.velocities));
+  report.problem = ProblemOf(forces, first);
+  report.iterations = first.iterations;
+  if (report.problem != StepProblem::kNone) return report;
+  // (M - dt/2 D) v' = M v_half + dt/2 f'
+  const CgResult second = SolveDamping(next.positions, next.force, external_next_, dt / 2, next);
+  report.problem = ProblemOf(forces, second);
+  report.iterations += second.iterations;
+  next.iterations += report.iterations;
+  return report;
+}
+
+// x' = x + dt v_half; what is prescribed gets its place, and in v_half the velocity that leads there.
+void TetSolver::Drift(const TetState& now, double dt, TetState& next) {
+  next.positions.resize(model_.nodes());
+  ForNodes(team_, model_.nodes(),
+           [&](std::size_t n) { next.positions[n] = now.positions[n] + dt * next.velocities[n]; });
+  PrescribePositions(model_, controls_next_, next.positions);
+  for (const Support& support : model_.supports()) {
+    for (std::size_t i = 0; i < support.nodes.size(); ++i) {
+      const std::int32_t n = support.nodes[i];
+      for (int c = 0; c < 3; ++c) {
+        if (support.owned[i][c]) next.velocities[n][c] = (next.positions[n][c] - now.positions[n][c]) / dt;
+      }
+    }
+  }
+}
+
+ForceReport TetSolver::UpdateForce(const NodalVector* viscous_velocity, TetState& next) {
+  const std::span<const double> activation = controls_next_.activation;
+  if (viscous_velocity == nullptr) {
+    return ElasticForce(model_, activation, next.positions, team_, corners_, next.force);
+  }
+  return ElasticAndViscousForce(model_, activation, next.positions, *viscous_velocity, team_, corners_, next.force);
+}
+
+// Solves (M + dt/2 a M - dt/2 D) v = M v0 + dt/2 f for v with v0 = next.velocities, where prescribed components keep
+// their value; D is the viscous operator at positions x, half_step is dt/2.
+CgResult TetSolver::SolveDamping(const NodalVector& x, const NodalVector& internal, const NodalVector& external,
+                                 double half_step, TetState& next) {
+  const std::vector<double>& mass = model_.mass();
+  const std::vector<double>& a = model_.mass_damping();
+  const NodalVector& inverse_mass = model_.inverse_mass();
+  NodalVector& v = next.velocities;
+  right_side_.resize(model_.nodes());
+  ForNodes(team_, model_.nodes(),
+           [&](std::size_t n) { right_side_[n] = mass[n] * v[n] + half_step * (internal[n] + external[n]); });
+  if (!model_.has_strain_damping()) {
+    next.dissipated += SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
+      // Zero inverse mass keeps prescribed components.
+      const Vec3 free = mass[n] * inverse_mass[n];
+      const Vec3 solved = right_side_[n] / (mass[n] * (1 + half_step * a[n]));
+      v[n] = free.cwiseProduct(solved) + (Vec3::Ones() - free).cwiseProduct(v[n]);
+      return half_step * a[n] * mass[n] * v[n].squaredNorm();
+    });
+    return {true, 0};
+  }
+  inverse_diagonal_.resize(model_.nodes());
+  ViscousDiagonal(model_, x, team_, corners_, inverse_diagonal_);
+  ForNodes(team_, model_.nodes(), [&](std::size_t n) {
+    const Vec3 diagonal = Vec3::Constant(mass[n] * (1 + half_step * a[n])) + half_step * inverse_diagonal_[n];
+    inverse_diagonal_[n] = (mass[n] * inverse_mass[n]).cwiseQuotient(diagonal);
+  });
+  const auto apply = [&](const NodalVector& p, NodalVector& q) {
+    ViscousForce(model_, x, p, team_, corners_, q);
+    ForNodes(team_, model_.nodes(),
+             [&](std::size_t n) { q[n] = mass[n] * (1 + half_step * a[n]) * p[n] - half_step * q[n]; });
+  };
+  const CgResult result = ConjugateGradient(team_, apply, inverse_diagonal_, right_side_, method_.solver_tolerance,
+                                            kMaxCgIterations, v, cg_);
+  // A v = b - r, so the energy lost in this half step, v . (A - M) v, takes no further product.
+  next.dissipated += SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
+    return v[n].dot(right_side_[n] - cg_.residual[n] - mass[n] * v[n]);
+  });
+  return result;
+}
+
+double TetSolver::TwiceKineticEnergyOfFree(const NodalVector& v) const {
+  return SumOverNodes(team_, v.size(), [&](std::size_t n) {
+    const double m = model_.mass()[n];
+    return m * m * model_.inverse_mass()[n].dot(v[n].cwiseAbs2());
+  });
+}
+
+double TetSolver::StiffnessOfMotion(const TetState& now, const TetState& next, double half_step_energy) const {
+  if (!(half_step_energy > 0)) return 0;
+  const double work = SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
+    const Vec3 free = model_.mass()[n] * model_.inverse_mass()[n];
+    return free.dot((next.force[n] - now.force[n]).cwiseProduct(next.positions[n] - now.positions[n]));
+  });
+  return -work / half_step_energy;
+}
+
+void TetSolver::AddExternalWork(const TetState& now, TetState& next) const {
+  next.external_work = now.external_work;
+  if (!model_.has_gravity() && model_.loads().empty()) return;
+  next.external_work += 0.5 * SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
+                          return (external_now_[n] + external_next_[n]).dot(next.positions[n] - now.positions[n]);
+                        });
+}
+
+}  // namespace fascicle
