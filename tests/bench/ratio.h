@@ -1,0 +1,97 @@
+#ifndef FASCICLE_TESTS_BENCH_RATIO_H_
+#define FASCICLE_TESTS_BENCH_RATIO_H_
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+// Comparisons in one run: A and B take turns, and only their ratio within a round counts, since absolute figures move
+// with whatever else the machine does.
+namespace fascicle::bench {
+
+// CPU seconds of the whole machine and of this process (with the children it has waited for) since their start.
+struct CpuTime {
+  double machine = 0;  // busy, all cores
+  double own = 0;
+
+  static CpuTime Now() {
+    CpuTime now;
+    std::ifstream stat("/proc/stat");
+    std::string label;
+    double user = 0, nice = 0, system = 0, idle = 0, iowait = 0, irq = 0, softirq = 0, steal = 0;
+    stat >> label >> user >> nice >> system >> idle >> iowait >> irq >> softirq >> steal;
+    now.machine = (user + nice + system + irq + softirq + steal) / static_cast<double>(sysconf(_SC_CLK_TCK));
+    for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+      rusage usage = {};
+      getrusage(who, &usage);
+      now.own += static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+                 1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+    }
+    return now;
+  }
+};
+
+inline double Median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+template <class Function>
+double SecondsOf(const Function& function) {
+  const auto start = std::chrono::steady_clock::now();
+  function();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Runs A and B in turns and prints the medians of their times, a warning when other processes took more than 5 % of the
+// machine meanwhile, and the line
+//
+//   ratio NAME VALUE
+//
+// with the median over the rounds of time(B) / time(A): how many times faster A is. Both must do the same amount of
+// work. Each runs once before the first round, so that caches and memory are warm.
+//   rounds  at least 9; each swaps who goes first
+template <class FunctionA, class FunctionB>
+double MedianRatio(const std::string& name, int rounds, const FunctionA& a, const FunctionB& b) {
+  a();
+  b();
+  std::vector<double> times_a, times_b, ratios;
+  const CpuTime cpu_before = CpuTime::Now();
+  const double wall = SecondsOf([&] {
+    for (int round = 0; round < std::max(rounds, 9); ++round) {
+      double time_a = 0, time_b = 0;
+      if (round % 2 == 0) {
+        time_a = SecondsOf(a);
+        time_b = SecondsOf(b);
+      } else {
+        time_b = SecondsOf(b);
+        time_a = SecondsOf(a);
+      }
+      times_a.push_back(time_a);
+      times_b.push_back(time_b);
+      ratios.push_back(time_b / time_a);
+    }
+  });
+  const CpuTime cpu_after = CpuTime::Now();
+  const double others = (cpu_after.machine - cpu_before.machine) - (cpu_after.own - cpu_before.own);
+  const double share = others / (wall * static_cast<double>(sysconf(_SC_NPROCESSORS_ONLN)));
+  const double ratio = Median(ratios);
+  std::printf("%s: A %.6g s, B %.6g s (medians of %zu rounds), ratios %.3f to %.3f\n", name.c_str(), Median(times_a),
+              Median(times_b), ratios.size(), *std::min_element(ratios.begin(), ratios.end()),
+              *std::max_element(ratios.begin(), ratios.end()));
+  if (share > 0.05) std::printf("warning: other processes took %.0f %% of the machine meanwhile\n", 100 * share);
+  std::printf("ratio %s %.3f\n", name.c_str(), ratio);
+  std::fflush(stdout);
+  return ratio;
+}
+
+}  // namespace fascicle::bench
+
+#endif  // FASCICLE_TESTS_BENCH_RATIO_H_
