@@ -31,8 +31,8 @@ struct Error {
 template <class T>
 class Result {
  public:
-  Result(T value) : value_(std::move(value)) {}        // NOLINT(google-explicit-constructor): reads like a return value
-  Result(Error error) : error_(std::move(error)) {}    // NOLINT(google-explicit-constructor)
+  Result(T value) : value_(std::move(value)) {}      // NOLINT(google-explicit-constructor): reads like a return value
+  Result(Error error) : error_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
   bool ok() const { return value_.has_value(); }
   T& value() { return *value_; }
   const T& value() const { return *value_; }
@@ -46,7 +46,7 @@ class Result {
 // A file that a scene names, read into memory.
 struct AssetFile {
   std::string sha256_hex;
-  std::string path;   // where it came from, for messages
+  std::string path;  // where it came from, for messages
   std::string bytes;
 };
 
@@ -66,13 +66,14 @@ struct WatchOptions {
 
 // What Watch tells; all called on the thread that called Watch. Any may be empty.
 struct WatchEvents {
-  std::function<void(const v1::Frame& frame)> frame;                                     // complete, digest checked
+  std::function<void(const v1::Frame& frame)> frame;  // complete, checksums right
   std::function<void(v1::Job::State state, const v1::Progress& progress)> progress;
   std::function<void(const std::string& message)> reconnecting;
 };
 
-// A connection to a server. Thread-safe. Calls are repeated on UNAVAILABLE with backoff; CreateJob only with its
-// request id, so that a job is never created twice.
+// A connection to a server ("HOST:PORT"). Thread-safe. The first call fails with kNoServer after some seconds when
+// nothing answers there. Calls are repeated on UNAVAILABLE with backoff; CreateJob only with its request id, so that a
+// job is never created twice.
 class Client {
  public:
   explicit Client(const std::string& address);
@@ -87,11 +88,13 @@ class Client {
   Result<std::vector<v1::Job>> ListJobs(int limit, const std::vector<v1::Job::State>& states);
   Result<v1::Job> CancelJob(const std::string& name);
   std::optional<Error> DeleteJob(const std::string& name);
-  Result<v1::Geometry> GetGeometry(const std::string& name);
+  // Waits until the job was started; kStopped after a stop request.
+  Result<v1::Geometry> GetGeometry(const std::string& name, std::stop_token stop = {});
   Result<std::vector<v1::FrameInfo>> ListFrames(const std::string& name, std::int64_t start_index);
   // Delivers frames from start_index, each once and in order, reconnecting and resuming by itself; returns the job
   // when the stream is complete. kStopped after a stop request.
-  Result<v1::Job> Watch(const std::string& name, const WatchOptions& options, const WatchEvents& events, std::stop_token stop = {});
+  Result<v1::Job> Watch(const std::string& name, const WatchOptions& options, const WatchEvents& events,
+                        std::stop_token stop = {});
 
  private:
   struct Impl;

@@ -1,0 +1,164 @@
+#include "client/lib/client.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <random>
+#include <utility>
+
+#include "client/lib/connection.h"
+#include "client/lib/status_error.h"
+#include "client/lib/upload.h"
+#include "client/lib/watch.h"
+
+namespace fascicle::client {
+namespace {
+
+constexpr std::chrono::seconds kTimeout(30);
+// The server reads and checks all meshes of the scene, and solves for fibres, before it answers.
+constexpr std::chrono::seconds kCreateTimeout(900);
+
+// 128 random bits: no two requests of the world share one.
+std::string RandomRequestId() {
+  std::random_device random;
+  std::string id;
+  for (int i = 0; i < 4; ++i) {
+    std::array<char, 9> hex;
+    std::snprintf(hex.data(), hex.size(), "%08x", random());
+    id += hex.data();
+  }
+  return id;
+}
+
+}  // namespace
+
+struct Client::Impl {
+  explicit Impl(const std::string& address) : connection(address) {}
+
+  // A unary call with its error.
+  template <class Response, class Call>
+  Result<Response> Ask(std::chrono::seconds timeout, const Call& call) {
+    Response response;
+    const grpc::Status status =
+        connection.Repeat(timeout, [&](grpc::ClientContext& context) { return call(context, response); });
+    if (!status.ok()) return ErrorOf(status, connection.address());
+    return response;
+  }
+
+  // Uploads what is missing, then asks for the job; again when an asset went missing in between.
+  Result<v1::Job> Create(const ScenePackage& package, const v1::CreateJobRequest& request) {
+    constexpr int kAttempts = 3;
+    for (int attempt = 1;; ++attempt) {
+      if (grpc::Status status = UploadMissing(connection, package.assets); !status.ok()) {
+        return ErrorOf(status, connection.address());
+      }
+      Result<v1::Job> job = Ask<v1::Job>(kCreateTimeout, [&](grpc::ClientContext& context, v1::Job& response) {
+        return connection.jobs().CreateJob(&context, request, &response);
+      });
+      if (job.ok() || job.error().reason != "MISSING_ASSET" || attempt == kAttempts) return job;
+    }
+  }
+
+  Connection connection;
+};
+
+Client::Client(const std::string& address) : impl_(std::make_unique<Impl>(address)) {}
+
+Client::~Client() = default;
+
+Result<v1::ServerInfo> Client::GetServerInfo() {
+  return impl_->Ask<v1::ServerInfo>(kTimeout, [this](grpc::ClientContext& context, v1::ServerInfo& response) {
+    return impl_->connection.server().GetServerInfo(&context, {}, &response);
+  });
+}
+
+Result<v1::Job> Client::Submit(const ScenePackage& package, int threads) {
+  v1::CreateJobRequest request;
+  *request.mutable_job()->mutable_scene() = package.scene;
+  request.mutable_job()->set_threads(threads);
+  request.set_request_id(RandomRequestId());
+  return impl_->Create(package, request);
+}
+
+std::optional<Error> Client::Validate(const ScenePackage& package, int threads) {
+  v1::CreateJobRequest request;
+  *request.mutable_job()->mutable_scene() = package.scene;
+  request.mutable_job()->set_threads(threads);
+  request.set_validate_only(true);
+  const Result<v1::Job> job = impl_->Create(package, request);
+  if (job.ok()) return std::nullopt;
+  return job.error();
+}
+
+Result<v1::Job> Client::GetJob(const std::string& name) {
+  v1::GetJobRequest request;
+  request.set_name(name);
+  return impl_->Ask<v1::Job>(kTimeout, [&](grpc::ClientContext& context, v1::Job& response) {
+    return impl_->connection.jobs().GetJob(&context, request, &response);
+  });
+}
+
+Result<std::vector<v1::Job>> Client::ListJobs(int limit, const std::vector<v1::Job::State>& states) {
+  constexpr int kLargestPage = 1000;
+  std::vector<v1::Job> jobs;
+  v1::ListJobsRequest request;
+  for (const v1::Job::State state : states) request.add_states(state);
+  while (static_cast<int>(jobs.size()) < limit) {
+    request.set_page_size(std::min(limit - static_cast<int>(jobs.size()), kLargestPage));
+    auto page = impl_->Ask<v1::ListJobsResponse>(kTimeout, [&](grpc::ClientContext& context, auto& response) {
+      return impl_->connection.jobs().ListJobs(&context, request, &response);
+    });
+    if (!page.ok()) return page.error();
+    for (v1::Job& job : *page.value().mutable_jobs()) jobs.push_back(std::move(job));
+    if (page.value().next_page_token().empty()) break;
+    request.set_page_token(page.value().next_page_token());
+  }
+  return jobs;
+}
+
+Result<v1::Job> Client::CancelJob(const std::string& name) {
+  v1::CancelJobRequest request;
+  request.set_name(name);
+  return impl_->Ask<v1::Job>(kTimeout, [&](grpc::ClientContext& context, v1::Job& response) {
+    return impl_->connection.jobs().CancelJob(&context, request, &response);
+  });
+}
+
+std::optional<Error> Client::DeleteJob(const std::string& name) {
+  v1::DeleteJobRequest request;
+  request.set_name(name);
+  const auto done = impl_->Ask<google::protobuf::Empty>(kTimeout, [&](grpc::ClientContext& context, auto& response) {
+    return impl_->connection.jobs().DeleteJob(&context, request, &response);
+  });
+  if (done.ok()) return std::nullopt;
+  return done.error();
+}
+
+Result<v1::Geometry> Client::GetGeometry(const std::string& name, std::stop_token stop) {
+  return FetchGeometry(impl_->connection, name, stop);
+}
+
+Result<std::vector<v1::FrameInfo>> Client::ListFrames(const std::string& name, std::int64_t start_index) {
+  constexpr int kPage = 10'000;
+  std::vector<v1::FrameInfo> frames;
+  v1::ListFramesRequest request;
+  request.set_name(name);
+  request.set_start_index(start_index);
+  request.set_page_size(kPage);
+  while (true) {
+    auto page = impl_->Ask<v1::ListFramesResponse>(kTimeout, [&](grpc::ClientContext& context, auto& response) {
+      return impl_->connection.frames().ListFrames(&context, request, &response);
+    });
+    if (!page.ok()) return page.error();
+    for (v1::FrameInfo& frame : *page.value().mutable_frames()) frames.push_back(std::move(frame));
+    if (page.value().frames_size() < kPage) return frames;
+    request.set_start_index(frames.back().index() + 1);
+  }
+}
+
+Result<v1::Job> Client::Watch(const std::string& name, const WatchOptions& options, const WatchEvents& events,
+                              std::stop_token stop) {
+  return WatchJob(impl_->connection, name, options, events, stop);
+}
+
+}  // namespace fascicle::client

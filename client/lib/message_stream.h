@@ -1,0 +1,111 @@
+#ifndef FASCICLE_CLIENT_LIB_MESSAGE_STREAM_H_
+#define FASCICLE_CLIENT_LIB_MESSAGE_STREAM_H_
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <utility>
+
+#include <grpcpp/client_context.h>
+#include <grpcpp/support/client_callback.h>
+#include <grpcpp/support/status.h>
+
+namespace fascicle::client {
+
+// The messages of one call of a server-streaming method. gRPC's own threads receive them, so the connection answers
+// the server's keepalive however long the reader takes over a message; a few are kept ahead, then the server waits.
+template <class Response>
+class MessageStream : private grpc::ClientReadReactor<Response> {
+ public:
+  enum class Outcome { kMessage, kEnd, kSilence, kStopped };
+
+  // `begin(context, reactor)` makes the call, such as stub.async()->GetGeometry(context, &request, reactor). What it
+  // refers to must live as long as the stream.
+  using Begin = std::function<void(grpc::ClientContext*, grpc::ClientReadReactor<Response>*)>;
+
+  explicit MessageStream(const Begin& begin) {
+    begin(&call_, this);
+    this->AddHold();  // reads are started from the reader's thread as well
+    this->StartRead(&incoming_);
+    this->StartCall();
+  }
+
+  // Cancels the call if it goes on.
+  ~MessageStream() {
+    call_.TryCancel();
+    std::unique_lock lock(mutex_);
+    reading_is_over_ = true;
+    if (std::exchange(paused_, false)) {
+      lock.unlock();
+      this->RemoveHold();
+      lock.lock();
+    }
+    changed_.wait(lock, [this] { return done_; });
+  }
+
+  // Waits for the next message, for the end of the call, for `silence` without a message, or for a stop request.
+  Outcome Next(Response& message, std::chrono::milliseconds silence, const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, stop, silence, [this] { return !ready_.empty() || done_; });
+    if (stop.stop_requested()) return Outcome::kStopped;
+    if (ready_.empty()) return done_ ? Outcome::kEnd : Outcome::kSilence;
+    message = std::move(ready_.front());
+    ready_.pop_front();
+    if (std::exchange(paused_, false)) {
+      lock.unlock();
+      this->StartRead(&incoming_);
+    }
+    return Outcome::kMessage;
+  }
+
+  // After kEnd.
+  grpc::Status status() {
+    std::lock_guard lock(mutex_);
+    return status_;
+  }
+
+ private:
+  static constexpr std::size_t kAhead = 4;
+
+  void OnReadDone(bool ok) override {
+    std::unique_lock lock(mutex_);
+    if (!ok || reading_is_over_) {
+      lock.unlock();
+      this->RemoveHold();
+      return;
+    }
+    ready_.push_back(std::move(incoming_));
+    changed_.notify_all();
+    paused_ = ready_.size() >= kAhead;
+    if (!paused_) {
+      lock.unlock();
+      this->StartRead(&incoming_);
+    }
+  }
+
+  void OnDone(const grpc::Status& status) override {
+    std::lock_guard lock(mutex_);  // held while notifying: the reader may destroy this as soon as it is released
+    status_ = status;
+    done_ = true;
+    changed_.notify_all();
+  }
+
+  grpc::ClientContext call_;
+  Response incoming_;
+
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::deque<Response> ready_;
+  bool paused_ = false;           // no read is started until there is room
+  bool reading_is_over_ = false;  // the reader is gone
+  bool done_ = false;
+  grpc::Status status_;
+};
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_LIB_MESSAGE_STREAM_H_

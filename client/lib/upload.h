@@ -1,0 +1,18 @@
+#ifndef FASCICLE_CLIENT_LIB_UPLOAD_H_
+#define FASCICLE_CLIENT_LIB_UPLOAD_H_
+
+#include <vector>
+
+#include <grpcpp/support/status.h>
+
+#include "client/lib/client.h"
+#include "client/lib/connection.h"
+
+namespace fascicle::client {
+
+// Uploads those of `assets` that the server lacks.
+grpc::Status UploadMissing(Connection& connection, const std::vector<AssetFile>& assets);
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_LIB_UPLOAD_H_
