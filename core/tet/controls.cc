@@ -1,7 +1,5 @@
 #include "core/tet/controls.h"
 
-#include <Eigen/Geometry>
-
 namespace fascicle {
 namespace {
 

@@ -1,6 +1,8 @@
 #ifndef FASCICLE_CORE_TET_CONTROLS_H_
 #define FASCICLE_CORE_TET_CONTROLS_H_
 
+#include <Eigen/Geometry>
+
 #include <vector>
 
 #include "core/tet/model.h"

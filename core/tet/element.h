@@ -1,6 +1,8 @@
 #ifndef FASCICLE_CORE_TET_ELEMENT_H_
 #define FASCICLE_CORE_TET_ELEMENT_H_
 
+#include <Eigen/Geometry>
+
 #include "core/geometry/tet_mesh.h"
 #include "core/linalg/nodal_vector.h"
 
