@@ -11,7 +11,7 @@
 namespace fascicle::server {
 namespace {
 
-bool IsTetGen(const v1::FileRef& file) { return file.path().ends_with(".node"); }
+bool IsTetGen(const v1::FileRef& file) { return file.path().ends_with(".node") || file.path().ends_with(".NODE"); }
 
 void CheckElements(const v1::Mesh& mesh, const std::string& path, Problems& problems) {
   const bool wanted = mesh.has_file() && IsTetGen(mesh.file());

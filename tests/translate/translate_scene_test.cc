@@ -1,0 +1,226 @@
+// Good scenes: everything arrives in the core, in SI and with defaults.
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/geometry/shapes.h"
+#include "scenes.h"
+
+namespace fascicle::server {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(TranslateScene, ConvertsLengthsOfABody) {
+  v1::Scene wire = BoxScene();
+  v1::Body& body = *wire.mutable_bodies(0);
+  v1::Motion& motion = *body.mutable_constraints(0)->mutable_motion();
+  google::protobuf::TextFormat::ParseFromString(R"(
+    rotation { point: [1, 2, 3] axis: [0, 0, 2] angle { times: 0 times: 1 values: 0 values: 0.5 } }
+    translation { axis: AXIS_Y curve { times: [0, 1] values: [0, 0.25] interpolation: INTERPOLATION_SMOOTH } })",
+                                                &motion);
+  v1::Probe& probe = *wire.mutable_output()->add_probes();
+  google::protobuf::TextFormat::ParseFromString(R"(name: "p" body: "box" point: [2.1, 3, 4.2])", &probe);
+  const auto scene = Translate(wire);
+  ASSERT_NE(scene, nullptr);
+  const Body& box = scene->bodies[0];
+  EXPECT_EQ(box.mesh.nodes.size(), 3u * 4u * 5u);
+  EXPECT_EQ(box.mesh.tetrahedra.size(), 6u * 2u * 3u * 4u);
+  EXPECT_NEAR(TotalVolume(box.mesh), 24e-6, 1e-18);
+  ASSERT_EQ(box.regions.size(), 2u);
+  EXPECT_EQ(box.regions[0].nodes.size(), 12u);
+  EXPECT_EQ(box.regions[1].triangles.size(), 12u);
+  const Constraint& constraint = box.constraints[0];
+  ASSERT_TRUE(constraint.motion.rotation.has_value());
+  EXPECT_LT((constraint.motion.rotation->point - Vec3(0.01, 0.02, 0.03)).norm(), 1e-17);
+  EXPECT_EQ(constraint.motion.rotation->axis, Vec3::UnitZ());
+  EXPECT_EQ(constraint.motion.rotation->angle.values, std::vector<double>({0, 0.5}));
+  ASSERT_TRUE(constraint.motion.translation[1].has_value());
+  // Motions are in metres whatever the body's unit.
+  EXPECT_EQ(constraint.motion.translation[1]->values, std::vector<double>({0, 0.25}));
+  EXPECT_EQ(constraint.motion.translation[1]->interpolation, Curve::Interpolation::kSmooth);
+  EXPECT_FALSE(constraint.motion.translation[0].has_value());
+  ASSERT_EQ(scene->output.probes.size(), 1u);
+  EXPECT_EQ(box.mesh.nodes[static_cast<std::size_t>(scene->output.probes[0].node)], Vec3(0.02, 0.03, 0.04));
+}
+
+TEST(TranslateScene, TakesDefaultsFromTheRules) {
+  const auto scene = Translate(BoxScene());
+  ASSERT_NE(scene, nullptr);
+  EXPECT_EQ(scene->bodies[0].density, 1060);
+  EXPECT_EQ(scene->method.stepping, Stepping::kExplicit);
+  EXPECT_FALSE(scene->method.time_step.has_value());
+  EXPECT_EQ(scene->method.safety, 0.9);
+  EXPECT_EQ(scene->method.solver_tolerance, 1e-8);
+  EXPECT_EQ(scene->bodies[0].activation.values, std::vector<double>({0}));
+  EXPECT_EQ(scene->gravity.acceleration, Vec3::Zero());
+  EXPECT_FALSE(scene->output.settle_speed.has_value());
+  EXPECT_EQ(scene->bodies[0].constraints[0].axes, (std::array<bool, 3>{true, true, true}));
+}
+
+TEST(TranslateScene, CarriesEverythingElse) {
+  v1::Scene wire = BoxScene();
+  google::protobuf::TextFormat::MergeFromString(R"(
+    gravity { acceleration: [0, 0, -9.81] scale { times: 0 values: 0.5 } }
+    tet { stepping: STEPPING_MIXED time_step: 1e-4 safety: 0.5 solver_tolerance: 1e-6 }
+    output { fields: FIELD_VELOCITY fields: FIELD_CAUCHY_STRESS settle_speed: 1e-3 })",
+                                                &wire);
+  google::protobuf::TextFormat::MergeFromString(R"(
+    density: 1000
+    damping { mass_proportional: 1 stiffness_proportional: 2 viscosity: 3 }
+    constraints { region: "top" axes: AXIS_X axes: AXIS_Z }
+    loads { region: "top" traction { vector: [1, 2, 3] } scale { times: [0, 1] values: [0, 1] } }
+    loads { region: "top" nodal_force { total: [4, 5, 6] } })",
+                                                wire.mutable_bodies(0));
+  const auto scene = Translate(wire);
+  ASSERT_NE(scene, nullptr);
+  EXPECT_EQ(scene->name, "box");
+  EXPECT_EQ(scene->duration, 1);
+  EXPECT_EQ(scene->gravity.acceleration, Vec3(0, 0, -9.81));
+  EXPECT_EQ(scene->gravity.scale.values, std::vector<double>({0.5}));
+  EXPECT_EQ(scene->method.stepping, Stepping::kMixed);
+  EXPECT_EQ(scene->method.time_step, 1e-4);
+  EXPECT_EQ(scene->method.safety, 0.5);
+  EXPECT_EQ(scene->method.solver_tolerance, 1e-6);
+  EXPECT_THAT(scene->output.fields, ElementsAre(OutputField::kVelocity, OutputField::kCauchyStress));
+  EXPECT_EQ(scene->output.settle_speed, 1e-3);
+  const Body& body = scene->bodies[0];
+  EXPECT_EQ(body.density, 1000);
+  EXPECT_EQ(body.damping.mass_proportional, 1);
+  EXPECT_EQ(body.damping.stiffness_proportional, 2);
+  EXPECT_EQ(body.damping.viscosity, 3);
+  EXPECT_EQ(body.constraints[1].axes, (std::array<bool, 3>{true, false, true}));
+  ASSERT_EQ(body.loads.size(), 2u);
+  EXPECT_EQ(body.loads[0].region, 1);
+  EXPECT_EQ(std::get<Traction>(body.loads[0].kind).vector, Vec3(1, 2, 3));
+  EXPECT_EQ(body.loads[0].scale.values, std::vector<double>({0, 1}));
+  EXPECT_EQ(std::get<NodalForce>(body.loads[1].kind).total, Vec3(4, 5, 6));
+}
+
+TEST(TranslateScene, MakesEveryLawWithItsParameters) {
+  for (const LawInfo& law : Laws()) {
+    v1::Scene wire = BoxScene();
+    v1::Material& material = *wire.mutable_bodies(0)->mutable_material();
+    material.Clear();
+    const auto* field = material.GetDescriptor()->FindFieldByName(law.name);
+    ASSERT_NE(field, nullptr) << law.name;
+    auto* message = material.GetReflection()->MutableMessage(&material, field);
+    std::vector<double> values;
+    for (const ParameterInfo& parameter : law.parameters) {
+      // Inside of every range, and another value for each parameter.
+      const double low = std::isfinite(parameter.min) ? parameter.min : -1;
+      values.push_back(low + (std::min(parameter.max, low + 1) - low) * 0.1 * static_cast<double>(values.size() + 1));
+      message->GetReflection()->SetDouble(message, message->GetDescriptor()->FindFieldByName(parameter.name),
+                                          values.back());
+    }
+    for (const double x : {0.0, 0.0, 1.0})
+      wire.mutable_bodies(0)->mutable_fibres()->mutable_constant()->add_direction(x);
+    const auto scene = Translate(wire);
+    ASSERT_NE(scene, nullptr) << law.name;
+    // The same law with the same parameters answers the same.
+    const Material expected = law.make(values);
+    Mat3 F = Mat3::Identity();
+    F(0, 1) = 0.3;
+    F(2, 2) = 1.2;
+    const FibreState fibre = {Vec3::UnitZ(), 0.5};
+    const auto stress = [&](const Material& m) {
+      return std::visit([&](const auto& l) { return l.Stress(F, fibre); }, m);
+    };
+    EXPECT_EQ(scene->bodies[0].material.index(), expected.index()) << law.name;
+    EXPECT_EQ(stress(scene->bodies[0].material), stress(expected)) << law.name;
+  }
+}
+
+TEST(TranslateScene, ReadsMeshFilesWithTags) {
+  Files files;
+  v1::Scene wire = BoxScene();
+  v1::Body& body = *wire.mutable_bodies(0);
+  body.set_unit(v1::LENGTH_UNIT_MM);
+  body.mutable_mesh()->mutable_file()->set_path("two.msh");
+  body.mutable_mesh()->mutable_file()->set_asset(files.Add(kTwoTets));
+  body.mutable_regions(0)->set_physical_tag(1);
+  body.mutable_regions(1)->set_physical_tag(7);
+  const auto scene = Translate(wire, files);
+  ASSERT_NE(scene, nullptr);
+  EXPECT_NEAR(scene->bodies[0].mesh.nodes[1].x(), 0.01, 1e-17);
+  EXPECT_EQ(scene->bodies[0].mesh.tetrahedra.size(), 2u);
+  EXPECT_THAT(scene->bodies[0].regions[0].nodes, ElementsAre(0, 1, 2));
+  EXPECT_EQ(scene->bodies[0].regions[1].nodes.size(), 5u);
+}
+
+TEST(TranslateScene, TurnsAMirroredMeshRound) {
+  std::string mirrored = kTwoTets;
+  mirrored.replace(mirrored.find("1 2 3 4\n3 4"), 7, "2 1 3 4");
+  mirrored.replace(mirrored.find("2 3 4 5\n"), 7, "3 2 4 5");
+  Files files;
+  v1::Scene wire = BoxScene();
+  v1::Body& body = *wire.mutable_bodies(0);
+  body.set_unit(v1::LENGTH_UNIT_MM);
+  body.mutable_mesh()->mutable_file()->set_path("two.msh");
+  body.mutable_mesh()->mutable_file()->set_asset(files.Add(mirrored));
+  body.mutable_regions(1)->set_physical_tag(1);
+  const auto scene = Translate(wire, files);
+  ASSERT_NE(scene, nullptr);
+  EXPECT_GT(SignedVolume(scene->bodies[0].mesh, 0), 0);
+  EXPECT_GT(SignedVolume(scene->bodies[0].mesh, 1), 0);
+}
+
+TEST(TranslateScene, ReadsFibresOfEverySource) {
+  Files files;
+  v1::Scene wire = BoxScene();
+  v1::Body& body = *wire.mutable_bodies(0);
+  v1::HarmonicFibres& harmonic = *body.mutable_fibres()->mutable_harmonic();
+  harmonic.set_origin("bottom");
+  harmonic.set_insertion("top");
+  const auto along = Translate(wire);
+  ASSERT_NE(along, nullptr);
+  ASSERT_EQ(along->bodies[0].fibres.size(), along->bodies[0].mesh.tetrahedra.size());
+  for (const Vec3& direction : along->bodies[0].fibres) EXPECT_LT((direction - Vec3::UnitZ()).norm(), 1e-7);
+
+  std::string text = "# one for each tetrahedron\n";
+  for (std::size_t i = 0; i < along->bodies[0].mesh.tetrahedra.size(); ++i) text += "0 3 4\n";
+  body.mutable_fibres()->mutable_file()->set_path("fibres.txt");
+  body.mutable_fibres()->mutable_file()->set_asset(files.Add(text));
+  const auto read = Translate(wire, files);
+  ASSERT_NE(read, nullptr);
+  EXPECT_LT((read->bodies[0].fibres.back() - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
+}
+
+// The estimate that guards memory before a shape is built must be what is built.
+TEST(TranslateScene, EstimatesShapesExactly) {
+  for (const char* mesh :
+       {"box { size: [0.1, 0.1, 0.1] divisions: [2, 3, 5] }",
+        "fusiform { length: 0.2 belly_radius: 0.02 end_radius: 0.01 divisions_across: 4 divisions_along: 9 }",
+        "torus { major_radius: 0.1 minor_radius: 0.02 divisions_around: 12 divisions_across: 4 }",
+        "sphere { radius: 0.1 divisions: 6 }"}) {
+    v1::Scene wire = ParseText(std::string(R"(duration: 1 tet {} output { frame_interval: 0.1 }
+      bodies { name: "b" material { neo_hookean { young_modulus: 1e4 } } mesh { )") +
+                               mesh + " } }");
+    const auto scene = Translate(wire);
+    ASSERT_NE(scene, nullptr);
+    TranslateLimits limits;
+    limits.max_tetrahedra = static_cast<std::int64_t>(scene->bodies[0].mesh.tetrahedra.size());
+    EXPECT_TRUE(ProblemsOf(wire, {}, limits).empty()) << mesh;
+    limits.max_tetrahedra -= 1;
+    EXPECT_FALSE(ProblemsOf(wire, {}, limits).empty()) << mesh;
+  }
+}
+
+TEST(AssetsOf, NamesEachAssetOnce) {
+  Files files;
+  const std::string mesh = files.Add("a"), elements = files.Add("b"), fibres = files.Add("c");
+  v1::Scene scene;
+  for (int i = 0; i < 2; ++i) {
+    v1::Body& body = *scene.add_bodies();
+    body.mutable_mesh()->mutable_file()->set_asset(mesh);
+    body.mutable_mesh()->mutable_elements()->set_asset(elements);
+    body.mutable_fibres()->mutable_file()->set_asset(fibres);
+  }
+  scene.add_bodies()->mutable_mesh()->mutable_file()->set_asset("assets/XYZ");
+  scene.add_bodies()->mutable_mesh()->mutable_box();
+  EXPECT_THAT(AssetsOf(scene), ElementsAre(mesh.substr(7), elements.substr(7), fibres.substr(7)));
+}
+
+}  // namespace
+}  // namespace fascicle::server
