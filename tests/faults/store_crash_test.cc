@@ -1,0 +1,159 @@
+// Kills a writing process at random times: what the store has acknowledged is there, bit-equal, and the store opens
+// quickly and whole. (The kernel lives on, so this shows the order of commits and acknowledgements, not fsync.)
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <random>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "crash_samples.h"
+#include "server/store/database.h"
+#include "server/store/store.h"
+#include "tests/store/samples.h"
+#include "tests/store/temporary_directory.h"
+
+extern char** environ;
+
+namespace fascicle::server {
+namespace {
+
+constexpr int kRounds = 50;
+
+struct Acknowledged {
+  std::set<int> jobs;
+  std::map<int, std::int64_t> frames;  // number of a job -> count
+
+  void Read(const std::string& report) {
+    std::istringstream lines(report);
+    char kind = 0;
+    int number = 0;
+    while (lines >> kind >> number) {
+      if (kind == 'J') {
+        jobs.insert(number);
+      } else {
+        std::int64_t index = -1;
+        lines >> index;
+        frames[number] = index + 1;
+      }
+    }
+  }
+};
+
+// Runs the writer and kills it `delay` after it has reported something; returns all that it has reported.
+std::string RunAndKill(const std::string& directory, int round, std::chrono::microseconds delay) {
+  int ends[2];
+  if (pipe(ends) != 0) return {};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  posix_spawn_file_actions_addclose(&actions, ends[0]);
+  std::string program = CRASH_WRITER, path = directory, number = std::to_string(round);
+  char* arguments[] = {program.data(), path.data(), number.data(), nullptr};
+  pid_t child = 0;
+  const int error = posix_spawn(&child, CRASH_WRITER, &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  EXPECT_EQ(error, 0);
+
+  std::string report;
+  char buffer[65536];
+  // One round in four is not given the time to open the store: it dies wherever it is then.
+  ssize_t size = round % 4 == 3 ? 0 : read(ends[0], buffer, sizeof buffer);
+  report.append(buffer, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  std::thread killer([&] {
+    std::this_thread::sleep_for(delay);
+    kill(child, SIGKILL);
+  });
+  while ((size = read(ends[0], buffer, sizeof buffer)) > 0) report.append(buffer, static_cast<std::size_t>(size));
+  killer.join();
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
+      << "the writer ended by itself: " << report.substr(0, 200);
+  return report;
+}
+
+void ExpectWhole(const std::string& path) {
+  Database database(path, Database::Mode::kReadOnly);
+  Statement check = database.Prepare("PRAGMA integrity_check");
+  Rows rows = check.Query();
+  ASSERT_TRUE(rows.Next());
+  EXPECT_EQ(rows.String(0), "ok") << path;
+}
+
+void ExpectFrames(Store& store, int number, std::int64_t acknowledged) {
+  const std::shared_ptr<FrameStore> frames = store.OpenFrames(SampleJob(number).id);
+  ASSERT_NE(frames, nullptr);
+  const std::int64_t count = frames->frame_count();
+  // One more may have been committed and not been reported any more.
+  EXPECT_GE(count, acknowledged);
+  EXPECT_LE(count, acknowledged + 1);
+  const std::vector<FrameRecord> records = frames->ListFrames(0, 1 << 20);
+  ASSERT_EQ(static_cast<std::int64_t>(records.size()), count);
+  for (std::int64_t i = 0; i < count; ++i) {
+    const SampleFrame expected = CrashFrame(number, i);
+    EXPECT_TRUE(records[static_cast<std::size_t>(i)] == expected.record) << i;
+    EXPECT_TRUE(ReadFrame(*frames, i) == expected.bytes) << i;
+  }
+  if (count == 0) return;
+  EXPECT_EQ(frames->GetCheckpoint(), CrashCheckpoint(number, (count - 1) / 3 * 3));
+}
+
+TEST(StoreCrash, NothingAcknowledgedIsLost) {
+  TemporaryDirectory directory;
+  std::mt19937 random(20260);
+  Acknowledged all;
+  double slowest_opening = 0;
+  for (int round = 0; round < kRounds && !testing::Test::HasFailure(); ++round) {
+    const std::chrono::microseconds delay(random() % 60'000);
+    Acknowledged now;
+    now.Read(RunAndKill(directory.path(), round, delay));
+
+    const auto start = std::chrono::steady_clock::now();
+    const std::unique_ptr<Store> store = OpenSqliteStore(directory.path());
+    slowest_opening =
+        std::max(slowest_opening, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    for (const int number : now.jobs) {
+      const std::optional<JobRecord> job = store->GetJob(SampleJob(number).id);
+      ASSERT_TRUE(job.has_value()) << "round " << round << " job " << number;
+      EXPECT_EQ(job->spec, SampleJob(number).spec);
+    }
+    for (const auto& [number, count] : now.frames) {
+      ExpectFrames(*store, number, count);
+      ExpectWhole(directory.path() + "/jobs/" + SampleJob(number).id + ".db");
+    }
+    ExpectWhole(directory.path() + "/control.db");
+    all.jobs.merge(now.jobs);
+    all.frames.merge(now.frames);
+  }
+  EXPECT_LT(slowest_opening, 2.0);
+
+  // Later rounds have not touched what earlier ones have left.
+  const std::unique_ptr<Store> store = OpenSqliteStore(directory.path());
+  const std::vector<JobRecord> jobs = store->ListJobs(1 << 20, "", {});
+  std::set<std::string> ids;
+  for (const JobRecord& job : jobs) ids.insert(job.id);
+  EXPECT_EQ(ids.size(), jobs.size());
+  std::int64_t frames = 0;
+  for (const int number : all.jobs) EXPECT_TRUE(ids.contains(SampleJob(number).id));
+  for (const auto& [number, count] : all.frames) {
+    EXPECT_GE(store->OpenFrames(SampleJob(number).id)->frame_count(), count);
+    frames += count;
+  }
+  EXPECT_GT(all.jobs.size(), std::size_t{2} * kRounds);
+  EXPECT_GT(frames, kRounds);
+  std::printf("%d kills, %zu jobs and %lld frames acknowledged, slowest opening %.3f s\n", kRounds, all.jobs.size(),
+              static_cast<long long>(frames), slowest_opening);
+}
+
+}  // namespace
+}  // namespace fascicle::server

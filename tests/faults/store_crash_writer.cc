@@ -1,0 +1,58 @@
+// Writes to a store until it is killed, and reports on standard output what the store has acknowledged:
+//
+//   store_crash_writer DIRECTORY ROUND
+//
+// "J number" for a job, "F number index" for a frame of a job; see samples.h for what they hold.
+#include <unistd.h>
+
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#include "crash_samples.h"
+#include "server/store/store.h"
+#include "tests/store/samples.h"
+
+namespace fascicle::server {
+namespace {
+
+void Report(const std::string& line) {
+  // Short enough to be written whole or not at all.
+  if (write(STDOUT_FILENO, line.data(), line.size()) != static_cast<ssize_t>(line.size())) std::abort();
+}
+
+void WriteFrames(Store& store, int number) {
+  JobRecord existing;
+  store.CreateJob(SampleJob(number), &existing);
+  Report("J " + std::to_string(number) + "\n");
+  const std::shared_ptr<FrameStore> frames = store.OpenFrames(SampleJob(number).id);
+  for (std::int64_t i = 0;; ++i) {
+    const SampleFrame frame = CrashFrame(number, i);
+    frames->PutFrame(frame.record, frame.bytes, CrashCheckpoint(number, i));
+    Report("F " + std::to_string(number) + " " + std::to_string(i) + "\n");
+  }
+}
+
+void SubmitJobs(Store& store, int first) {
+  for (int number = first;; ++number) {
+    JobRecord existing;
+    store.CreateJob(SampleJob(number), &existing);
+    Report("J " + std::to_string(number) + "\n");
+  }
+}
+
+void Run(const char* directory, int round) {
+  const std::unique_ptr<Store> store = OpenSqliteStore(directory);
+  const int first = round * kJobsPerRound;
+  std::thread frames([&] { WriteFrames(*store, first); });
+  std::thread jobs([&] { SubmitJobs(*store, first + 1); });
+  std::thread more_jobs([&] { SubmitJobs(*store, first + kJobsPerRound / 2); });
+  frames.join();
+  jobs.join();
+  more_jobs.join();
+}
+
+}  // namespace
+}  // namespace fascicle::server
+
+int main(int, char** arguments) { fascicle::server::Run(arguments[1], std::atoi(arguments[2])); }
