@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kTolerance = 1e-6;        // differences
 constexpr double kExactTolerance = 1e-10;  // identities that hold to round-off; K/mu is up to 1e4
+constexpr double kRestTolerance = 1e-12;   // likewise; a fibre is up to 1e3 times stiffer than its matrix
 constexpr int kSamples = 240;
 constexpr int kParameterSets = 4;
 constexpr std::array kActivations = {0.0, 0.3, 1.0};
@@ -39,6 +40,10 @@ std::vector<double> ParameterValues(const LawInfo& law, int set) {
   }
   // Fibres slack at rest, as in [Teran 2003]: the passive curve starts at stretch one.
   if (set == 1 && std::string_view(law.name) == "muscle") values[4] = 1;
+  // A low bulk modulus, beside which no term of the matrix or the fibres is small.
+  for (std::size_t i = 0; set == 2 && i < values.size(); ++i) {
+    if (std::string_view(law.parameters[i].name) == "bulk_modulus") values[i] = 10 * values[0];
+  }
   return values;
 }
 
@@ -145,7 +150,7 @@ TEST_P(LawBattery, KnowsNoDirectionButTheFibre) {
 
 TEST_P(LawBattery, NoStressAndNoEnergyAtRest) {
   EXPECT_LE(Worst([](const auto& law, const auto& s, auto&) { return laws::RestError(law, s.fibre.direction); }),
-            1e-14);
+            kRestTolerance);
 }
 
 TEST_P(LawBattery, NoStressWhenMerelyRotated) {
@@ -157,7 +162,7 @@ TEST_P(LawBattery, NoStressWhenMerelyRotated) {
   if (IsLinear()) {
     EXPECT_GT(worst, 0.1);
   } else {
-    EXPECT_LE(worst, 1e-13);
+    EXPECT_LE(worst, kRestTolerance);
   }
 }
 
