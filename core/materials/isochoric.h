@@ -31,7 +31,7 @@ struct IsochoricKinematics {
       : C(F.transpose() * F), I1(C.trace()), I2(0.5 * (I1 * I1 - C.squaredNorm())) {
     const Mat3 cofactor = Cofactor(F);
     const double J = DeterminantOf(F, cofactor);
-    inverse_transpose = cofactor / J;
+    inverse_transpose = (1 / J) * cofactor;
     log_J = std::log(J);
     scale = std::exp(-2.0 / 3.0 * log_J);
   }

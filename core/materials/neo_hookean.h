@@ -34,7 +34,7 @@ class NeoHookean {
   Mat9 Tangent(const Mat3& F, const FibreState&) const {
     const Mat3 cofactor = Cofactor(F);
     const double J = DeterminantOf(F, cofactor);
-    const Mat3 inverse_transpose = cofactor / J;
+    const Mat3 inverse_transpose = (1 / J) * cofactor;
     const Vec9 h = Flatten(inverse_transpose);
     Mat9 tangent = moduli_.lambda * h * h.transpose();
     tangent.diagonal().array() += moduli_.mu;
