@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -19,8 +20,9 @@ namespace fascicle {
 namespace {
 
 constexpr std::size_t kExamples = 5;
-// A tetrahedron is degenerate when it fills less than this part of the cube of its longest edge.
-constexpr double kFlat = 1e-12;
+// A tetrahedron is degenerate when its smallest height is less than this part of its longest edge: its stable time step
+// would shrink as much.
+constexpr double kFlat = 1e-6;
 // Nodes closer than this part of the diagonal are one.
 constexpr double kCoincident = 1e-9;
 constexpr double kLargest = 10, kSmallest = 1e-4;  // [m]
@@ -84,13 +86,15 @@ void CheckIndices(const TetMesh& mesh, Problems& problems) {
 }
 
 bool IsDegenerate(const TetMesh& mesh, std::size_t t, double volume) {
-  double longest = 0;
-  for (int a = 0; a < 4; ++a) {
-    for (int b = a + 1; b < 4; ++b) {
-      longest = std::max(longest, (mesh.nodes[mesh.tetrahedra[t][a]] - mesh.nodes[mesh.tetrahedra[t][b]]).norm());
-    }
+  const Tetrahedron& nodes = mesh.tetrahedra[t];
+  double longest = 0, largest_side = 0;  // [m], [m^2]
+  for (int side = 0; side < 4; ++side) {
+    const auto& [a, b, c] = OutwardTriangle(nodes, side);
+    const Vec3 ab = mesh.nodes[b] - mesh.nodes[a], ac = mesh.nodes[c] - mesh.nodes[a];
+    longest = std::max({longest, ab.norm(), ac.norm()});
+    largest_side = std::max(largest_side, ab.cross(ac).norm() / 2);
   }
-  return !(std::abs(volume) > kFlat * longest * longest * longest);
+  return !(3 * std::abs(volume) > kFlat * longest * largest_side);
 }
 
 void CheckVolumes(const TetMesh& mesh, Problems& problems) {
@@ -106,7 +110,7 @@ void CheckVolumes(const TetMesh& mesh, Problems& problems) {
   }
   inverted.Report("tetrahedron is inverted (negative volume)", "tetrahedra are inverted (negative volume)",
                   "swap two nodes of each, or mesh the body again", problems);
-  degenerate.Report("tetrahedron is degenerate (no volume)", "tetrahedra are degenerate (no volume)",
+  degenerate.Report("tetrahedron is degenerate (flat)", "tetrahedra are degenerate (flat)",
                     "mesh the body again, with optimization switched on", problems);
 }
 
@@ -162,7 +166,7 @@ void CheckCoincidentNodes(const TetMesh& mesh, const MeshReport& report, Problem
     const auto found = std::lower_bound(cells.begin(), cells.end(), std::pair(cell, std::size_t{0}));
     return found != cells.end() && found->first == cell ? found->second : std::numeric_limits<std::size_t>::max();
   };
-  Findings findings;
+  std::vector<std::pair<std::size_t, std::size_t>> twins;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto& [cell, n] = cells[i];
     std::size_t twin = i > 0 && cells[i - 1].first == cell ? first_in(cell) : std::numeric_limits<std::size_t>::max();
@@ -172,8 +176,11 @@ void CheckCoincidentNodes(const TetMesh& mesh, const MeshReport& report, Problem
       const Cell near = cell_of(mesh.nodes[n] + shift);
       if (near != cell) twin = std::min(twin, first_in(near));
     }
-    if (twin < n) findings.Add(std::to_string(twin) + " and " + std::to_string(n));
+    if (twin < n) twins.push_back({twin, n});
   }
+  std::sort(twins.begin(), twins.end());
+  Findings findings;
+  for (const auto& [twin, n] : twins) findings.Add(std::to_string(twin) + " and " + std::to_string(n));
   findings.Report("node coincides with another", "nodes coincide with others", "merge them: the body falls apart there",
                   problems);
 }

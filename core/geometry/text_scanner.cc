@@ -68,7 +68,12 @@ std::string_view TextScanner::Line() {
 }
 
 std::string_view TextScanner::Bytes(std::size_t size, std::string_view what) {
-  if (!Holds(std::int64_t(std::min(size, rest_.size() + 1)), what, 1)) return {};
+  if (size > rest_.size()) {
+    Fail(std::to_string(size) + " " + std::string(what) + " are announced, but the file ends after " +
+             std::to_string(rest_.size()) + " more",
+         kCutOff);
+    return {};
+  }
   const std::string_view bytes = rest_.substr(0, size);
   rest_.remove_prefix(size);
   return bytes;

@@ -1,12 +1,17 @@
 #include "core/geometry/vtk_cells.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace fascicle {
 namespace {
 
 // VTK's cell types.
 constexpr std::int64_t kTriangle = 5, kTetrahedron = 10, kQuadraticTetrahedron = 24, kLagrangeTetrahedron = 71;
+
+// Nodes of the linear cell types 0 to 14; 0 where any number will do.
+constexpr std::int64_t kNodes[] = {0, 1, 0, 2, 0, 3, 0, 0, 4, 4, 4, 8, 8, 6, 5};
+std::int64_t NodesOf(std::int64_t type) { return type >= 0 && type < std::ssize(kNodes) ? kNodes[type] : 0; }
 
 template <std::size_t N>
 void AddCell(const std::int64_t* nodes, std::int64_t first_node, std::vector<std::array<std::int64_t, N>>& cells) {
@@ -39,12 +44,13 @@ std::string AddCells(const VtkCells& cells, std::int64_t node_count, std::int64_
     const std::int64_t size = end - begin;
     begin = end;
     const std::int64_t type = cells.types[c];
+    if (NodesOf(type) != 0 && size != NodesOf(type)) {
+      return name() + " of type " + std::to_string(type) + " has " + std::to_string(size) + " nodes";
+    }
     if (type != kTetrahedron && type != kTriangle) {
       ++(type == kQuadraticTetrahedron || type == kLagrangeTetrahedron ? raw.second_order : raw.others);
       continue;
     }
-    if (size != (type == kTetrahedron ? 4 : 3))
-      return name() + " of " + std::to_string(size) + " nodes has the wrong type";
     const auto outside = std::find_if(nodes, nodes + size, [&](std::int64_t n) { return n < 0 || n >= node_count; });
     if (outside != nodes + size) {
       return name() + " names node " + std::to_string(*outside) + " of " + std::to_string(node_count) +

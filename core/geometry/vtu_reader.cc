@@ -47,7 +47,7 @@ Parts Split(std::string_view bytes) {
     parts.xml = bytes;
     return parts;
   }
-  const std::size_t data = bytes.find('_', tag), end = bytes.rfind("</AppendedData");
+  const std::size_t data = bytes.find('_', tag), end = bytes.rfind("</AppendedData>");
   const std::size_t close = bytes.find('>', tag);
   if (close == std::string_view::npos || data == std::string_view::npos || close > data ||
       end == std::string_view::npos || end < data) {

@@ -1,0 +1,127 @@
+#include "core/geometry/region.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numbers>
+
+#include "core/geometry/shapes.h"
+#include "mesh_samples.h"
+
+namespace fascicle {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+double Area(const TetMesh& mesh, const Region& region) {
+  double area = 0;
+  for (const auto& [a, b, c] : region.triangles) {
+    area += (mesh.nodes[b] - mesh.nodes[a]).cross(mesh.nodes[c] - mesh.nodes[a]).norm() / 2;
+  }
+  return area;
+}
+
+void ExpectSortedAndComplete(const Region& region) {
+  EXPECT_TRUE(std::is_sorted(region.nodes.begin(), region.nodes.end()));
+  EXPECT_EQ(std::adjacent_find(region.nodes.begin(), region.nodes.end()), region.nodes.end());
+  for (const Triangle& triangle : region.triangles) {
+    for (const std::int32_t n : triangle) {
+      EXPECT_TRUE(std::binary_search(region.nodes.begin(), region.nodes.end(), n));
+    }
+  }
+}
+
+class RegionTest : public testing::Test {
+ protected:
+  Region Select(const Selector& selector) const {
+    Region region = SelectRegion(mesh_, BoundaryTriangles(mesh_), "part", selector);
+    EXPECT_EQ(region.name, "part");
+    ExpectSortedAndComplete(region);
+    return region;
+  }
+  // 10 x 5 x 5 nodes, of which planes stand at multiples of 0.1 that have no exact representation.
+  TetMesh mesh_ = MakeBox({0, 0, 0}, {0.9, 0.4, 0.4}, {9, 4, 4});
+};
+
+TEST_F(RegionTest, PlaneTakesNodesOnAndBeyondIt) {
+  for (const double length : {1.0, 1e-3, 1e3}) {
+    const Region end = Select(PlaneSelector{{0.9, 0, 0}, {length, 0, 0}});
+    EXPECT_EQ(end.nodes.size(), 25u);
+    EXPECT_NEAR(Area(mesh_, end), 0.16, 1e-15);
+  }
+  // 0.3 = 3 * 0.1 only up to round-off.
+  EXPECT_EQ(Select(PlaneSelector{{3 * 0.1, 0, 0}, {-1, 0, 0}}).nodes.size(), 100u);
+  EXPECT_TRUE(Select(PlaneSelector{{0.91, 0, 0}, {1, 0, 0}}).nodes.empty());
+}
+
+TEST_F(RegionTest, BoxIncludesItsFaces) {
+  EXPECT_EQ(Select(BoxSelector{{0.1, 0.1, 0.1}, {0.3, 0.2, 0.1}}).nodes.size(), 6u);
+  EXPECT_EQ(Select(BoxSelector{{-1, -1, -1}, {1, 1, 1}}).nodes.size(), mesh_.nodes.size());
+  EXPECT_EQ(Select(BoxSelector{{-1, -1, -1}, {1, 1, 1}}).triangles.size(), BoundaryTriangles(mesh_).size());
+  EXPECT_TRUE(Select(BoxSelector{{0.11, 0.11, 0.11}, {0.19, 0.19, 0.19}}).nodes.empty());
+}
+
+TEST_F(RegionTest, SphereIncludesItsSurface) {
+  EXPECT_EQ(Select(SphereSelector{{0.2, 0.2, 0.2}, 0.1}).nodes.size(), 7u);
+  EXPECT_TRUE(Select(SphereSelector{{0.2, 0.2, 0.2}, 0.1}).triangles.empty()) << "inside of the body";
+  EXPECT_EQ(Select(SphereSelector{{0, 0, 0}, 0.05}).nodes, std::vector<std::int32_t>{0});
+}
+
+TEST_F(RegionTest, SideTakesTrianglesThatFaceADirection) {
+  const Region top = Select(SideSelector{{0, 0, 5}, 0.7});
+  EXPECT_EQ(top.nodes.size(), 50u);
+  EXPECT_NEAR(Area(mesh_, top), 0.9 * 0.4, 1e-15);
+  for (const auto& [a, b, c] : top.triangles) {
+    EXPECT_GT((mesh_.nodes[b] - mesh_.nodes[a]).cross(mesh_.nodes[c] - mesh_.nodes[a]).z(), 0);
+  }
+  EXPECT_NEAR(Area(mesh_, Select(SideSelector{{0, 0, 1}, kPi / 2})), 0.36 + 2 * 0.36 + 2 * 0.16, 1e-13);
+  EXPECT_NEAR(Area(mesh_, Select(SideSelector{{0, 0, 1}, 3.2})), 2 * (0.36 + 0.36 + 0.16), 1e-13);
+}
+
+// A cap of a sphere of half angle a has the area 2 pi r^2 (1 - cos a).
+TEST_F(RegionTest, SideOfASphereIsACap) {
+  const TetMesh sphere = MakeSphere(1, 40);
+  const Region cap = SelectRegion(sphere, BoundaryTriangles(sphere), "cap", SideSelector{{0, -2, 0}, 0.5});
+  EXPECT_NEAR(Area(sphere, cap) / (2 * kPi * (1 - std::cos(0.5))), 1, 0.03);
+  for (const std::int32_t n : cap.nodes) EXPECT_LT(sphere.nodes[n].y(), -std::cos(0.6));
+}
+
+class TagRegionTest : public testing::Test {
+ protected:
+  Region Select(std::int32_t tag) { return SelectRegion(mesh_, BoundaryTriangles(mesh_), "tagged", TagSelector{tag}); }
+  TetMesh mesh_ = [] {
+    Problems problems;
+    return *ReadMesh({"m.msh", kGmsh2, ""}, problems);
+  }();
+};
+
+// The file has the triangle 0 2 3 seen from inside.
+TEST_F(TagRegionTest, TrianglesAreTurnedOutward) {
+  const Region region = Select(7);
+  EXPECT_EQ(region.nodes, (std::vector<std::int32_t>{0, 2, 3}));
+  EXPECT_EQ(region.triangles, (std::vector<Triangle>{{0, 3, 2}}));
+}
+
+TEST_F(TagRegionTest, TetrahedraGiveNodesAndTheirPartOfTheSurface) {
+  const Region region = Select(20);
+  EXPECT_EQ(region.nodes, (std::vector<std::int32_t>{1, 2, 3, 4}));
+  EXPECT_EQ(region.triangles.size(), 3u);
+}
+
+TEST_F(TagRegionTest, TrianglesGoBeforeTetrahedraOfTheSameTag) {
+  mesh_.triangle_tags[0] = 20;
+  EXPECT_EQ(Select(20).nodes, (std::vector<std::int32_t>{0, 2, 3}));
+}
+
+TEST_F(TagRegionTest, TrianglesInsideGiveNodesOnly) {
+  mesh_.tagged_triangles[0] = {1, 2, 3};
+  const Region region = Select(7);
+  EXPECT_EQ(region.nodes, (std::vector<std::int32_t>{1, 2, 3}));
+  EXPECT_TRUE(region.triangles.empty());
+}
+
+TEST_F(TagRegionTest, UnknownTagIsEmpty) { EXPECT_TRUE(Select(99).nodes.empty()); }
+
+}  // namespace
+}  // namespace fascicle
