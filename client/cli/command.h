@@ -1,0 +1,93 @@
+#ifndef FASCICLE_CLIENT_CLI_COMMAND_H_
+#define FASCICLE_CLIENT_CLI_COMMAND_H_
+
+#include <exception>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
+#include "client/lib/client.h"
+
+namespace fascicle::client {
+
+using Json = nlohmann::ordered_json;
+
+// What the program ends with.
+enum ExitCode { kDone = 0, kJobFailed = 1, kInvalidInput = 2, kNoServer = 3, kCancelled = 4 };
+
+// What every sub-command can see, and what it leaves to be done once the command line has been read.
+struct Context {
+  std::string server;  // HOST:PORT; empty: none given
+  bool json = false;   // one JSON object a line on stdout
+  std::function<int()> action;
+};
+
+// Ends a sub-command with an error for people and for programs.
+class CommandError : public std::exception {
+ public:
+  explicit CommandError(Error error) : error_(std::move(error)) {}
+  // Wrong input that has no field path.
+  static CommandError Invalid(std::string message);
+  const Error& error() const { return error_; }
+  const char* what() const noexcept override { return error_.message.c_str(); }
+
+ private:
+  Error error_;
+};
+
+// The value of a call, or a CommandError.
+template <class T>
+T Take(Result<T> result) {
+  if (!result.ok()) throw CommandError(result.error());
+  return std::move(result.value());
+}
+void Check(const std::optional<Error>& error);
+
+int ExitCodeOf(Error::Kind kind);
+
+// Tells an error: each problem as `path: message (hint)` on stderr, or one object on stdout.
+void PrintError(const Error& error, bool json);
+
+// One line of JSON on stdout. Numbers that JSON does not know (NaN) become null.
+void PrintJson(const Json& value);
+
+// A connection to the server of `--server`, by default this machine's.
+Client Connect(const Context& context);
+
+// Loads a scene and the files that it names; CommandError with all problems.
+ScenePackage LoadSceneOrFail(const std::string& path);
+
+// "jobs/ID" for "ID" or "jobs/ID".
+std::string JobName(const std::string& given);
+
+// A sub-command whose options may be mixed with the global ones.
+CLI::App* AddCommand(CLI::App& app, const std::string& name, const std::string& description,
+                     const std::string& examples);
+
+// The sub-commands, each in the file of its name. They add themselves to `app` and set `context.action` when chosen;
+// both must outlive parsing and action.
+void AddRun(CLI::App& app, Context& context);
+void AddSubmit(CLI::App& app, Context& context);
+void AddValidate(CLI::App& app, Context& context);
+void AddWatch(CLI::App& app, Context& context);
+void AddList(CLI::App& app, Context& context);
+void AddShow(CLI::App& app, Context& context);
+void AddCancel(CLI::App& app, Context& context);
+void AddDelete(CLI::App& app, Context& context);
+void AddExport(CLI::App& app, Context& context);
+void AddRender(CLI::App& app, Context& context);
+void AddPlot(CLI::App& app, Context& context);
+void AddMaterials(CLI::App& app, Context& context);
+void AddSchema(CLI::App& app, Context& context);
+void AddExamples(CLI::App& app, Context& context);
+void AddCompletion(CLI::App& app, Context& context);
+
+// The whole command line.
+int Main(int argc, char** argv);
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_CLI_COMMAND_H_

@@ -1,0 +1,79 @@
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "client/cli/command.h"
+#include "client/cli/follow.h"
+#include "client/export/csv.h"
+#include "client/export/vtk_series.h"
+#include "client/lib/replace_file.h"
+
+namespace fascicle::client {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExamples =
+    R"(  fascicle export 3f2a --out results                  frames.pvd with its .vtu files, and series.csv
+  fascicle export 3f2a --out results --format csv     the table alone
+  fascicle export 3f2a --out results --from 10 --to 20 --every 2
+)";
+
+struct Options {
+  std::string job;
+  std::string out;
+  std::vector<std::string> formats = {"vtk", "csv"};
+  std::int64_t from = 0;
+  std::optional<std::int64_t> to;
+  std::int64_t every = 1;
+};
+
+int Export(const Options& options, const Context& context) {
+  const std::set<std::string> formats(options.formats.begin(), options.formats.end());
+  Client client = Connect(context);
+  std::optional<VtkSeriesWriter> writer;
+  std::optional<SeriesTable> table;
+  const auto on_frame = [&](const v1::Geometry& geometry, const v1::Frame& frame) {
+    if (options.to && frame.index() > *options.to) return false;
+    if ((frame.index() - options.from) % options.every != 0) return true;
+    if (!table) table.emplace(geometry);
+    table->Add(frame);
+    if (formats.contains("vtk")) {
+      if (!writer) writer.emplace(geometry, options.out);
+      writer->Add(frame);
+    }
+    return true;
+  };
+  const Followed followed = ReadStored(client, JobName(options.job), options.from, on_frame);
+  if (!table) {
+    throw CommandError::Invalid("there is no such frame; the job has " + std::to_string(followed.job.frame_count()));
+  }
+  if (writer) writer->Finish();
+  if (formats.contains("csv")) ReplaceFile(fs::path(options.out) / "series.csv", CsvOf(*table));
+  if (context.json) {
+    PrintJson({{"job", followed.job.name()}, {"out", options.out}, {"frames", table->size()}});
+  } else {
+    std::cout << table->size() << " frames of " << followed.job.name() << " are in " << options.out << '\n';
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddExport(CLI::App& app, Context& context) {
+  CLI::App* command =
+      AddCommand(app, "export", "Write a job's frames as a VTK series and its series as CSV", kExamples);
+  const auto options = std::make_shared<Options>();
+  command->add_option("JOB", options->job, "The job")->required();
+  command->add_option("--out", options->out, "Folder for the files")->required()->type_name("DIR");
+  command->add_option("--format", options->formats, "What to write; may be repeated; both by default")
+      ->check(CLI::IsMember({"vtk", "csv"}));
+  command->add_option("--from", options->from, "First frame")->check(CLI::NonNegativeNumber);
+  command->add_option("--to", options->to, "Last frame")->check(CLI::NonNegativeNumber);
+  command->add_option("--every", options->every, "Only every n-th frame")->check(CLI::PositiveNumber);
+  command->callback(
+      [options, &context] { context.action = [options, &context] { return Export(*options, context); }; });
+}
+
+}  // namespace fascicle::client

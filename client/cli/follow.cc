@@ -1,0 +1,122 @@
+#include "client/cli/follow.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "client/cli/progress_bar.h"
+
+namespace fascicle::client {
+namespace {
+
+// Sleeps for `time`, or until a stop is requested.
+void Sleep(std::chrono::milliseconds time, const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::unique_lock lock(mutex);
+  wake.wait_for(lock, stop, time, [] { return false; });
+}
+
+void Show(const v1::Job& job, ProgressBar& bar) { bar.Show(job.state(), job.progress(), job.queue_position()); }
+
+bool HasStarted(v1::Job::State state) { return state != v1::Job::STATE_QUEUED && state != v1::Job::STATE_STARTING; }
+
+// The job once it has been started or is final, or as it is when a stop was requested.
+v1::Job AwaitStart(Client& client, const std::string& name, ProgressBar& bar, const std::stop_token& stop) {
+  std::chrono::milliseconds pause(20);
+  for (;;) {
+    v1::Job job = Take(client.GetJob(name));
+    Show(job, bar);
+    if (HasStarted(job.state()) || stop.stop_requested()) return job;
+    Sleep(pause, stop);
+    pause = std::min(pause * 2, std::chrono::milliseconds(500));
+  }
+}
+
+// Asks for the job's progress now and then, so that the bar moves between frames.
+std::jthread PollProgress(Client& client, const std::string& name, ProgressBar& bar) {
+  return std::jthread([&client, &bar, name](const std::stop_token& stop) {
+    for (; !stop.stop_requested(); Sleep(std::chrono::milliseconds(400), stop)) {
+      const Result<v1::Job> job = client.GetJob(name);
+      if (job.ok()) Show(job.value(), bar);
+    }
+  });
+}
+
+// The geometry, unless the job ended before it had any.
+std::optional<v1::Geometry> FetchGeometry(Client& client, const v1::Job& job) {
+  Result<v1::Geometry> geometry = client.GetGeometry(job.name());
+  if (geometry.ok()) return std::move(geometry.value());
+  if (IsFinal(job.state()) && job.frame_count() == 0) return std::nullopt;
+  throw CommandError(geometry.error());
+}
+
+Followed Nothing(v1::Job job, bool stopped) {
+  return {std::move(job), {}, SeriesTable(v1::Geometry()), std::nullopt, stopped};
+}
+
+}  // namespace
+
+bool IsFinal(v1::Job::State state) {
+  return state == v1::Job::STATE_SUCCEEDED || state == v1::Job::STATE_FAILED || state == v1::Job::STATE_CANCELLED;
+}
+
+Followed Follow(Client& client, const std::string& name, std::int64_t start_index, const FrameHook& on_frame,
+                const std::stop_token& stop) {
+  ProgressBar bar;
+  v1::Job job = AwaitStart(client, name, bar, stop);
+  if (!HasStarted(job.state())) return Nothing(std::move(job), true);
+  std::optional<v1::Geometry> geometry = FetchGeometry(client, job);
+  if (!geometry) return Nothing(std::move(job), false);
+  Followed followed{{}, std::move(*geometry), SeriesTable({}), std::nullopt, false};
+  followed.table = SeriesTable(followed.geometry);
+  WatchOptions options;
+  options.start_index = start_index;
+  WatchEvents events;
+  events.frame = [&](const v1::Frame& frame) {
+    followed.table.Add(frame);
+    bar.SetFrames(frame.index() + 1);
+    if (on_frame) on_frame(followed.geometry, frame);
+    followed.last_frame = frame;
+  };
+  events.progress = [&](v1::Job::State state, const v1::Progress& progress) { bar.Show(state, progress); };
+  events.reconnecting = [&](const std::string& message) { bar.Say(message); };
+  std::jthread poll;
+  if (bar.on_terminal()) poll = PollProgress(client, name, bar);
+  Result<v1::Job> end = client.Watch(name, options, events, stop);
+  if (!end.ok() && end.error().kind == Error::Kind::kStopped) {
+    followed.stopped = true;
+    followed.job = Take(client.GetJob(name));
+    return followed;
+  }
+  followed.job = Take(std::move(end));
+  return followed;
+}
+
+Followed ReadStored(Client& client, const std::string& name, std::int64_t start_index,
+                    const std::function<bool(const v1::Geometry&, const v1::Frame&)>& on_frame) {
+  v1::Job job = Take(client.GetJob(name));
+  if (job.frame_count() == 0) {
+    throw CommandError::Invalid(name + " has no frames yet; it is " + StateName(job.state()));
+  }
+  Followed followed{std::move(job), Take(client.GetGeometry(name)), SeriesTable({}), std::nullopt, false};
+  followed.table = SeriesTable(followed.geometry);
+  std::stop_source enough;
+  WatchOptions options;
+  options.start_index = start_index;
+  options.follow = false;
+  WatchEvents events;
+  events.frame = [&](const v1::Frame& frame) {
+    if (enough.stop_requested()) return;
+    followed.table.Add(frame);
+    followed.last_frame = frame;
+    if (!on_frame(followed.geometry, frame)) enough.request_stop();
+  };
+  const Result<v1::Job> end = client.Watch(name, options, events, enough.get_token());
+  if (!end.ok() && !enough.stop_requested()) throw CommandError(end.error());
+  return followed;
+}
+
+}  // namespace fascicle::client

@@ -1,0 +1,67 @@
+#include <cstdio>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "client/cli/command.h"
+
+namespace fascicle::client {
+namespace {
+
+constexpr const char* kFooter = R"(First steps:
+  fascicle examples write fusiform_isometric      a muscle that contracts between fixed ends
+  fascicle run fusiform_isometric.json --out out  simulate it here; out/ gets tables and pictures
+  fascicle schema                                 what a scene can say
+  fascicle COMMAND --help                         more, with examples
+
+Exit codes:
+  0  done
+  1  the job failed, or something went wrong on the way
+  2  invalid input: each problem stands on a line of its own
+  3  no server, or it does not answer
+  4  cancelled
+)";
+
+}  // namespace
+
+int Main(int argc, char** argv) {
+  CLI::App app("fascicle simulates skeletal muscle and other soft tissue, here or on a server.", "fascicle");
+  Context context;
+  app.add_option("--server", context.server, "The server; 127.0.0.1:7300 when not given. `run` needs none")
+      ->envname("FASCICLE_SERVER")
+      ->type_name("HOST:PORT");
+  app.add_flag("--json", context.json, "Write one JSON object a line to stdout");
+  app.require_subcommand(1);
+  app.footer(kFooter);
+  AddRun(app, context);
+  AddSubmit(app, context);
+  AddValidate(app, context);
+  AddWatch(app, context);
+  AddList(app, context);
+  AddShow(app, context);
+  AddCancel(app, context);
+  AddDelete(app, context);
+  AddExport(app, context);
+  AddRender(app, context);
+  AddPlot(app, context);
+  AddMaterials(app, context);
+  AddSchema(app, context);
+  AddExamples(app, context);
+  AddCompletion(app, context);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kInvalidInput;
+  }
+  try {
+    return context.action();
+  } catch (const CommandError& error) {
+    PrintError(error.error(), context.json);
+    return ExitCodeOf(error.error().kind);
+  } catch (const std::exception& error) {
+    PrintError({Error::Kind::kInternal, error.what(), "", {}}, context.json);
+    return kJobFailed;
+  }
+}
+
+}  // namespace fascicle::client

@@ -1,0 +1,117 @@
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "client/cli/command.h"
+#include "client/cli/follow.h"
+#include "client/cli/interrupts.h"
+#include "client/cli/outputs.h"
+#include "client/cli/summary.h"
+#include "client/export/csv.h"
+#include "client/export/vtk_series.h"
+#include "client/lib/replace_file.h"
+#include "server/embedded_server.h"
+
+namespace fascicle::client {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExamples = R"(  fascicle run scene.json                         simulate and print what came out
+  fascicle run scene.json --out out               and keep series.csv, series.png, frames.pvd and last.png in out/
+  fascicle run scene.json --threads 2 --data db   on two threads; the server's database stays in db/
+  fascicle run scene.json --json | jq .series     for programs
+
+Ctrl-C cancels the job (exit code 4); what was computed until then is kept.
+)";
+
+struct Options {
+  std::string scene;
+  std::string out;
+  std::string data;
+  int threads = 1;
+};
+
+// A folder that is removed in the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "fascicle-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("can't make a temporary folder " + name);
+    path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+void WriteResults(const Followed& followed, const fs::path& folder) {
+  if (followed.table.size() == 0) return;
+  ReplaceFile(folder / "series.csv", CsvOf(followed.table));
+  ReplaceFile(folder / "summary.json", SummaryJson(followed.job, followed.table).dump(2) + "\n");
+  const std::vector<PlotPanel> panels = PanelsOf(followed.table, {});
+  if (!panels.empty() && followed.table.size() > 1) WritePlot(panels, folder / "series.png");
+  DrawPicture(followed.geometry, *followed.last_frame, DefaultPicture(followed.job, *followed.last_frame),
+              folder / "last.png");
+}
+
+int Run(const Options& options, const Context& context) {
+  const ScenePackage package = LoadSceneOrFail(options.scene);
+  std::stop_source interrupted;
+  // Before the server, whose threads must not take the signals.
+  const Interrupts interrupts([&] { interrupted.request_stop(); });
+  std::unique_ptr<TemporaryFolder> temporary;
+  if (options.data.empty()) temporary = std::make_unique<TemporaryFolder>();
+  server::ServerOptions server_options;
+  server_options.data_directory = temporary ? temporary->path().string() : options.data;
+  server_options.workers = 1;
+  server_options.default_threads = options.threads;
+  const auto server = server::EmbeddedServer::Start(server_options);
+  Client client(server->address());
+  const v1::Job job = Take(client.Submit(package, options.threads));
+  const std::stop_callback cancel(interrupted.get_token(), [&] { (void)client.CancelJob(job.name()); });
+  std::optional<VtkSeriesWriter> frames;
+  const auto keep = [&](const v1::Geometry& geometry, const v1::Frame& frame) {
+    if (!frames) frames.emplace(geometry, options.out);
+    frames->Add(frame);
+  };
+  const Followed followed = Follow(client, job.name(), 0, options.out.empty() ? FrameHook() : keep, {});
+  server->Stop();
+  if (frames) frames->Finish();
+  if (context.json) {
+    PrintJson(SummaryJson(followed.job, followed.table));
+  } else {
+    PrintSummary(followed.job, followed.table);
+  }
+  if (!options.out.empty()) {
+    WriteResults(followed, options.out);
+    if (!context.json) std::cout << "results are in " << options.out << "\n";
+  }
+  return ExitCodeOf(followed.job);
+}
+
+}  // namespace
+
+void AddRun(CLI::App& app, Context& context) {
+  CLI::App* command = AddCommand(app, "run", "Simulate a scene here: no server is needed", kExamples);
+  const auto options = std::make_shared<Options>();
+  command->add_option("SCENE", options->scene, "The scene file (JSON, see `fascicle schema`)")->required();
+  command->add_option("--out", options->out, "Folder for results: series.csv, frames.pvd, pictures, summary.json")
+      ->type_name("DIR");
+  command->add_option("--data", options->data, "Keep the server's database in this folder")->type_name("DIR");
+  command->add_option("--threads", options->threads, "Threads that step the scene; results do not depend on it")
+      ->check(CLI::Range(1, 256));
+  command->callback([options, &context] { context.action = [options, &context] { return Run(*options, context); }; });
+}
+
+}  // namespace fascicle::client

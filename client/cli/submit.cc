@@ -1,0 +1,45 @@
+#include <iostream>
+#include <memory>
+
+#include "client/cli/command.h"
+#include "client/cli/summary.h"
+
+namespace fascicle::client {
+namespace {
+
+constexpr const char* kExamples =
+    R"text(  fascicle --server lab:7878 submit scene.json             prints the job's name
+  fascicle submit scene.json --threads 4                   with FASCICLE_SERVER set
+  fascicle watch "$(fascicle submit scene.json)"           submit, then follow
+)text";
+
+struct Options {
+  std::string scene;
+  int threads = 0;
+};
+
+int Submit(const Options& options, const Context& context) {
+  const ScenePackage package = LoadSceneOrFail(options.scene);
+  Client client = Connect(context);
+  const v1::Job job = Take(client.Submit(package, options.threads));
+  if (context.json) {
+    PrintJson(JobJson(job));
+  } else {
+    std::cout << job.name() << '\n';
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddSubmit(CLI::App& app, Context& context) {
+  CLI::App* command = AddCommand(app, "submit", "Send a scene to a server and return at once", kExamples);
+  const auto options = std::make_shared<Options>();
+  command->add_option("SCENE", options->scene, "The scene file")->required();
+  command->add_option("--threads", options->threads, "Threads that step the scene; the server's default when 0")
+      ->check(CLI::Range(0, 256));
+  command->callback(
+      [options, &context] { context.action = [options, &context] { return Submit(*options, context); }; });
+}
+
+}  // namespace fascicle::client

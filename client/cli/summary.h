@@ -1,0 +1,24 @@
+#ifndef FASCICLE_CLIENT_CLI_SUMMARY_H_
+#define FASCICLE_CLIENT_CLI_SUMMARY_H_
+
+#include "client/cli/command.h"
+#include "client/lib/series_table.h"
+#include "fascicle/v1/job.pb.h"
+
+namespace fascicle::client {
+
+// What a job came to: state, frames, and final, lowest and highest value of every series in `table`.
+Json SummaryJson(const v1::Job& job, const SeriesTable& table);
+// The same as a table on stdout; the failure, if any, with its advice.
+void PrintSummary(const v1::Job& job, const SeriesTable& table);
+
+// 0, 1 or 4, by the job's final state; 0 while it goes on.
+int ExitCodeOf(const v1::Job& job);
+
+// A job as `show`, `list`, `submit` and others print it.
+Json JobJson(const v1::Job& job);
+void PrintFailure(const v1::Failure& failure);
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_CLI_SUMMARY_H_

@@ -1,0 +1,39 @@
+#include <iostream>
+#include <memory>
+
+#include "client/cli/command.h"
+#include "server/embedded_server.h"
+
+namespace fascicle::client {
+namespace {
+
+constexpr const char* kExamples =
+    R"(  fascicle validate scene.json            every problem on a line of its own, exit code 2
+  fascicle validate scene.json --json     the same as one object
+)";
+
+int Validate(const std::string& scene, const Context& context) {
+  const ScenePackage package = LoadSceneOrFail(scene);
+  // The server knows all rules; without one, one is started here.
+  std::unique_ptr<server::EmbeddedServer> own;
+  if (context.server.empty()) own = server::EmbeddedServer::Start({});
+  Client client(own ? own->address() : context.server);
+  Check(client.Validate(package, 0));
+  if (context.json) {
+    PrintJson({{"scene", scene}, {"valid", true}});
+  } else {
+    std::cout << scene << ": valid\n";
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddValidate(CLI::App& app, Context& context) {
+  CLI::App* command = AddCommand(app, "validate", "Check a scene and its files without running it", kExamples);
+  const auto scene = std::make_shared<std::string>();
+  command->add_option("SCENE", *scene, "The scene file")->required();
+  command->callback([scene, &context] { context.action = [scene, &context] { return Validate(*scene, context); }; });
+}
+
+}  // namespace fascicle::client

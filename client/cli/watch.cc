@@ -1,0 +1,81 @@
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include "client/cli/command.h"
+#include "client/cli/follow.h"
+#include "client/cli/interrupts.h"
+#include "client/cli/summary.h"
+
+namespace fascicle::client {
+namespace {
+
+constexpr const char* kExamples =
+    R"(  fascicle watch jobs/3f2a             follow a job to its end, then print what came out
+  fascicle watch 3f2a --digests        and a line for each frame: index, time, SHA-256 of its numbers
+  fascicle watch 3f2a --from 12        start with frame 12: the frames are the same however often one joins
+
+Ctrl-C leaves (exit code 4); the job goes on.
+)";
+
+struct Options {
+  std::string job;
+  std::int64_t from = 0;
+  bool digests = false;
+};
+
+std::string HexOf(const std::string& bytes) {
+  std::string text;
+  for (const unsigned char byte : bytes) {
+    char digits[3];
+    std::snprintf(digits, sizeof digits, "%02x", byte);
+    text += digits;
+  }
+  return text;
+}
+
+void PrintDigest(const v1::Frame& frame, bool json) {
+  if (json) {
+    PrintJson(
+        {{"frame", frame.index()}, {"time", frame.time()}, {"step", frame.step()}, {"digest", HexOf(frame.digest())}});
+  } else {
+    std::printf("frame %lld  t = %.9g s  %s\n", static_cast<long long>(frame.index()), frame.time(),
+                HexOf(frame.digest()).c_str());
+    std::fflush(stdout);  // a reader at the other end of a pipe follows too
+  }
+}
+
+int Watch(const Options& options, const Context& context) {
+  std::stop_source interrupted;
+  const Interrupts interrupts([&] { interrupted.request_stop(); });
+  Client client = Connect(context);
+  FrameHook on_frame;
+  if (options.digests) {
+    on_frame = [&](const v1::Geometry&, const v1::Frame& frame) { PrintDigest(frame, context.json); };
+  }
+  const Followed followed = Follow(client, JobName(options.job), options.from, on_frame, interrupted.get_token());
+  if (context.json) {
+    PrintJson(SummaryJson(followed.job, followed.table));
+  } else {
+    PrintSummary(followed.job, followed.table);
+  }
+  if (followed.stopped) {
+    std::cerr << "fascicle: left " << followed.job.name() << "; it goes on. To stop it: fascicle cancel "
+              << followed.job.name() << '\n';
+    return kCancelled;
+  }
+  return ExitCodeOf(followed.job);
+}
+
+}  // namespace
+
+void AddWatch(CLI::App& app, Context& context) {
+  CLI::App* command = AddCommand(app, "watch", "Follow a job to its end", kExamples);
+  const auto options = std::make_shared<Options>();
+  command->add_option("JOB", options->job, "The job, as `submit` and `list` print it")->required();
+  command->add_option("--from", options->from, "First frame to read")->check(CLI::NonNegativeNumber);
+  command->add_flag("--digests", options->digests, "Print a line with the digest of each frame");
+  command->callback([options, &context] { context.action = [options, &context] { return Watch(*options, context); }; });
+}
+
+}  // namespace fascicle::client
