@@ -119,6 +119,11 @@ ActiveJob::Change EndOf(const JobCodec& codec, const Outcome& outcome) {
 }
 
 void End(const RunContext& context, ActiveJob& job, const Outcome& outcome) {
+  if (outcome.kind == Outcome::Kind::kSucceeded) {
+    Progress progress = job.View({}).progress;
+    progress.fraction = 1;  // also when it has settled early
+    job.SetProgress(progress);
+  }
   constexpr int kTries = 3;
   std::string error;
   for (int i = 0; i < kTries; ++i) {
