@@ -15,6 +15,7 @@
 
 #include "client/lib/scene_json.h"
 #include "core/base/digest.h"
+#include "proto/rules/field_rules.h"
 
 namespace fascicle::client {
 namespace {
@@ -164,6 +165,18 @@ std::optional<v1::Scene> ReadScene(const std::string& text, Problems& problems) 
   return scene;
 }
 
+// A scene that can't be read in full never reaches the server, which checks everything. What can be told of the rest
+// without it is told here, so that a user does not mend a file mistake by mistake.
+void CheckRest(const v1::Scene& scene, Problems& problems) {
+  Problems rest;
+  CheckRules(scene, rest);
+  std::set<std::string> known;
+  for (const Problem& problem : problems.kept()) known.insert(problem.path);
+  for (const Problem& problem : rest.kept()) {
+    if (known.count(problem.path) == 0) problems.Add(problem.path, problem.message, problem.hint);
+  }
+}
+
 }  // namespace
 
 std::optional<v1::Scene> ParseScene(const std::string& json, Problems& problems) {
@@ -203,6 +216,7 @@ std::optional<ScenePackage> LoadScene(const std::string& path, Problems& problem
     CollectFiles(package.scene, "", files);
     AssetReader reader(file.parent_path(), package, own);
     for (const NamedFile& named : files) reader.Read(named);
+    if (!own.empty()) CheckRest(package.scene, own);
   }
   problems.Append("", own);
   if (!own.empty()) return std::nullopt;

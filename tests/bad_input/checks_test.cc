@@ -1,0 +1,103 @@
+// Wrong scene files against what reads them in process: the client's reader, then the server's translation.
+#include <algorithm>
+#include <fstream>
+#include <optional>
+
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cases.h"
+#include "client/lib/scene_file.h"
+#include "server/translate/translate.h"
+
+namespace fascicle {
+namespace {
+
+// All that is said about a scene file.
+Problems ProblemsOf(const std::filesystem::path& file) {
+  Problems problems;
+  const auto package = client::LoadScene(file.string(), problems);
+  if (!package) return problems;
+  EXPECT_TRUE(problems.empty());
+  const auto reader = [&](const std::string& digest) -> std::optional<std::string> {
+    for (const client::AssetFile& asset : package->assets) {
+      if (asset.sha256_hex == digest) return asset.bytes;
+    }
+    return std::nullopt;
+  };
+  EXPECT_EQ(server::TranslateScene(package->scene, reader, problems), nullptr);
+  return problems;
+}
+
+bool IsReported(const Problems& problems, const Expectation& expected) {
+  return std::any_of(problems.kept().begin(), problems.kept().end(), [&](const Problem& problem) {
+    return problem.path == expected.path &&
+           (problem.message + " " + problem.hint).find(expected.text) != std::string::npos;
+  });
+}
+
+class BadInput : public testing::TestWithParam<BadCase> {};
+
+TEST_P(BadInput, IsReportedInFull) {
+  const auto before = Listing(GetParam().folder);
+  const Problems problems = ProblemsOf(GetParam().scene());
+  EXPECT_FALSE(problems.empty());
+  for (const Expectation& expected : GetParam().expected) {
+    EXPECT_TRUE(IsReported(problems, expected)) << expected.path << " | " << expected.text << "\nis missing in\n"
+                                                << problems.ToString();
+  }
+  for (const Problem& problem : problems.kept()) {
+    EXPECT_FALSE(problem.message.empty()) << problem.path;
+    EXPECT_EQ(std::count(problems.kept().begin(), problems.kept().end(), problem), 1)
+        << problem.path << " is said twice";
+  }
+  EXPECT_EQ(Listing(GetParam().folder), before) << "something was left behind";
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, BadInput, testing::ValuesIn(AllCases()),
+                         [](const auto& bad) { return bad.param.name; });
+
+TEST(BadInputCases, AreMany) { EXPECT_GE(AllCases().size(), 40u); }
+
+TEST(BadInputFiles, ASceneThatIsNotThereOrIsAFolder) {
+  Problems problems;
+  EXPECT_FALSE(client::LoadScene(FASCICLE_ROOT "/tests/bad_input/cases/none.json", problems).has_value());
+  EXPECT_FALSE(client::LoadScene(FASCICLE_ROOT "/tests/bad_input/cases", problems).has_value());
+  EXPECT_EQ(problems.count(), 2u);
+}
+
+// Links and sparse files can't be kept in a repository everywhere.
+class GeneratedFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_ / "scene");
+    std::filesystem::copy_file(FASCICLE_ROOT "/tests/bad_input/cases/mesh_nan/scene.json",
+                               folder_ / "scene/scene.json");
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("bad_input_" + std::to_string(::getpid()));
+};
+
+TEST_F(GeneratedFiles, ALinkOutOfTheFolder) {
+  std::ofstream(folder_ / "mesh.msh") << "outside";
+  std::filesystem::create_symlink(folder_ / "mesh.msh", folder_ / "scene/mesh.msh");
+  EXPECT_TRUE(IsReported(ProblemsOf(folder_ / "scene/scene.json"), {"bodies[0].mesh.file.path", "leads out"}));
+}
+
+TEST_F(GeneratedFiles, AFileOf5Gigabytes) {
+  std::ofstream(folder_ / "scene/mesh.msh") << "";
+  std::filesystem::resize_file(folder_ / "scene/mesh.msh", std::uintmax_t{5} << 30);  // sparse: takes no disk
+  EXPECT_TRUE(IsReported(ProblemsOf(folder_ / "scene/scene.json"), {"bodies[0].mesh.file.path", "4 GiB"}));
+}
+
+TEST_F(GeneratedFiles, ASceneOf17Megabytes) {
+  std::filesystem::resize_file(folder_ / "scene/scene.json", std::uintmax_t{17} << 20);
+  EXPECT_TRUE(IsReported(ProblemsOf(folder_ / "scene/scene.json"), {"", "16 MiB"}));
+}
+
+}  // namespace
+}  // namespace fascicle

@@ -1,0 +1,130 @@
+// The same wrong scenes against the real programs: exit code 2, every problem printed, nothing left behind, and a
+// server that goes on serving.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include <google/rpc/error_details.pb.h>
+#include <google/rpc/status.pb.h>
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+
+#include "../server/server_process.h"
+#include "cases.h"
+#include "client/lib/client.h"
+#include "fascicle/v1/simulation_service.grpc.pb.h"
+
+namespace fascicle {
+namespace {
+
+namespace fs = std::filesystem;
+using service_test::ServerProcess;
+using service_test::TemporaryFolder;
+
+struct Answer {
+  int exit_code = -1;
+  std::string output;
+};
+
+class BadInputService : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto address = server_.Address();
+    ASSERT_TRUE(address.has_value()) << server_.ErrorOutput();
+    address_ = *address;
+  }
+
+  // Runs `fascicle` with arguments without blanks or quotes.
+  Answer Fascicle(const std::string& arguments) const {
+    const std::string out = scratch_.path() + "/out";
+    const int status = std::system((std::string(FASCICLE_PROGRAM) + " " + arguments + " >" + out + " 2>&1").c_str());
+    std::ifstream in(out);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+            {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()}};
+  }
+
+  void ExpectRefused(const BadCase& bad, const std::string& arguments) const {
+    const Answer answer = Fascicle(arguments);
+    EXPECT_EQ(answer.exit_code, 2) << bad.name << ": " << arguments << "\n" << answer.output;
+    for (const Expectation& expected : bad.expected) {
+      EXPECT_NE(answer.output.find(expected.path), std::string::npos) << bad.name << ": " << arguments << "\n"
+                                                                      << answer.output;
+      EXPECT_NE(answer.output.find(expected.text), std::string::npos) << bad.name << ": " << arguments << "\n"
+                                                                      << answer.output;
+    }
+  }
+
+  void ExpectServes() {
+    client::Client client(address_);
+    EXPECT_TRUE(client.GetServerInfo().ok());
+    const auto jobs = client.ListJobs(10, {});
+    ASSERT_TRUE(jobs.ok());
+    EXPECT_TRUE(jobs.value().empty()) << "a job was made of a wrong scene";
+    EXPECT_FALSE(server_.Wait(std::chrono::milliseconds(0)).has_value()) << server_.ErrorOutput();
+  }
+
+  const TemporaryFolder data_;
+  const TemporaryFolder scratch_;
+  ServerProcess server_{{"--listen", "127.0.0.1:0", "--data", data_.path()}};
+  std::string address_;
+};
+
+TEST_F(BadInputService, ProgramsRefuseEveryCase) {
+  for (const BadCase& bad : AllCases()) {
+    const auto before = Listing(bad.folder);
+    ExpectRefused(bad, "--server " + address_ + " submit " + bad.scene().string());
+    ExpectRefused(bad, "--server " + address_ + " validate " + bad.scene().string());
+    ExpectRefused(bad, "run " + bad.scene().string() + " --out " + scratch_.path() + "/results");
+    EXPECT_EQ(Listing(bad.folder), before) << bad.name;
+    EXPECT_FALSE(fs::exists(scratch_.path() + "/results")) << bad.name;
+  }
+  ExpectServes();
+  // Whole assets are kept for later jobs; jobs and parts of uploads are not.
+  for (const fs::path& path : Listing(data_.path())) {
+    if (!fs::is_regular_file(path) || path.filename().string().starts_with("control.db")) continue;
+    if (path.filename() == "lock" || path.filename().string().ends_with(".lock")) continue;
+    EXPECT_EQ(path.parent_path().filename(), "assets") << path;
+    EXPECT_EQ(path.filename().string().size(), 64u) << path;
+  }
+}
+
+TEST_F(BadInputService, TheWireIsCheckedToo) {
+  const auto stub = v1::JobService::NewStub(grpc::CreateChannel(address_, grpc::InsecureChannelCredentials()));
+  v1::CreateJobRequest request;
+  request.mutable_job()->set_threads(-1);
+  v1::Scene& scene = *request.mutable_job()->mutable_scene();
+  scene.set_duration(std::numeric_limits<double>::quiet_NaN());
+  scene.mutable_output()->set_frame_interval(0.1);
+  v1::Body& body = *scene.add_bodies();
+  body.set_name("b");
+  body.set_unit(static_cast<v1::LengthUnit>(77));
+  body.mutable_mesh()->mutable_box();
+  body.mutable_mesh()->mutable_box()->add_size(std::numeric_limits<double>::infinity());
+  body.mutable_fibres()->mutable_file()->set_path("../../etc/passwd");
+  body.mutable_fibres()->mutable_file()->set_asset("assets/../../../etc/passwd");
+  grpc::ClientContext context;
+  v1::Job job;
+  const grpc::Status status = stub->CreateJob(&context, request, &job);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << status.error_message();
+  google::rpc::Status details;
+  ASSERT_TRUE(details.ParseFromString(status.error_details()));
+  google::rpc::BadRequest bad;
+  bool found = false;
+  for (const auto& any : details.details()) found = any.UnpackTo(&bad) || found;
+  ASSERT_TRUE(found) << details.ShortDebugString();
+  std::string paths;
+  for (const auto& violation : bad.field_violations()) {
+    paths += violation.field() + "\n";
+    EXPECT_FALSE(violation.description().empty()) << violation.field();
+  }
+  for (const char* path : {"duration", "method", "threads", "bodies[0].unit", "bodies[0].mesh.box.size",
+                           "bodies[0].material", "bodies[0].fibres.file.asset"}) {
+    EXPECT_NE(paths.find(path), std::string::npos) << path << " is missing in\n" << paths;
+  }
+  ExpectServes();
+}
+
+}  // namespace
+}  // namespace fascicle
