@@ -146,11 +146,12 @@ void CheckUnusedNodes(const TetMesh& mesh, Problems& problems) {
 
 using Cell = std::array<std::int64_t, 3>;
 
-// Nodes in one cell of a fine grid are one; so are those that a cell's wall parts by less than a tenth of its width.
-// Each cell but the first of its kind is looked up in the few others that near: O(n log n).
+// Nodes in one cell of a fine grid coincide, and so do nodes in neighbouring cells when one of them is within a tenth
+// of a cell of the other's: whatever is that close is found. A node is compared with the lowest one of each cell only,
+// not with all in it: O(n log n) for any mesh.
 void CheckCoincidentNodes(const TetMesh& mesh, const MeshReport& report, Problems& problems) {
   const double width = kCoincident * (report.highest - report.lowest).norm();
-  if (!(width > 0)) return;
+  if (!(width > 0) || !std::isfinite(width)) return;
   const auto cell_of = [&](const Vec3& x) {
     const Vec3 at = ((x - report.lowest) / width).array().floor();
     return Cell{std::int64_t(at.x()), std::int64_t(at.y()), std::int64_t(at.z())};

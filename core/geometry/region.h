@@ -37,7 +37,10 @@ struct Region {
   std::vector<Triangle> triangles;  // of the surface: outward, all nodes in `nodes` (side, tag: the selected ones)
 };
 
-// Round-off allowance of plane, box and sphere: 1e-9 of the mesh's diagonal. May be empty.
+// Selects what a selector names; may be empty. Tag: the triangles with the tag, and if there are none the tetrahedra
+// with it; triangles inside of the body give nodes only. Side: triangles whose outward normal is within the angle.
+// Round-off allowance of plane, box and sphere: 1e-9 of the mesh's diagonal; of the angle: 1e-9 rad.
+// `surface` must be BoundaryTriangles(mesh).
 Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name,
                     const Selector& selector);
 
