@@ -15,7 +15,7 @@ class CorotatedLinear {
  public:
   static constexpr const char* kName = "corotated_linear";
   static constexpr const char* kTitle = "Corotated linear";
-  static constexpr const char* kSource = "Sifakis & Barbic 2012, FEM Simulation of 3D Deformable Solids, 3.4";
+  static constexpr const char* kSource = "Sifakis 2012, FEM Simulation of 3D Deformable Solids, 3.4";
   static constexpr auto kParameters = IsotropicModuli::kParameters;
   static constexpr bool kNeedsFibres = false;
 

@@ -7,7 +7,7 @@ namespace fascicle {
 
 // Curves of the fibre's stress; each gives value, derivative and integral in closed form, except where said. All are
 // pure and thread-safe.
-// [Zajac 1989, Muscle and tendon, Crit. Rev. Biomed. Eng. 17] [Blemker, Pinsky, Delp 2005, J. Biomech. 38, eqs. 8-11]
+// [Zajac 1989, Muscle and tendon, Crit. Rev. Biomed. Eng. 17] [Blemker, Pinsky, Delp 2005, J. Biomech. 38]
 
 // Active stress over peak stress as a function of the normalized length r [1]: a hump of height 1 at r = 1 that
 // vanishes outside (0.4, 1.6). Continuous; the slope jumps at 0.6 (3.6 to 3.2) and 1.4, as published.

@@ -14,7 +14,7 @@ class LinearElastic {
  public:
   static constexpr const char* kName = "linear_elastic";
   static constexpr const char* kTitle = "Linear elastic (small strain)";
-  static constexpr const char* kSource = "Hooke's law; Bonet & Wood 2008, Nonlinear Continuum Mechanics, 6.5";
+  static constexpr const char* kSource = "Hooke's law; Sifakis 2012, FEM Simulation of 3D Deformable Solids, 3.2";
   static constexpr auto kParameters = IsotropicModuli::kParameters;
   static constexpr bool kNeedsFibres = false;
 

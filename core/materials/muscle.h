@@ -22,7 +22,7 @@ class Muscle {
  public:
   static constexpr const char* kName = "muscle";
   static constexpr const char* kTitle = "Active skeletal muscle";
-  static constexpr const char* kSource = "Teran 2003, section 5; Blemker, Pinsky, Delp 2005, eqs. 8-11; Weiss 1996";
+  static constexpr const char* kSource = "Teran 2003, section 5; Blemker, Pinsky, Delp 2005; Weiss 1996";
   static constexpr std::array<ParameterInfo, 8> kParameters = {{
       {"c1", "Pa", 0, true, 1e9, false, 500, "matrix coefficient A"},
       {"c2", "Pa", 0, false, 1e9, false, 500, "matrix coefficient B"},

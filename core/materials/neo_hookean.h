@@ -14,7 +14,7 @@ class NeoHookean {
  public:
   static constexpr const char* kName = "neo_hookean";
   static constexpr const char* kTitle = "Neo-Hookean (compressible)";
-  static constexpr const char* kSource = "Bonet & Wood 2008, Nonlinear Continuum Mechanics, eq. 6.27";
+  static constexpr const char* kSource = "Bonet & Wood 2008, Nonlinear Continuum Mechanics, compressible neo-Hookean";
   static constexpr auto kParameters = IsotropicModuli::kParameters;
   static constexpr bool kNeedsFibres = false;
 

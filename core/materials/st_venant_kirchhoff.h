@@ -14,7 +14,7 @@ class StVenantKirchhoff {
  public:
   static constexpr const char* kName = "st_venant_kirchhoff";
   static constexpr const char* kTitle = "St. Venant-Kirchhoff";
-  static constexpr const char* kSource = "Bonet & Wood 2008, Nonlinear Continuum Mechanics, 6.3";
+  static constexpr const char* kSource = "Sifakis 2012, FEM Simulation of 3D Deformable Solids, 3.3";
   static constexpr auto kParameters = IsotropicModuli::kParameters;
   static constexpr bool kNeedsFibres = false;
 

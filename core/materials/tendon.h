@@ -19,7 +19,7 @@ class Tendon {
  public:
   static constexpr const char* kName = "tendon";
   static constexpr const char* kTitle = "Tendon and aponeurosis";
-  static constexpr const char* kSource = "Blemker, Pinsky, Delp 2005, eqs. 12-13; Weiss 1996; Teran 2003, section 5";
+  static constexpr const char* kSource = "Blemker, Pinsky, Delp 2005; Weiss 1996; Teran 2003, section 5";
   static constexpr std::array<ParameterInfo, 6> kParameters = {{
       {"c1", "Pa", 0, true, 1e9, false, 5e4, "matrix coefficient A"},
       {"c2", "Pa", 0, false, 1e9, false, 5e4, "matrix coefficient B"},
