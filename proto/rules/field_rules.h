@@ -16,16 +16,17 @@ namespace fascicle {
 //   Unit U; [N values;] range R; default D | required | optional.
 struct FieldRule {
   std::string unit;
-  int values = 0;                 // length of a list, 0: any
+  int values = 0;  // length of a list, 0: any
   double min = 0, max = 0;
   bool min_open = false, max_open = false;
-  std::vector<double> defaults;   // one, or `values` of them; empty: none
+  std::vector<double> defaults;  // one, or `values` of them; empty: none
   bool required = false;
-  std::string range_text;         // as written
-  std::string default_text;       // as written; empty: none
+  std::string range_text;    // as written
+  std::string default_text;  // as written; empty: none
 };
 
-// The rule of a field; nothing for a field whose comment has none. Read once from the descriptors built into the program.
+// The rule of a field; nothing for a field whose comment has none. Read once from the descriptors built into the
+// program.
 std::optional<FieldRule> RuleOf(const google::protobuf::FieldDescriptor& field);
 
 // The comment of a message, field, oneof, enum or enum value, without the rule line.
@@ -35,8 +36,8 @@ std::string CommentOf(const google::protobuf::EnumDescriptor& type);
 std::string CommentOf(const google::protobuf::EnumValueDescriptor& value);
 
 // Checks every number in `message`, to any depth, against its rule: present where required, as many values as it
-// says, finite, in range; a number without a rule has to be finite only. Enumerations must have a known value, and every
-// oneof a member. Adds each problem with its path ("bodies[0].density", "bodies[0].material.law").
+// says, finite, in range; a number without a rule has to be finite only. Enumerations must have a known value, and
+// every oneof a member. Adds each problem with its path ("bodies[0].density", "bodies[0].material.law").
 void CheckRules(const google::protobuf::Message& message, Problems& problems);
 
 // Sets every absent number that has a default, to any depth, in messages that are present.
