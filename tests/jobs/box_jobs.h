@@ -24,14 +24,14 @@ namespace fascicle::server {
 
 // The specification of such a job; its bytes are JobRecord::spec.
 struct BoxSpec {
-  double duration = 0.4;         // [s]
-  double frame_interval = 0.02;  // [s]
-  double time_step = 1e-4;       // [s]
-  double gravity = 1;            // [m/s^2] at the end; grows from 0
-  double crush = 0;              // [m] that the other end is moved against the wall; more than 0.2 m is too much
-  bool cannot_be_decoded = false;
+  double duration = 0.4;               // [s]
+  double frame_interval = 0.02;        // [s]
+  double time_step = 1e-4;             // [s]
+  double gravity = 1;                  // [m/s^2] at the end; grows from 0
+  double crush = 0;                    // [m] that the other end is moved against the wall; more than 0.2 m is too much
+  std::int64_t cannot_be_decoded = 0;  // a number of this size, so that the bytes hold no padding
 };
-static_assert(std::is_trivially_copyable_v<BoxSpec>);
+static_assert(std::is_trivially_copyable_v<BoxSpec> && sizeof(BoxSpec) == 6 * 8);
 
 inline BoxSpec Longest() { return {.duration = 1000, .frame_interval = 0.01}; }  // minutes: only to be stopped
 inline BoxSpec Collapsing() { return {.crush = 0.4}; }                           // fails after some frames

@@ -210,7 +210,7 @@ TEST_F(JobManagerTest, WhatACodecThrowsFailsTheJobAndNothingElse) {
   };
   JobManager manager(*store_, codec, Workers(1));
   const std::string encoding = manager.Submit(BoxJob({}), nullptr).record.id;
-  const std::string decoding = manager.Submit(BoxJob({.cannot_be_decoded = true}), nullptr).record.id;
+  const std::string decoding = manager.Submit(BoxJob({.cannot_be_decoded = 1}), nullptr).record.id;
   const std::string good = manager.Submit(BoxJob({}), nullptr).record.id;
   EXPECT_EQ(WaitForEnd(manager, good).record.state, JobState::kSucceeded);
   EXPECT_EQ(manager.Get(decoding)->record.state, JobState::kFailed);
