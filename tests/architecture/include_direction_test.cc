@@ -66,7 +66,7 @@ const std::map<std::string, std::set<std::string>>& AllowedRooms() {
       {"server/rpc",
        {"core/base", "fascicle/v1", "google/rpc", "server/jobs", "server/store", "server/translate", "proto/rules"}},
       {"server", {"core/base", "server/jobs", "server/store", "server/translate", "server/rpc"}},
-      {"client/lib", {"core/base", "fascicle/v1", "google/rpc"}},
+      {"client/lib", {"core/base", "fascicle/v1", "google/rpc", "proto/rules"}},
       {"client/export", {"core/base", "client/lib", "fascicle/v1"}},
       {"client/render", {"core/base", "client/lib", "fascicle/v1"}},
       {"client/cli",
