@@ -21,10 +21,10 @@ bool StaysZero(const SeriesTable::Column& column) {
 std::vector<const SeriesTable::Column*> Choose(const SeriesTable& table, const std::vector<std::string>& globs) {
   std::vector<const SeriesTable::Column*> chosen;
   for (const SeriesTable::Column& column : table.columns()) {
-    const bool wanted =
-        globs.empty() ? !StaysZero(column) : std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {
-          return MatchesGlob(glob, column.name);
-        });
+    const bool wanted = globs.empty() ? !StaysZero(column) && !column.name.starts_with("solver/")
+                                      : std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {
+                                          return MatchesGlob(glob, column.name);
+                                        });
     if (wanted) chosen.push_back(&column);
   }
   if (chosen.empty() && !globs.empty()) {

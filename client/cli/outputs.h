@@ -12,7 +12,7 @@
 namespace fascicle::client {
 
 // Panels of a plot: the columns that match one of `globs`, those of one unit together. Without globs all columns but
-// those that stay zero. CommandError when a glob matches nothing.
+// those that stay zero and those of the solver. CommandError when a glob matches nothing.
 std::vector<PlotPanel> PanelsOf(const SeriesTable& table, const std::vector<std::string>& globs);
 
 // The panels with up to 8 lines each as a PNG, higher the more panels there are.

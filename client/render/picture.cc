@@ -150,8 +150,7 @@ void AddScale(const Colouring& colouring, vtkRenderer& renderer) {
   bar->SetLookupTable(colouring.scale.table);
   bar->SetNumberOfLabels(6);
   bar->SetMaximumNumberOfColors(256);
-  bar->SetTextPad(6 * Canvas::kSampling);
-  bar->SetLabelFormat("%.4g");
+  bar->SetLabelFormat("  %.4g");  // the spaces keep the numbers off the bar
   bar->UnconstrainedFontSizeOn();
   bar->GetLabelTextProperty()->SetFontSize(16);
   bar->GetLabelTextProperty()->SetColor(kInk);
@@ -201,6 +200,16 @@ void DrawPicture(const v1::Geometry& geometry, const v1::Frame& frame, const Pic
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     AddBody(shapes[i], frame.bodies(static_cast<int>(i)), colouring, i, options, *renderer);
   }
+  // From above the eye, so that faces that look up are not black.
+  vtkNew<vtkLight> above;
+  above->SetLightTypeToCameraLight();
+  above->SetPosition(0.3, 1, 0.4);
+  above->SetIntensity(0.45);
+  renderer->AddLight(above);
+  vtkNew<vtkLight> eye;
+  eye->SetLightTypeToHeadlight();
+  eye->SetIntensity(0.75);
+  renderer->AddLight(eye);
   double bounds[6];
   renderer->ComputeVisiblePropBounds(bounds);
   AimCamera(options, bounds, *renderer);

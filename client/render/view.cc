@@ -145,6 +145,7 @@ void AddDirections(vtkRenderWindow& window, vtkRenderer& renderer) {
   axes->GetYAxisTipProperty()->SetColor(colours[1]);
   axes->GetZAxisShaftProperty()->SetColor(colours[2]);
   axes->GetZAxisTipProperty()->SetColor(colours[2]);
+  axes->SetNormalizedLabelPosition(1.25, 1.25, 1.25);
   axes->SetXAxisLabelText("x");
   axes->SetYAxisLabelText("y");
   axes->SetZAxisLabelText("z");
@@ -166,7 +167,7 @@ void AddDirections(vtkRenderWindow& window, vtkRenderer& renderer) {
   camera.SetFocalPoint(0, 0, 0);
   camera.SetPosition(-5 * direction[0], -5 * direction[1], -5 * direction[2]);
   camera.SetViewUp(up);
-  camera.SetParallelScale(1.45);
+  camera.SetParallelScale(1.6);
   layer->ResetCameraClippingRange(-2, 2, -2, 2, -2, 2);
   window.AddRenderer(layer);
 }

@@ -1,0 +1,138 @@
+// Every built-in example runs, and its answer is what its description says.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "child_process.h"
+
+namespace fascicle::testing {
+namespace {
+
+using nlohmann::json;
+
+class ExampleTest : public ::testing::Test {
+ protected:
+  // The summary of `fascicle run` of an example.
+  json RunExample(const std::string& name, const std::vector<std::string>& more = {}) {
+    const Finished written = Run({FASCICLE_PROGRAM, "examples", "write", name, "--out", folder_.path().string()});
+    EXPECT_EQ(written.exit_code, 0) << written.err;
+    std::vector<std::string> command = {FASCICLE_PROGRAM, "run",       folder_ / (name + ".json"),
+                                        "--json",         "--threads", "2"};
+    command.insert(command.end(), more.begin(), more.end());
+    const Finished finished = Run(command);
+    EXPECT_EQ(finished.exit_code, 0) << finished.out << finished.err;
+    json summary = json::parse(finished.out);
+    EXPECT_EQ(summary["state"], "succeeded");
+    return summary;
+  }
+  static double Final(const json& summary, const std::string& series) { return summary["series"].at(series)["final"]; }
+
+  // Nominal stress [Pa] of a law at a stretch, from `fascicle materials curve`.
+  static double NominalStress(const std::string& law, const std::vector<std::string>& settings, double stretch) {
+    std::vector<std::string> command = {FASCICLE_PROGRAM, "materials", "curve",     law, "--json",
+                                        "--points",       "2",         "--stretch", "1", std::to_string(stretch)};
+    for (const std::string& setting : settings) command.insert(command.end(), {"--set", setting});
+    return json::parse(Run(command).out)["nominal_stress"][1];
+  }
+
+  ScratchFolder folder_;
+};
+
+// A test for each example stands below; this finds those that have none.
+TEST_F(ExampleTest, NoneIsForgotten) {
+  std::set<std::string> names;
+  std::istringstream list(Run({FASCICLE_PROGRAM, "examples", "--json"}).out);
+  for (std::string line; std::getline(list, line);) names.insert(json::parse(line)["example"]);
+  // The last two need real anatomy and are run in tests/verification; the isometric spindle takes the demonstration's
+  // time.
+  EXPECT_THAT(names, ::testing::UnorderedElementsAre("bar_tension", "bar_twist", "cantilever_gravity", "mesh_file",
+                                                     "muscle_lifts", "rubber_stretch", "sphere_hanging", "tendon_pull",
+                                                     "torus_ringing", "fusiform_isometric", "biceps_isometric",
+                                                     "biceps_femoris_isometric"));
+}
+
+TEST_F(ExampleTest, BarTension) {
+  const json summary = RunExample("bar_tension");
+  const double stretch = 1 + Final(summary, "probe/end/x") / 0.04;
+  EXPECT_NEAR(NominalStress("neo_hookean", {"young_modulus=1e4"}, stretch), 2000, 20);
+  EXPECT_NEAR(Final(summary, "bar/reaction/left/x"), -0.2, 0.001);
+}
+
+TEST_F(ExampleTest, BarTwist) {
+  const json summary = RunExample("bar_twist");
+  EXPECT_NEAR(Final(summary, "probe/corner/x"), -0.02, 1e-9);
+  EXPECT_NEAR(Final(summary, "probe/corner/y"), 0, 1e-9);
+  EXPECT_NEAR(Final(summary, "probe/axis/x"), 0, 1e-4);
+  EXPECT_NEAR(Final(summary, "probe/axis/y"), 0, 1e-4);
+}
+
+TEST_F(ExampleTest, CantileverGravity) {
+  const json summary = RunExample("cantilever_gravity");
+  EXPECT_NEAR(Final(summary, "beam/reaction/wall/z"), 1026 * 9.81 * 0.04 * 0.0125 * 0.0125, 1e-4);
+  // Beam theory, less up to 15 % for the stiffness of linear tetrahedra.
+  const double theory = 1.5 * 1026 * 9.81 * std::pow(0.04, 4) / (4e5 * 0.0125 * 0.0125);
+  EXPECT_LT(-Final(summary, "probe/tip/z"), theory);
+  EXPECT_GT(-Final(summary, "probe/tip/z"), 0.85 * theory);
+}
+
+TEST_F(ExampleTest, MeshFile) {
+  const json summary = RunExample("mesh_file");
+  const double pull = Final(summary, "strip/reaction/insertion/z");
+  EXPECT_GT(pull, 1);
+  EXPECT_NEAR(Final(summary, "strip/reaction/origin/z"), -pull, 0.01 * pull);
+  EXPECT_NEAR(Final(summary, "strip/activation"), 1, 1e-12);
+}
+
+TEST_F(ExampleTest, MuscleLifts) {
+  const json summary = RunExample("muscle_lifts");
+  EXPECT_NEAR(Final(summary, "block/reaction/left/x"), -1, 0.01);
+  EXPECT_GT(summary["series"]["probe/end/x"]["max"], 0.002) << "the load lengthens it";
+  EXPECT_LT(Final(summary, "probe/end/x"), -0.002) << "then it shortens";
+  EXPECT_GT(summary["series"]["solver/iterations"]["max"], 0) << "mixed stepping solves";
+}
+
+TEST_F(ExampleTest, RubberStretch) {
+  const json summary = RunExample("rubber_stretch");
+  const double stress = NominalStress("mooney_rivlin", {"c1=2000", "c2=500", "bulk_modulus=2.5e5"}, 1.5);
+  EXPECT_NEAR(Final(summary, "rubber/reaction/left/x"), -stress * 1e-4, 0.001 * stress * 1e-4);
+  EXPECT_NEAR(Final(summary, "rubber/volume_ratio"), 1.01, 0.005);
+}
+
+TEST_F(ExampleTest, SphereHanging) {
+  const json summary = RunExample("sphere_hanging");
+  const double round = 1060 * 9.81 * 4 / 3 * M_PI * 8e-6;
+  EXPECT_LT(Final(summary, "ball/reaction/top/z"), round);
+  EXPECT_GT(Final(summary, "ball/reaction/top/z"), 0.9 * round);
+}
+
+TEST_F(ExampleTest, TendonPull) {
+  const json summary = RunExample("tendon_pull");
+  const double force = NominalStress("tendon", {"bulk_modulus=2e7"}, 1.02) * 25e-6;
+  EXPECT_NEAR(Final(summary, "tendon/reaction/left/x"), -force, 0.01 * force);
+}
+
+TEST_F(ExampleTest, TorusRinging) {
+  RunExample("torus_ringing", {"--out", folder_ / "out"});
+  std::istringstream csv(ReadText(folder_ / "out/series.csv"));
+  std::string line;
+  std::getline(csv, line);
+  ASSERT_TRUE(line.starts_with("frame,time [s],step,energy/elastic [J],energy/kinetic [J]")) << line;
+  double lowest = INFINITY, highest = 0;
+  while (std::getline(csv, line)) {
+    double frame, time, step, elastic, kinetic;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &frame, &time, &step, &elastic, &kinetic), 5);
+    if (time < 0.11) continue;  // the force still works
+    lowest = std::min(lowest, elastic + kinetic);
+    highest = std::max(highest, elastic + kinetic);
+  }
+  EXPECT_GT(lowest, 0);
+  EXPECT_LT(highest / lowest, 1.01);
+}
+
+}  // namespace
+}  // namespace fascicle::testing
