@@ -79,7 +79,6 @@ double TetSolver::StableStepAt(const TetState& state) {
 }
 
 bool TetSolver::IsStableStepDue(const TetState& state) {
-  if (method_.time_step) return false;
   const StableStep& stable = state.stable;
   if (stable.found_at < 0 || state.step >= stable.found_at + stable.interval) return true;
   for (std::size_t b = 0; b < model_.bodies().size(); ++b) {
@@ -107,9 +106,15 @@ void TetSolver::RefreshStableStep(TetState& state) {
   stable.activation = controls_now_.activation;
 }
 
+// A fixed step that is not stable is halved until it is.
 double TetSolver::TargetStep(const TetState& state) const {
-  const double whole = method_.time_step ? *method_.time_step : method_.safety * state.stable.limit;
-  return std::ldexp(whole, -state.cuts);
+  const double limit = state.stable.limit;
+  double step = method_.safety * limit;
+  if (method_.time_step && !std::isnan(limit)) {
+    step = *method_.time_step;
+    while (step > limit) step /= 2;
+  }
+  return std::ldexp(step, -state.cuts);
 }
 
 // Motion that is too stiff for the step is the mark of instability, but also of a motion that has just come to rest:

@@ -8,6 +8,7 @@ namespace {
 
 // Residual of the eigenvalue at which Lanczos stops: half of it is the error of the step.
 constexpr double kEigenvalueTolerance = 0.02;
+constexpr double kHair = 1e-7;
 constexpr std::size_t kGrain = 256;
 
 }  // namespace
@@ -21,8 +22,12 @@ void TetStiffness::Set(const TetModel& model, std::span<const double> activation
         [&](const auto& law) {
           team.For(body.tet_end - body.tet_begin, kGrain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t e = body.tet_begin + begin; e < body.tet_begin + end; ++e) {
-              const Mat3 F = EdgeMatrix(x, model.corners()[e]) * model.Dm_inverse()[e];
-              const Mat9 tangent = law.Tangent(F, FibreState{model.fibres()[e], activation[b]});
+              const Vec3& a0 = model.fibres()[e];
+              Mat3 F = EdgeMatrix(x, model.corners()[e]) * model.Dm_inverse()[e];
+              // A hair longer along the fibre: where a fibre curve has a kink, at rest above all, its stiffer side
+              // counts.
+              F += (kHair * F * a0) * a0.transpose();
+              const Mat9 tangent = law.Tangent(F, FibreState{a0, activation[b]});
               std::size_t k = 0;
               for (int i = 0; i < 9; ++i) {
                 for (int j = i; j < 9; ++j) tangents_[e][k++] = static_cast<float>(tangent(i, j));

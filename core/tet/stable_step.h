@@ -35,7 +35,8 @@ struct StableStepWorkspace {
 
 // The largest stable step of the central difference method at a state [s]:
 //   dt = (2/omega) (sqrt(1 + xi^2) - xi)     [Belytschko, Liu, Moran & Elkhodary 2014, 6.2.8]
-// with omega^2 the largest eigenvalue of M^-1 K over the free components, fibres and activation counted, and
+// with omega^2 the largest eigenvalue of M^-1 K over the free components, fibres and activation counted (at a kink of a
+// fibre curve the stiffer side), and
 // 2 xi omega the largest eigenvalue of M^-1 (-D), D the viscous operator, when damping is explicit (else xi = 0). Both
 // are estimated from above by Lanczos. Infinite without stiffness and damping. Not finite when the state is not.
 double LargestStableStep(const TetModel& model, std::span<const double> activation, const NodalVector& x,

@@ -1,0 +1,113 @@
+// Speed of the tet method: force evaluations and whole steps on a box of 105,456 tetrahedra with the full muscle law,
+// and the gain from a second thread.
+#include <benchmark/benchmark.h>
+
+#include <memory>
+
+#include "core/geometry/shapes.h"
+#include "core/tet/solver.h"
+#include "ratio.h"
+
+namespace fascicle {
+namespace {
+
+// 26^3 hexahedra of six tetrahedra, moderately deformed and half activated, with strain damping for the mixed step.
+Scene MuscleBox(Stepping stepping) {
+  Body body;
+  body.name = "box";
+  body.mesh = MakeBox(Vec3::Zero(), Vec3::Constant(0.1), {26, 26, 26});
+  body.material = Muscle(std::array{5e2, 5e2, 1e7, 3e5, 1.2, 0.05, 6.6, 1.4});
+  body.fibres = ConstantFibres(body.mesh, Vec3(1, 0.2, 0.1));
+  body.activation = Curve::Constant(0.5);
+  body.damping.viscosity = stepping == Stepping::kMixed ? 20 : 0;
+  Scene scene;
+  scene.bodies.push_back(std::move(body));
+  scene.method.stepping = stepping;
+  scene.duration = 1000;
+  scene.output.frame_interval = 1000;
+  return scene;
+}
+
+struct Box {
+  Box(int threads, Stepping stepping) : scene(MuscleBox(stepping)), model(scene), team(threads), solver(model, team) {
+    state = solver.InitialState();
+    Mat3 F;
+    F << 1.05, 0.04, 0, 0.02, 0.97, 0.03, 0, 0.01, 0.99;
+    for (Vec3& x : state.positions) x = F * x;
+  }
+
+  void EvaluateForce() { ElasticForce(model, activation, state.positions, team, corners, state.force); }
+
+  Scene scene;
+  TetModel model;
+  ThreadTeam team;
+  TetSolver solver;
+  TetState state;
+  CornerForceArray corners;
+  std::array<double, 1> activation = {0.5};
+};
+
+void CountElements(benchmark::State& state, const Box& box) {
+  state.counters["Mtets/s"] = benchmark::Counter(
+      1e-6 * static_cast<double>(state.iterations() * box.model.tetrahedra()), benchmark::Counter::kIsRate);
+}
+
+void TetForce(benchmark::State& state) {
+  Box box(static_cast<int>(state.range(0)), Stepping::kExplicit);
+  for (auto _ : state) box.EvaluateForce();
+  CountElements(state, box);
+}
+BENCHMARK(TetForce)
+    ->Name("tet_force")
+    ->ArgName("threads")
+    ->Arg(1)
+    ->Arg(2)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+void TetStep(benchmark::State& state) {
+  const auto stepping = static_cast<Stepping>(state.range(0));
+  Box box(static_cast<int>(state.range(1)), stepping);
+  // The first step finds the stable step and gets the memory.
+  box.solver.Advance(box.state, 1000);
+  for (auto _ : state) {
+    if (box.solver.Advance(box.state, 1000).problem != StepProblem::kNone) state.SkipWithError("a step failed");
+  }
+  CountElements(state, box);
+}
+BENCHMARK(TetStep)
+    ->Name("tet_step")
+    ->ArgNames({"mixed", "threads"})
+    ->Args({0, 1})
+    ->Args({0, 2})
+    ->Args({1, 1})
+    ->Args({1, 2})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+void StableStep(benchmark::State& state) {
+  Box box(1, Stepping::kExplicit);
+  for (auto _ : state) benchmark::DoNotOptimize(box.solver.StableStepAt(box.state));
+  CountElements(state, box);
+}
+BENCHMARK(StableStep)->Name("tet_stable_step")->UseRealTime()->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace fascicle
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  fascicle::Box one(1, fascicle::Stepping::kExplicit), two(2, fascicle::Stepping::kExplicit);
+  constexpr int kEvaluations = 20;
+  fascicle::bench::MedianRatio(
+      "tet_threads_2", 15,
+      [&] {
+        for (int i = 0; i < kEvaluations; ++i) two.EvaluateForce();
+      },
+      [&] {
+        for (int i = 0; i < kEvaluations; ++i) one.EvaluateForce();
+      });
+  return 0;
+}

@@ -1,0 +1,155 @@
+// The example scenes of isometric contraction, on the built-in spindle and on two real muscles, brought to rest.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+
+#include "client/lib/scene_file.h"
+#include "server/translate/translate.h"
+#include "tet_scenes.h"
+
+namespace fascicle {
+namespace {
+
+using namespace fascicle::testing;
+
+std::filesystem::path DataFolder() {
+  const char* folder = std::getenv("FASCICLE_DATA");
+  return folder != nullptr ? folder : FASCICLE_ROOT "/../shared/data";
+}
+
+// A folder of its own that is gone at the end of the test.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(const std::string& name)
+      : path_(std::filesystem::temp_directory_path() / ("fascicle_" + name + "_" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// Reads an example scene as a user would, with its data files copied beside it.
+std::shared_ptr<const Scene> LoadExample(const std::string& name, const std::vector<std::filesystem::path>& data) {
+  const TemporaryFolder folder(name);
+  std::filesystem::copy(std::filesystem::path(FASCICLE_ROOT) / "client/examples" / name, folder.path() / name);
+  for (const auto& file : data) std::filesystem::copy(file, folder.path() / file.filename());
+  Problems problems;
+  const auto package = client::LoadScene((folder.path() / name).string(), problems);
+  EXPECT_TRUE(package.has_value()) << problems.ToString();
+  if (!package) return nullptr;
+  std::map<std::string, std::string> bytes;
+  for (const auto& asset : package->assets) bytes[asset.sha256_hex] = asset.bytes;
+  const auto read = [&](const std::string& digest) -> std::optional<std::string> {
+    const auto found = bytes.find(digest);
+    return found == bytes.end() ? std::nullopt : std::optional(found->second);
+  };
+  auto scene = server::TranslateScene(package->scene, read, problems);
+  EXPECT_TRUE(scene != nullptr) << problems.ToString();
+  return scene;
+}
+
+// Mean position of a region.
+Vec3 CentreOf(const std::vector<Vec3>& positions, const Region& region) {
+  Vec3 sum = Vec3::Zero();
+  for (const std::int32_t n : region.nodes) sum += positions[n];
+  return sum / static_cast<double>(region.nodes.size());
+}
+
+// Area of the widest of ten slices between two points: the volume whose centroid lies in it over its thickness [m^2].
+double WidestSlice(const TetMesh& mesh, const std::vector<Vec3>& positions, const Vec3& from, const Vec3& to) {
+  constexpr int kSlices = 10;
+  const double length = (to - from).norm();
+  const Vec3 axis = (to - from) / length;
+  std::array<double, kSlices> volume = {};
+  for (const Tetrahedron& tet : mesh.tetrahedra) {
+    const Vec3 centroid = (positions[tet[0]] + positions[tet[1]] + positions[tet[2]] + positions[tet[3]]) / 4;
+    const auto slice = static_cast<int>(std::floor(kSlices * axis.dot(centroid - from) / length));
+    if (slice < 0 || slice >= kSlices) continue;
+    volume[slice] += std::abs(Determinant(EdgeMatrix(positions, tet))) / 6;
+  }
+  return *std::max_element(volume.begin(), volume.end()) * kSlices / length;
+}
+
+// Contracts at fixed ends: comes to rest, keeps its volume, bulges, and pulls harder the more it is activated.
+void CheckIsometricContraction(const Scene& scene) {
+  const RunResult run = RunScene(scene, 2);
+  ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded) << run.outcome.failure.message;
+  const Body& body = scene.bodies[0];
+  const std::string& name = body.name;
+  // Settled: it ended before the duration, which happens only below settle_speed.
+  EXPECT_LT(run.frames.back().time, scene.duration);
+
+  EXPECT_EQ(run.Last(name + "/activation"), 1);
+  EXPECT_NEAR(run.Last(name + "/volume_ratio"), 1, 0.01);
+  EXPECT_GT(run.Last(name + "/min_volume_ratio"), 0);
+
+  const Region& one = body.regions[body.constraints[0].region];
+  const Region& two = body.regions[body.constraints[1].region];
+  const auto reaction = [&](std::size_t frame, const Region& region) {
+    const std::string prefix = name + "/reaction/" + region.name + "/";
+    return Vec3(run.At(frame, prefix + "x"), run.At(frame, prefix + "y"), run.At(frame, prefix + "z"));
+  };
+  const Vec3 axis = (CentreOf(body.mesh.nodes, two) - CentreOf(body.mesh.nodes, one)).normalized();
+  const std::size_t last = run.frames.size() - 1;
+  const Vec3 end_force = reaction(last, two);
+  // In equilibrium, and the muscle pulls its ends together: the supports hold against that.
+  EXPECT_LT((end_force + reaction(last, one)).norm(), 0.02 * end_force.norm());
+  EXPECT_GT(end_force.dot(axis), 0.9 * end_force.norm());
+  // Rises with activation: from each frame in which it grew by a tenth to the next.
+  double activation = 0, force = 0;
+  int rises = 0;
+  for (std::size_t k = 0; k <= last; ++k) {
+    const double now = run.At(k, name + "/activation");
+    if (now < activation + 0.1) continue;
+    const double pull = 0.5 * (reaction(k, two) - reaction(k, one)).dot(axis);
+    EXPECT_GT(pull, force) << "activation " << now;
+    activation = now;
+    force = pull;
+    ++rises;
+  }
+  EXPECT_GE(rises, 5);
+
+  const double before =
+      WidestSlice(body.mesh, body.mesh.nodes, CentreOf(body.mesh.nodes, one), CentreOf(body.mesh.nodes, two));
+  const double after = WidestSlice(body.mesh, run.frames.back().bodies[0].positions, CentreOf(body.mesh.nodes, one),
+                                   CentreOf(body.mesh.nodes, two));
+  EXPECT_GT(after, 1.02 * before);
+  std::printf(
+      "%s: at rest at %.3f s, %lld steps, step %.3g s, end force %.2f N, volume ratio %.5f (least of an element %.3f), "
+      "widest slice %.3f -> %.3f cm^2\n",
+      name.c_str(), run.frames.back().time, static_cast<long long>(run.frames.back().step), run.Last("solver/step"),
+      end_force.norm(), run.Last(name + "/volume_ratio"), run.Last(name + "/min_volume_ratio"), 1e4 * before,
+      1e4 * after);
+}
+
+TEST(MusclesTest, Fusiform) {
+  const auto scene = LoadExample("fusiform_isometric.json", {});
+  ASSERT_NE(scene, nullptr);
+  CheckIsometricContraction(*scene);
+}
+
+TEST(MusclesTest, Biceps) {
+  const auto mesh = DataFolder() / "opendihu_upper_arm/biceps_coarse.msh";
+  if (!std::filesystem::exists(mesh)) GTEST_SKIP() << "no real anatomy in " << DataFolder() << " (set FASCICLE_DATA)";
+  const auto scene = LoadExample("biceps_isometric.json", {mesh});
+  ASSERT_NE(scene, nullptr);
+  CheckIsometricContraction(*scene);
+}
+
+TEST(MusclesTest, BicepsFemoris) {
+  const auto mesh = DataFolder() / "vh_muscle_tets/VHM_Left_Muscle_BicepsFemorisLongus.msh";
+  if (!std::filesystem::exists(mesh)) GTEST_SKIP() << "no real anatomy in " << DataFolder() << " (set FASCICLE_DATA)";
+  auto fibres = mesh;
+  const auto scene = LoadExample("biceps_femoris_isometric.json", {mesh, fibres.replace_extension(".fibres.txt")});
+  ASSERT_NE(scene, nullptr);
+  CheckIsometricContraction(*scene);
+}
+
+}  // namespace
+}  // namespace fascicle
