@@ -41,7 +41,6 @@ ForceReport BodyForces(const Law& law, const TetModel& model, const TetBody& bod
 ForceReport AllForces(const TetModel& model, std::span<const double> activation, const NodalVector& x,
                       const NodalVector* v, ThreadTeam& team, CornerForceArray& corners, NodalVector& force) {
   corners.resize(model.tetrahedra());
-  force.resize(model.nodes());
   ForceReport total;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const TetBody& body = model.bodies()[b];
@@ -95,7 +94,6 @@ ForceReport ElasticAndViscousForce(const TetModel& model, std::span<const double
 void ViscousForce(const TetModel& model, const NodalVector& x, const NodalVector& v, ThreadTeam& team,
                   CornerForceArray& corners, NodalVector& force) {
   corners.resize(model.tetrahedra());
-  force.resize(model.nodes());
   for (const TetBody& body : model.bodies()) {
     const bool damped = body.HasStrainDamping();
     ForElements(team, body, [&](std::size_t e) {
@@ -116,7 +114,6 @@ void ViscousForce(const TetModel& model, const NodalVector& x, const NodalVector
 void ViscousDiagonal(const TetModel& model, const NodalVector& x, ThreadTeam& team, CornerForceArray& corners,
                      NodalVector& diagonal) {
   corners.resize(model.tetrahedra());
-  diagonal.resize(model.nodes());
   for (const TetBody& body : model.bodies()) {
     ForElements(team, body, [&](std::size_t e) {
       const Mat3& Dm_inverse = model.Dm_inverse()[e];
@@ -154,6 +151,7 @@ double ElasticEnergy(const TetModel& model, std::size_t body_index, double activ
 void GatherCorners(const TetModel& model, const CornerForceArray& corners, ThreadTeam& team, NodalVector& sums) {
   const auto& begin = model.node_corner_begin();
   const auto& list = model.node_corners();
+  sums.resize(model.nodes());
   ForNodes(team, model.nodes(), [&](std::size_t n) {
     Vec3 sum = Vec3::Zero();
     for (std::int32_t k = begin[n]; k < begin[n + 1]; ++k) sum += corners[list[k] / 4][list[k] % 4];

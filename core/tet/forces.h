@@ -44,7 +44,7 @@ void ViscousDiagonal(const TetModel& model, const NodalVector& x, ThreadTeam& te
 double ElasticEnergy(const TetModel& model, std::size_t body, double activation, const NodalVector& x,
                      ThreadTeam& team);
 
-// Adds up the corners of every node.
+// Adds up the corners of every node; `sums` gets its size.
 void GatherCorners(const TetModel& model, const CornerForceArray& corners, ThreadTeam& team, NodalVector& sums);
 
 }  // namespace fascicle
