@@ -1,5 +1,6 @@
 #include "server/config.h"
 
+#include <chrono>
 #include <cstdlib>
 #include <ostream>
 #include <string>
@@ -36,6 +37,7 @@ std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std:
   config.server.listen = "127.0.0.1:7300";
   config.server.data_directory = DefaultDataDirectory();
   std::string level = "info";
+  double checkpoint = 2;
 
   CLI::App app("fascicled runs simulations of muscle and soft tissue for clients.", "fascicled");
   app.footer(kFooter);
@@ -52,6 +54,10 @@ std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std:
   app.add_option("--threads", config.server.default_threads, "Threads of a job that does not ask for a number")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
+  app.add_option("--checkpoint", checkpoint, "Most work of a job that a crash costs")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->capture_default_str();
   app.add_flag("--allow-remote", config.server.allow_remote,
                "Allow other addresses than this machine's own; there is no TLS and no login");
   app.add_option("--log-level", level, "What is logged to stderr")
@@ -66,6 +72,7 @@ std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std:
     err << "fascicled: there is no home folder: say where to keep the data with --data\n";
     return 2;
   }
+  config.server.checkpoint_interval = std::chrono::milliseconds(static_cast<int>(1000 * checkpoint));
   config.log_level = spdlog::level::from_str(level);
   return config;
 }
