@@ -96,7 +96,7 @@ Finished ChildProcess::Wait() {
   return finished;
 }
 
-Finished Run(const std::vector<std::string>& command, const std::map<std::string, std::string>& environment) {
+Finished RunProgram(const std::vector<std::string>& command, const std::map<std::string, std::string>& environment) {
   return ChildProcess(command, environment).Wait();
 }
 

@@ -38,7 +38,8 @@ class ChildProcess {
   std::filesystem::path err_file_;
 };
 
-Finished Run(const std::vector<std::string>& command, const std::map<std::string, std::string>& environment = {});
+Finished RunProgram(const std::vector<std::string>& command,
+                    const std::map<std::string, std::string>& environment = {});
 
 // An empty folder that is removed in the end.
 class ScratchFolder {

@@ -47,7 +47,7 @@ class CliTest : public ::testing::Test {
  protected:
   Finished Fascicle(std::vector<std::string> arguments, const std::string& server = "") {
     arguments.insert(arguments.begin(), FASCICLE_PROGRAM);
-    return Run(arguments, {{"FASCICLE_SERVER", server}, {"DISPLAY", ""}, {"TMPDIR", Temporary()}});
+    return RunProgram(arguments, {{"FASCICLE_SERVER", server}, {"DISPLAY", ""}, {"TMPDIR", Temporary()}});
   }
   std::string Scene(const std::string& name, const std::string& text) {
     WriteText(folder_ / name, text);
@@ -115,7 +115,7 @@ TEST_F(CliTest, InvalidScenesListEveryProblem) {
 
 TEST_F(CliTest, TheServersProblemsComeTheSameWay) {
   std::string text = SceneText(2, 5);
-  text.replace(text.find("1e4"), 3, "-1.");
+  text.replace(text.find("1e4"), 3, "-10");
   const std::string scene = Scene("bad.json", text);
   for (const char* command : {"run", "validate"}) {
     const Finished finished = Fascicle({command, scene});
@@ -153,7 +153,7 @@ TEST_F(CliTest, RunWithoutDataLeavesNothing) {
 
 TEST_F(CliTest, AFailedJobSaysWhy) {
   std::string text = SceneText(10, 100);
-  text.replace(text.find("-9.81"), 5, "-999.");  // crushes the block
+  text.replace(text.find("-9.81"), 5, "-1000");  // crushes the block
   text.replace(text.find("1e-4}"), 5, "5e-3}");  // with a step far beyond stability
   const Finished finished = Fascicle({"run", Scene("scene.json", text), "--json"});
   EXPECT_EQ(finished.exit_code, 1) << finished.out << finished.err;
@@ -234,9 +234,9 @@ TEST_F(CliTest, CompletionKnowsCommandsAndOptions) {
   }
   WriteText(folder_ / "completion.bash", Fascicle({"completion", "bash"}).out);
   const auto complete = [&](const std::string& words, int index) {
-    return Run({"/bin/bash", "-c",
-                "source " + (folder_ / "completion.bash") + "; COMP_WORDS=(" + words +
-                    "); COMP_CWORD=" + std::to_string(index) + "; _fascicle; echo \"${COMPREPLY[@]}\""})
+    return RunProgram({"/bin/bash", "-c",
+                       "source " + (folder_ / "completion.bash") + "; COMP_WORDS=(" + words +
+                           "); COMP_CWORD=" + std::to_string(index) + "; _fascicle; echo \"${COMPREPLY[@]}\""})
         .out;
   };
   EXPECT_EQ(complete("fascicle va", 1), "validate\n");

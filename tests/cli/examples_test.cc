@@ -19,12 +19,13 @@ class ExampleTest : public ::testing::Test {
  protected:
   // The summary of `fascicle run` of an example.
   json RunExample(const std::string& name, const std::vector<std::string>& more = {}) {
-    const Finished written = Run({FASCICLE_PROGRAM, "examples", "write", name, "--out", folder_.path().string()});
+    const Finished written =
+        RunProgram({FASCICLE_PROGRAM, "examples", "write", name, "--out", folder_.path().string()});
     EXPECT_EQ(written.exit_code, 0) << written.err;
     std::vector<std::string> command = {FASCICLE_PROGRAM, "run",       folder_ / (name + ".json"),
                                         "--json",         "--threads", "2"};
     command.insert(command.end(), more.begin(), more.end());
-    const Finished finished = Run(command);
+    const Finished finished = RunProgram(command);
     EXPECT_EQ(finished.exit_code, 0) << finished.out << finished.err;
     json summary = json::parse(finished.out);
     EXPECT_EQ(summary["state"], "succeeded");
@@ -37,7 +38,7 @@ class ExampleTest : public ::testing::Test {
     std::vector<std::string> command = {FASCICLE_PROGRAM, "materials", "curve",     law, "--json",
                                         "--points",       "2",         "--stretch", "1", std::to_string(stretch)};
     for (const std::string& setting : settings) command.insert(command.end(), {"--set", setting});
-    return json::parse(Run(command).out)["nominal_stress"][1];
+    return json::parse(RunProgram(command).out)["nominal_stress"][1];
   }
 
   ScratchFolder folder_;
@@ -46,7 +47,7 @@ class ExampleTest : public ::testing::Test {
 // A test for each example stands below; this finds those that have none.
 TEST_F(ExampleTest, NoneIsForgotten) {
   std::set<std::string> names;
-  std::istringstream list(Run({FASCICLE_PROGRAM, "examples", "--json"}).out);
+  std::istringstream list(RunProgram({FASCICLE_PROGRAM, "examples", "--json"}).out);
   for (std::string line; std::getline(list, line);) names.insert(json::parse(line)["example"]);
   // The last two need real anatomy and are run in tests/verification; the isometric spindle takes the demonstration's
   // time.

@@ -237,8 +237,8 @@ TEST_F(LoadSceneTest, TellsProblemsOfSceneAndFilesTogether) {
   WriteText(path, R"({"duration": "long", "bodies": [{"mesh": {"file": {"path": "none.msh"}}, "unti": "mm"}]})");
   Problems problems;
   EXPECT_FALSE(LoadScene(path, problems));
-  for (const char* path : {"duration: ", "bodies[0].mesh.file.path: ", "bodies[0].unti: "}) {
-    EXPECT_THAT(problems.ToString(), HasSubstr(path));
+  for (const char* field : {"duration: ", "bodies[0].mesh.file.path: ", "bodies[0].unti: "}) {
+    EXPECT_THAT(problems.ToString(), HasSubstr(field));
   }
 }
 
