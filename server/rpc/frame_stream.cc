@@ -13,6 +13,10 @@ namespace {
 
 using Response = v1::StreamFramesResponse;
 
+// Frames of MODE_LATEST are at least this far apart. Small frames fit in gRPC's buffers by the hundred: sent as fast as
+// the transport takes them, a viewer would see them long after they were new.
+constexpr std::chrono::milliseconds kLatestInterval(33);
+
 void CheckRequest(const v1::StreamFramesRequest& request, Problems& problems) {
   if (!ParseJobName(request.name())) problems.Add("name", "must be jobs/{id}");
   if (request.start_index() < 0) problems.Add("start_index", "must not be negative");
@@ -89,6 +93,10 @@ bool FrameStream::Refresh() {
 void FrameStream::Advance() {
   const bool latest = request_.mode() == v1::StreamFramesRequest::MODE_LATEST;
   if (latest && !AllWritten()) return;  // the newest is chosen when the reader is ready for it
+  if (const auto rest = kLatestInterval - (Clock::now() - last_frame_); latest && rest > rest.zero()) {
+    WakeAfter(std::chrono::ceil<std::chrono::milliseconds>(rest));
+    return;
+  }
   const std::int64_t wanted_end = request_.end_index() > 0 ? request_.end_index() : INT64_MAX;
   const bool look =
       latest || next_index_ >= known_count_ || Clock::now() - last_look_ >= context_.settings.progress_interval;
@@ -122,6 +130,7 @@ void FrameStream::BeginFrame(std::int64_t index) {
   }
   current_ = *found;
   offset_ = 0;
+  last_frame_ = Clock::now();
 }
 
 void FrameStream::PushChunk() {

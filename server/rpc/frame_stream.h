@@ -56,7 +56,8 @@ class FrameStream : public OutStream {
   Clock::time_point last_look_;  // Refresh
   Clock::time_point last_message_;
   Clock::time_point last_beat_;
-  std::string last_progress_;  // as in the last heartbeat
+  Clock::time_point last_frame_;  // begun
+  std::string last_progress_;     // as in the last heartbeat
 };
 
 }  // namespace fascicle::server

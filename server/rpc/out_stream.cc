@@ -93,17 +93,18 @@ void OutStream::Follow(const std::string& job_id) {
 }
 
 void OutStream::WakeAfter(std::chrono::milliseconds delay) {
+  const auto time = std::chrono::steady_clock::now() + delay;
   {
     std::lock_guard lock(mutex_);
-    if (timer_set_ || stopped_) return;
-    timer_set_ = true;
+    if (stopped_ || next_timer_ <= time) return;  // it will be woken early enough
+    next_timer_ = time;
   }
-  context_.quick.PostAfter(delay, [weak = weak_from_this()] {
+  context_.quick.PostAfter(delay, [weak = weak_from_this(), time] {
     const auto stream = weak.lock();
     if (!stream) return;
     {
       std::lock_guard lock(stream->mutex_);
-      stream->timer_set_ = false;
+      if (stream->next_timer_ == time) stream->next_timer_ = std::chrono::steady_clock::time_point::max();
     }
     stream->Wake();
   });

@@ -67,7 +67,7 @@ class OutStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std:
   bool writing_ = false;
   bool filling_ = false;
   bool fill_again_ = false;
-  bool timer_set_ = false;
+  std::chrono::steady_clock::time_point next_timer_ = std::chrono::steady_clock::time_point::max();
   bool stopped_ = false;              // no more messages are wanted
   bool finished_ = false;             // Finish was called
   std::optional<grpc::Status> last_;  // sent after `ready_`
