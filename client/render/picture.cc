@@ -26,7 +26,7 @@ namespace fascicle::client {
 namespace {
 
 constexpr double kInk[3] = {0.2, 0.2, 0.2};
-constexpr int kFibreSeeds = 150;
+constexpr int kFibreSeeds = 70;
 
 struct Colouring {
   std::vector<std::vector<double>> values;  // for each body: one for each node; empty without colour
@@ -116,7 +116,7 @@ void AddBody(const BodyShape& shape, const v1::BodyFrame& frame, const Colouring
   }
   if (options.fibres) {
     constexpr double kFibreColour[3] = {0.45, 0.06, 0.08};
-    renderer.AddActor(MakeLines(MakeFibreLines(shape, positions, kFibreSeeds), kFibreColour, 1.3, 1));
+    renderer.AddActor(MakeLines(MakeFibreLines(shape, positions, kFibreSeeds), kFibreColour, 1.1, 1));
   }
 }
 

@@ -126,13 +126,19 @@ void DrawPlot(const std::vector<PlotPanel>& panels, PictureSize size, const std:
   scene.SetRenderer(renderer);
   const float margin = 8 * Canvas::kSampling;
   const float height = static_cast<float>(canvas.height()) / static_cast<float>(panels.size());
+  std::vector<vtkSmartPointer<vtkChartXY>> charts;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const auto chart = MakeChart(panels[i]);
     const float bottom = height * static_cast<float>(panels.size() - 1 - i);
     chart->SetSize(
         vtkRectf(margin, bottom + margin, static_cast<float>(canvas.width()) - 2 * margin, height - 2 * margin));
     scene.AddItem(chart);
+    charts.push_back(chart);
   }
+  // The first drawing finds the shift by which charts keep precision where values differ little from each other; only
+  // the second puts the lines there.
+  canvas.window().Render();
+  for (const auto& chart : charts) chart->RecalculateBounds();
   canvas.Save(path);
 }
 

@@ -141,6 +141,16 @@ TEST_F(RenderTest, PlotsHaveALineForEachSeries) {
   EXPECT_GT(image.Count([](const Pixel& p) { return p[0] > 180 && p[1] < 130 && p[2] < 60; }), 100u) << "orange line";
 }
 
+TEST_F(RenderTest, LinesThatHardlyChangeAreDrawnToo) {
+  const std::string path = folder_ / "plot.png";
+  for (const double change : {0.003, 1e-6, 1e-12, 0.0}) {
+    DrawPlot({{"", "time [s]", "ratio", {{"a", {0, 1, 2}, {1, 1 + change, 1}}}}}, {400, 300}, path);
+    const Image image = ReadPng(path);
+    const std::size_t blue = image.Count([](const Pixel& p) { return p[0] < 60 && p[1] > 80 && p[2] > 150; });
+    EXPECT_GT(blue, 400u) << change;
+  }
+}
+
 TEST(ValuesAtNodes, AveragesTetrahedraByVolume) {
   // A linear function of z has averages that follow it in the middle of the body.
   const SampleJob job;
