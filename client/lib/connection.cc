@@ -1,5 +1,6 @@
 #include "client/lib/connection.h"
 
+#include <grpc/grpc.h>
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
 
@@ -14,6 +15,9 @@ using Clock = std::chrono::system_clock;  // what gRPC's deadlines are given in
 constexpr int kDetailsLimit = 256 << 10;  // [byte]
 
 std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address) {
+  // gRPC 1.51 takes its threads down with its last object, and sometimes waits ten seconds for one that polls. Holding
+  // on to the library until the process ends avoids it.
+  [[maybe_unused]] static const bool kept = (grpc_init(), true);
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(16 << 20);  // a job with its scene is the largest answer
   arguments.SetInt(GRPC_ARG_MAX_METADATA_SIZE, 2 * kDetailsLimit);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <grpc/grpc.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/server.h>
@@ -37,6 +38,10 @@ void Configure(grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
 }
 
+// gRPC 1.51 takes its threads down with its last object, and sometimes waits ten seconds for one that polls. Holding on
+// to the library until the process ends avoids it.
+void KeepLibraryUp() { [[maybe_unused]] static const bool kept = (grpc_init(), true); }
+
 }  // namespace
 
 struct RpcServer::Impl {
@@ -64,6 +69,7 @@ struct RpcServer::Impl {
 RpcServer::RpcServer(const std::string& listen, Store& store, JobManager& jobs, std::shared_ptr<spdlog::logger> log,
                      const RpcSettings& settings)
     : impl_(std::make_unique<Impl>(store, jobs, std::move(log), settings)) {
+  KeepLibraryUp();
   // Both are switches of the process; turning them on twice does nothing.
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
