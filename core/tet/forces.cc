@@ -1,20 +1,30 @@
 #include "core/tet/forces.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
 namespace fascicle {
 namespace {
 
+// The least of all values in whatever order they come.
+void TakeLeast(std::atomic<double>& least, double value) {
+  double now = least.load(std::memory_order_relaxed);
+  while (value < now && !least.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
+  }
+}
+
 // Corner forces of one body; `v` may be null for no viscous stress.
 template <bool kViscous, class Law>
 ForceReport BodyForces(const Law& law, const TetModel& model, const TetBody& body, double activation,
                        const NodalVector& x, const NodalVector* v, ThreadTeam& team, CornerForceArray& corners) {
   std::atomic<bool> valid = true;
+  std::atomic<double> smallest_ratio = 1;
   ForceReport report;
   report.dissipated_power = team.Sum(body.tet_end - body.tet_begin, [&](std::size_t begin, std::size_t end) {
     FibreState fibre{Vec3::Zero(), activation};
     double power = 0;
+    double smallest = 1;
     bool all_valid = true;
     for (std::size_t e = body.tet_begin + begin; e < body.tet_begin + end; ++e) {
       const Tetrahedron& tet = model.corners()[e];
@@ -23,7 +33,9 @@ ForceReport BodyForces(const Law& law, const TetModel& model, const TetBody& bod
       const Mat3 F = EdgeMatrix(x, tet) * Dm_inverse;
       fibre.direction = model.fibres()[e];
       Mat3 P = law.Stress(F, fibre);
-      all_valid &= Determinant(F) > 0 && std::isfinite(P.sum());
+      const double J = Determinant(F);
+      smallest = std::min(smallest, J);
+      all_valid &= J > 0 && std::isfinite(P.sum());
       if constexpr (kViscous) {
         const ViscousStress viscous(F, EdgeMatrix(*v, tet) * Dm_inverse, body.damping_mu, body.damping_lambda);
         P += F * viscous.S;
@@ -31,10 +43,12 @@ ForceReport BodyForces(const Law& law, const TetModel& model, const TetBody& bod
       }
       SetCornerForces(P, Dm_inverse, volume, corners[e]);
     }
+    TakeLeast(smallest_ratio, smallest);
     if (!all_valid) valid.store(false, std::memory_order_relaxed);
     return power;
   });
   report.valid = valid.load();
+  report.smallest_ratio = smallest_ratio.load();
   return report;
 }
 
@@ -53,6 +67,7 @@ ForceReport AllForces(const TetModel& model, std::span<const double> activation,
         body.source->material);
     total.valid &= report.valid;
     total.dissipated_power += report.dissipated_power;
+    total.smallest_ratio = std::min(total.smallest_ratio, report.smallest_ratio);
   }
   GatherCorners(model, corners, team, force);
   return total;

@@ -21,6 +21,7 @@ using CornerForceArray = std::vector<CornerForces>;
 struct ForceReport {
   bool valid = true;            // false where an element has J <= 0 or a stress that is not finite
   double dissipated_power = 0;  // by viscous stress [W]
+  double smallest_ratio = 1;    // least J of all elements, at most 1
 };
 
 // Elastic (and active) force of all elements on the nodes [N] [Teran 2003, 4.1].

@@ -14,8 +14,12 @@ constexpr double kMuchChange = 0.05;
 constexpr double kLittleChange = 0.02;
 // An activation that has changed by more since the last search makes another one due.
 constexpr double kActivationChange = 0.1;
-// Searches are not repeated within so many steps for an alarm.
-constexpr std::int64_t kAlarmPause = 16;
+// Stiffness grows with 1/J^2 as an element is crushed: a smallest J below this part of what it was at the last search
+// makes another one due, and a step in which it falls by more is too long.
+constexpr double kRatioChange = 0.9;
+constexpr double kRatioChangeOfStep = 0.8;
+// Motion of less than this part of the run's largest kinetic energy says nothing about stability.
+constexpr double kFaintMotion = 1e-6;
 // Good steps after which a cut is taken back.
 constexpr std::int64_t kGrowAfter = 50;
 // A run that needs more steps than that to its next frame goes nowhere.
@@ -28,17 +32,13 @@ TetSolver::TetSolver(const TetModel& model, ThreadTeam& team)
 
 TetState TetSolver::InitialState() {
   TetState state;
-  controls_now_.Set(model_, 0);
+  controls_next_.Set(model_, 0);
   state.positions = model_.rest_positions();
   state.velocities.assign(model_.nodes(), Vec3::Zero());
-  PrescribePositions(model_, controls_now_, state.positions);
-  PrescribeVelocities(model_, controls_now_, state.velocities);
-  if (method_.stepping == Stepping::kExplicit && model_.has_strain_damping()) {
-    ElasticAndViscousForce(model_, controls_now_.activation, state.positions, state.velocities, team_, corners_,
-                           state.force);
-  } else {
-    ElasticForce(model_, controls_now_.activation, state.positions, team_, corners_, state.force);
-  }
+  PrescribePositions(model_, controls_next_, state.positions);
+  PrescribeVelocities(model_, controls_next_, state.velocities);
+  UpdateForce(method_.stepping == Stepping::kExplicit && model_.has_strain_damping() ? &state.velocities : nullptr,
+              state);
   state.stable.activation.assign(model_.bodies().size(), 0.0);
   return state;
 }
@@ -57,11 +57,10 @@ StepReport TetSolver::Advance(TetState& state, double end) {
     }
     const double next_time = steps <= 1 ? end : state.time + remaining / steps;
     StepReport report = Step(state, next_time, next_);
-    if (report.problem == StepProblem::kNone && report.stiffness_of_motion > 4 &&
-        IsReallyUnstable(state, next_time - state.time)) {
+    if (report.problem == StepProblem::kNone && IsUnstable(state, next_, report))
       report.problem = StepProblem::kUnstable;
-    }
     if (report.problem == StepProblem::kNone) {
+      next_.peak_kinetic = std::max(state.peak_kinetic, report.kinetic);
       Accept(state);
       return report;
     }
@@ -81,6 +80,7 @@ double TetSolver::StableStepAt(const TetState& state) {
 bool TetSolver::IsStableStepDue(const TetState& state) {
   const StableStep& stable = state.stable;
   if (stable.found_at < 0 || state.step >= stable.found_at + stable.interval) return true;
+  if (state.smallest_ratio < kRatioChange * stable.smallest_ratio) return true;
   for (std::size_t b = 0; b < model_.bodies().size(); ++b) {
     const double now = model_.bodies()[b].source->activation.At(state.time);
     if (std::abs(now - stable.activation[b]) > kActivationChange) return true;
@@ -103,6 +103,7 @@ void TetSolver::RefreshStableStep(TetState& state) {
     }
   }
   stable.found_at = state.step;
+  stable.smallest_ratio = state.smallest_ratio;
   stable.activation = controls_now_.activation;
 }
 
@@ -117,11 +118,11 @@ double TetSolver::TargetStep(const TetState& state) const {
   return std::ldexp(step, -state.cuts);
 }
 
-// Motion that is too stiff for the step is the mark of instability, but also of a motion that has just come to rest:
-// the stable step at this state decides.
-bool TetSolver::IsReallyUnstable(TetState& state, double dt) {
-  if (state.stable.found_at < 0 || state.step >= state.stable.found_at + kAlarmPause) RefreshStableStep(state);
-  return !(dt <= state.stable.limit);
+// Motion that is stiffer than the step can carry, or that crushes an element within it. Not so the last stir of a body
+// at rest, nor what is still stiff at the shortest step, far below the stable one: there forces change from outside.
+bool TetSolver::IsUnstable(const TetState& now, const TetState& next, const StepReport& report) const {
+  if (next.smallest_ratio < kRatioChangeOfStep * now.smallest_ratio) return true;
+  return report.stiffness_of_motion > 4 && report.kinetic > kFaintMotion * now.peak_kinetic && now.cuts < kMaxCuts;
 }
 
 void TetSolver::Accept(TetState& state) {

@@ -16,6 +16,8 @@ enum class StepProblem { kNone, kInvertedElement, kNotFinite, kNotConverged, kUn
 struct StepReport {
   StepProblem problem = StepProblem::kNone;
   int iterations = 0;  // of linear solves
+  // Kinetic energy of the free components at the half step [J].
+  double kinetic = 0;
   // Curvature of the energy along the motion of this step times dt^2: a Rayleigh quotient of M^-1 K. The central
   // difference method can't stay above 4.
   double stiffness_of_motion = 0;
@@ -31,9 +33,9 @@ class TetSolver {
   // At rest at time 0, with what is prescribed at that time.
   TetState InitialState();
 
-  // Makes one step towards `end` [s], which it never passes and hits exactly. A step that inverts an element, gives
-  // values that are not finite or gains energy from instability is made again with half the length, up to
-  // kMaxCuts times. On a problem the state keeps its time and motion.
+  // Makes one step towards `end` [s], which it never passes and hits exactly. A step that inverts or crushes an
+  // element, gives values that are not finite or gains energy from instability is made again with half the length, up
+  // to kMaxCuts times. On a problem the state keeps its time and motion.
   StepReport Advance(TetState& state, double end);
 
   // One attempt to step from `now` to `next_time`, without cutting; fills all of `next` but what Advance looks after.
@@ -54,14 +56,14 @@ class TetSolver {
   CgResult SolveDamping(const NodalVector& x, const NodalVector& internal, const NodalVector& external,
                         double half_step, TetState& next);
   ForceReport UpdateForce(const NodalVector* viscous_velocity, TetState& next);
-  double StiffnessOfMotion(const TetState& now, const TetState& next, double half_step_energy) const;
-  double TwiceKineticEnergyOfFree(const NodalVector& v) const;
+  // Fills what tells an unstable step from a stable one; next.velocities are those of the half step.
+  void MeasureMotion(const TetState& now, const TetState& next, StepReport& report) const;
   void AddExternalWork(const TetState& now, TetState& next) const;
 
   bool IsStableStepDue(const TetState& state);
   void RefreshStableStep(TetState& state);
   double TargetStep(const TetState& state) const;
-  bool IsReallyUnstable(TetState& state, double dt);
+  bool IsUnstable(const TetState& now, const TetState& next, const StepReport& report) const;
   void Accept(TetState& state);
   StepReport Fail(const TetState& state, StepReport report) const;
 

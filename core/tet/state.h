@@ -14,6 +14,7 @@ struct StableStep {
   double limit = 0;                // [s]; largest stable step without safety factor
   std::int64_t found_at = -1;      // step
   std::int64_t interval = 0;       // steps until it is due again
+  double smallest_ratio = 1;       // TetState::smallest_ratio at that time
   std::vector<double> activation;  // of each body at that time
 };
 
@@ -25,9 +26,11 @@ struct TetState {
   NodalVector velocities;  // v [m/s]
   // Internal force at `positions` [N]: elastic; explicit stepping: with the viscous force of the half step before.
   NodalVector force;
-  double time_step = 0;      // of the last step [s]
-  double external_work = 0;  // of loads and gravity so far [J]
-  double dissipated = 0;     // by damping so far [J]
+  double smallest_ratio = 1;  // least J of all elements, at most 1
+  double peak_kinetic = 0;    // largest kinetic energy of the free components at a half step so far [J]
+  double time_step = 0;       // of the last step [s]
+  double external_work = 0;   // of loads and gravity so far [J]
+  double dissipated = 0;      // by damping so far [J]
   StableStep stable;
   std::int32_t cuts = 0;        // the step is halved so many times
   std::int64_t last_cut = 0;    // step at which `cuts` last changed

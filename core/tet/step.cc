@@ -46,8 +46,7 @@ StepReport TetSolver::StepExplicit(const TetState& now, double dt, TetState& nex
   Drift(now, dt, next);
   // f' = f(x', v_half)
   const ForceReport forces = UpdateForce(model_.has_strain_damping() ? &next.velocities : nullptr, next);
-  const double half_step_energy = TwiceKineticEnergyOfFree(next.velocities);
-  report.stiffness_of_motion = StiffnessOfMotion(now, next, half_step_energy);
+  MeasureMotion(now, next, report);
   next.dissipated += dt * forces.dissipated_power;
   if (model_.has_mass_damping()) {
     next.dissipated += dt * SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
@@ -73,7 +72,7 @@ StepReport TetSolver::StepMixed(const TetState& now, double dt, TetState& next) 
   Drift(now, dt, next);
   // f' = f(x')
   const ForceReport forces = UpdateForce(nullptr, next);
-  report.stiffness_of_motion = StiffnessOfMotion(now, next, TwiceKineticEnergyOfFree(next.velocities));
+  MeasureMotion(now, next, report);
   report.problem = ProblemOf(forces, first);
   report.iterations = first.iterations;
   if (report.problem != StepProblem::kNone) return report;
@@ -103,10 +102,12 @@ void TetSolver::Drift(const TetState& now, double dt, TetState& next) {
 
 ForceReport TetSolver::UpdateForce(const NodalVector* viscous_velocity, TetState& next) {
   const std::span<const double> activation = controls_next_.activation;
-  if (viscous_velocity == nullptr) {
-    return ElasticForce(model_, activation, next.positions, team_, corners_, next.force);
-  }
-  return ElasticAndViscousForce(model_, activation, next.positions, *viscous_velocity, team_, corners_, next.force);
+  const ForceReport report =
+      viscous_velocity == nullptr
+          ? ElasticForce(model_, activation, next.positions, team_, corners_, next.force)
+          : ElasticAndViscousForce(model_, activation, next.positions, *viscous_velocity, team_, corners_, next.force);
+  next.smallest_ratio = report.smallest_ratio;
+  return report;
 }
 
 // Solves (M + dt/2 a M - dt/2 D) v = M v0 + dt/2 f for v with v0 = next.velocities, where prescribed components keep
@@ -150,20 +151,18 @@ CgResult TetSolver::SolveDamping(const NodalVector& x, const NodalVector& intern
   return result;
 }
 
-double TetSolver::TwiceKineticEnergyOfFree(const NodalVector& v) const {
-  return SumOverNodes(team_, v.size(), [&](std::size_t n) {
+void TetSolver::MeasureMotion(const TetState& now, const TetState& next, StepReport& report) const {
+  const double twice_kinetic = SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
     const double m = model_.mass()[n];
-    return m * m * model_.inverse_mass()[n].dot(v[n].cwiseAbs2());
+    return m * m * model_.inverse_mass()[n].dot(next.velocities[n].cwiseAbs2());
   });
-}
-
-double TetSolver::StiffnessOfMotion(const TetState& now, const TetState& next, double half_step_energy) const {
-  if (!(half_step_energy > 0)) return 0;
+  report.kinetic = twice_kinetic / 2;
+  if (!(twice_kinetic > 0)) return;
   const double work = SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
     const Vec3 free = model_.mass()[n] * model_.inverse_mass()[n];
     return free.dot((next.force[n] - now.force[n]).cwiseProduct(next.positions[n] - now.positions[n]));
   });
-  return -work / half_step_energy;
+  report.stiffness_of_motion = -work / twice_kinetic;
 }
 
 void TetSolver::AddExternalWork(const TetState& now, TetState& next) const {
