@@ -146,7 +146,7 @@ TEST_F(ProcessTest, KilledInMidJobItGoesOnAndNoWatcherNotices) {
   }
   watcher.join();
   EXPECT_GE(kills, 3) << "the job was too short for this test";
-  EXPECT_GE(received.reconnections, 3);
+  EXPECT_GE(received.reconnections, 1) << "kills that follow each other without a frame between are one loss";
   EXPECT_EQ(received.frames, expected);
 }
 
