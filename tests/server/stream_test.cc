@@ -267,7 +267,7 @@ TEST_F(StreamTest, StoppingEndsEveryStreamWithUnavailable) {
 
 TEST_F(StreamTest, StoppingEndsUploadsAndReadersThatStandStill) {
   const std::string name = stubs_->Submit(LargeFrames(8));
-  ASSERT_TRUE(stubs_->AwaitState(name, v1::Job::STATE_SUCCEEDED));
+  ASSERT_TRUE(stubs_->AwaitState(name, v1::Job::STATE_SUCCEEDED, 60s));
   grpc::ClientContext reading;
   const auto reader = stubs_->frames->StreamFrames(&reading, AllFramesOf(name));  // never reads
   grpc::ClientContext uploading;
