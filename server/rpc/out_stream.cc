@@ -137,7 +137,8 @@ void OutStream::OnWriteDone(bool ok) {
       ready_.clear();
       if (!last_) last_ = grpc::Status::CANCELLED;
     }
-    // Filled again when all that was made in advance is on its way: half as many switches of threads as for each message.
+    // Filled again when all that was made in advance is on its way: half as many switches of threads as for each
+    // message.
     low = ready_.size() <= 1;
     Pump(lock);
   }
