@@ -57,8 +57,7 @@ StepReport TetSolver::Advance(TetState& state, double end) {
     }
     const double next_time = steps <= 1 ? end : state.time + remaining / steps;
     StepReport report = Step(state, next_time, next_);
-    if (report.problem == StepProblem::kNone && IsUnstable(state, next_, report))
-      report.problem = StepProblem::kUnstable;
+    if (report.problem == StepProblem::kNone) report.problem = Judge(state, next_, report);
     if (report.problem == StepProblem::kNone) {
       next_.peak_kinetic = std::max(state.peak_kinetic, report.kinetic);
       Accept(state);
@@ -118,11 +117,14 @@ double TetSolver::TargetStep(const TetState& state) const {
   return std::ldexp(step, -state.cuts);
 }
 
-// Motion that is stiffer than the step can carry, or that crushes an element within it. Not so the last stir of a body
-// at rest, nor what is still stiff at the shortest step, far below the stable one: there forces change from outside.
-bool TetSolver::IsUnstable(const TetState& now, const TetState& next, const StepReport& report) const {
-  if (next.smallest_ratio < kRatioChangeOfStep * now.smallest_ratio) return true;
-  return report.stiffness_of_motion > 4 && report.kinetic > kFaintMotion * now.peak_kinetic && now.cuts < kMaxCuts;
+// Whether a step that was made was too long: an element is well on its way to turning inside out, or the motion is
+// stiffer than the step can carry. Not so the last stir of a body at rest, nor what is still stiff at the shortest
+// step, far below the stable one: there forces change from outside.
+StepProblem TetSolver::Judge(const TetState& now, const TetState& next, const StepReport& report) const {
+  if (next.smallest_ratio < kRatioChangeOfStep * now.smallest_ratio) return StepProblem::kInvertedElement;
+  const bool too_stiff =
+      report.stiffness_of_motion > 4 && report.kinetic > kFaintMotion * now.peak_kinetic && now.cuts < kMaxCuts;
+  return too_stiff ? StepProblem::kUnstable : StepProblem::kNone;
 }
 
 void TetSolver::Accept(TetState& state) {
@@ -140,7 +142,7 @@ void TetSolver::Accept(TetState& state) {
 StepReport TetSolver::Fail(const TetState& state, StepReport report) const {
   if (report.problem == StepProblem::kInvertedElement) {
     report.bad = FindBadElements(model_, controls_next_.activation, next_.positions);
-    if (!report.bad.inverted) report.problem = StepProblem::kNotFinite;
+    if (!report.bad.elements.empty() && !report.bad.inverted) report.problem = StepProblem::kNotFinite;
   }
   if (report.bad.elements.empty()) report.bad = FindThinnestElement(model_, state.positions);
   return report;

@@ -10,7 +10,7 @@
 
 namespace fascicle {
 
-// What can go wrong with a step.
+// What can go wrong with a step. An element counts as inverted also when it loses much of its volume in a single step.
 enum class StepProblem { kNone, kInvertedElement, kNotFinite, kNotConverged, kUnstable, kStepTooSmall };
 
 struct StepReport {
@@ -63,7 +63,7 @@ class TetSolver {
   bool IsStableStepDue(const TetState& state);
   void RefreshStableStep(TetState& state);
   double TargetStep(const TetState& state) const;
-  bool IsUnstable(const TetState& now, const TetState& next, const StepReport& report) const;
+  StepProblem Judge(const TetState& now, const TetState& next, const StepReport& report) const;
   void Accept(TetState& state);
   StepReport Fail(const TetState& state, StepReport report) const;
 
