@@ -3,7 +3,6 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
@@ -28,3 +27,22 @@ if(FASCICLE_SANITIZE)
   add_compile_options(-fsanitize=${FASCICLE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g1)
   add_link_options(-fsanitize=${FASCICLE_SANITIZE})
 endif()
+
+# Precompiled headers: parsing Eigen, gRPC and Google Test would otherwise take most of a build. Headers stay
+# self-contained all the same: tests/architecture compiles each without them.
+#   core       the standard library and Eigen            core_test   and Google Test
+#   wire       and the generated messages and gRPC       wire_test   and Google Test
+function(fascicle_precompiled kind)
+  set(target fascicle_precompiled_${kind})
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled/${kind}.cc CONTENT "")
+  add_library(${target} OBJECT ${CMAKE_BINARY_DIR}/precompiled/${kind}.cc)
+  target_link_libraries(${target} PRIVATE fascicle_settings ${ARGN})
+  set(headers ${CMAKE_SOURCE_DIR}/deploy/cmake/precompiled_core.h)
+  if(kind MATCHES "wire")
+    list(APPEND headers ${CMAKE_SOURCE_DIR}/deploy/cmake/precompiled_wire.h)
+  endif()
+  if(kind MATCHES "test")
+    list(APPEND headers <gmock/gmock.h> <gtest/gtest.h>)
+  endif()
+  target_precompile_headers(${target} PRIVATE ${headers})
+endfunction()

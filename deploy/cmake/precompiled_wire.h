@@ -1,0 +1,7 @@
+// What nearly every source that sees the wire includes; see fascicle_settings.cmake.
+#pragma once
+
+#include <google/protobuf/message.h>
+#include <grpcpp/grpcpp.h>
+
+#include "fascicle/v1/simulation_service.grpc.pb.h"
