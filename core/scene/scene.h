@@ -21,9 +21,9 @@ namespace fascicle {
 // meaning. Built by the server's translation or by hand, then checked by CheckScene and never changed.
 
 struct Rotation {
-  Vec3 point = Vec3::Zero();   // [m]
-  Vec3 axis = Vec3::UnitZ();   // unit
-  Curve angle;                 // [rad]
+  Vec3 point = Vec3::Zero();  // [m]
+  Vec3 axis = Vec3::UnitZ();  // unit
+  Curve angle;                // [rad]
 };
 
 struct Motion {
@@ -32,13 +32,17 @@ struct Motion {
 };
 
 struct Constraint {
-  std::int32_t region = 0;                           // index into Body::regions
+  std::int32_t region = 0;  // index into Body::regions
   std::array<bool, 3> axes = {true, true, true};
   Motion motion;
 };
 
-struct Traction { Vec3 vector = Vec3::Zero(); };   // [Pa] of rest area
-struct NodalForce { Vec3 total = Vec3::Zero(); };  // [N]
+struct Traction {
+  Vec3 vector = Vec3::Zero();
+};  // [Pa] of rest area
+struct NodalForce {
+  Vec3 total = Vec3::Zero();
+};  // [N]
 
 struct Load {
   std::int32_t region = 0;  // index into Body::regions
@@ -54,7 +58,7 @@ struct Damping {
 
 struct Body {
   std::string name;
-  TetMesh mesh;  // [m]
+  TetMesh mesh;           // [m]
   double density = 1060;  // [kg/m^3]
   Material material = NeoHookean(std::array{1e4, 0.3});
   FibreField fibres;  // empty, or one for each tetrahedron
@@ -79,7 +83,15 @@ struct TetMethod {
   double solver_tolerance = 1e-8;
 };
 
-enum class OutputField { kVelocity, kCauchyStress, kVonMisesStress, kPressure, kVolumeRatio, kFibreStretch, kFibreDirection };
+enum class OutputField {
+  kVelocity,
+  kCauchyStress,
+  kVonMisesStress,
+  kPressure,
+  kVolumeRatio,
+  kFibreStretch,
+  kFibreDirection
+};
 
 struct Probe {
   std::string name;
@@ -105,7 +117,8 @@ struct Scene {
 
 // Checks what concerns more than one field: constraints that contradict each other in a node, loads on regions without
 // surface, fibres missing for a law that needs them, activation outside [0, 1], bodies without mass, frame counts,
-// a whole body free to fly away under load (not a problem when gravity or loads are absent). One check per file in this room.
+// a whole body free to fly away under load (not a problem when gravity or loads are absent). One check per file in this
+// room.
 void CheckScene(const Scene& scene, Problems& problems);
 
 }  // namespace fascicle

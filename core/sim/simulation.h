@@ -16,8 +16,8 @@ namespace fascicle {
 
 // How far a run is.
 struct Progress {
-  double fraction = 0;   // of the simulated time, 0 to 1
-  double time = 0;       // [s]
+  double fraction = 0;  // of the simulated time, 0 to 1
+  double time = 0;      // [s]
   std::int64_t step = 0;
   double time_step = 0;  // [s]
 };
