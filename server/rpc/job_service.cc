@@ -39,10 +39,14 @@ grpc::ServerUnaryReactor* JobServiceImpl::CreateJob(grpc::CallbackServerContext*
 }
 
 grpc::Status JobServiceImpl::Create(const v1::CreateJobRequest& request, v1::Job& response, std::size_t details_limit) {
+  const std::vector<std::string> missing = MissingAssets(request.job().scene());
+  if (!missing.empty()) {
+    return FailedPrecondition("MISSING_ASSET", missing, "an asset of the scene was not uploaded", details_limit);
+  }
   Problems problems;
   CheckRequest(request, problems);
+  if (request.job().has_scene()) CheckScene(request.job().scene(), problems);
   if (!problems.empty()) return InvalidArgument(problems, details_limit);
-  if (grpc::Status status = CheckScene(request.job().scene(), details_limit); !status.ok()) return status;
   if (request.validate_only()) {
     response.set_scene_name(request.job().scene().name());
     response.set_threads(request.job().threads());
@@ -65,21 +69,19 @@ grpc::Status JobServiceImpl::Create(const v1::CreateJobRequest& request, v1::Job
   return grpc::Status::OK;
 }
 
-grpc::Status JobServiceImpl::CheckScene(const v1::Scene& scene, std::size_t details_limit) {
+std::vector<std::string> JobServiceImpl::MissingAssets(const v1::Scene& scene) {
   std::vector<std::string> missing;
   for (const std::string& sha256_hex : AssetsOf(scene)) {
     if (!context_.store.HasAsset(sha256_hex)) missing.push_back(AssetName(sha256_hex));
   }
-  if (!missing.empty()) {
-    return FailedPrecondition("MISSING_ASSET", missing, "an asset of the scene was not uploaded", details_limit);
-  }
+  return missing;
+}
+
+void JobServiceImpl::CheckScene(const v1::Scene& scene, Problems& problems) {
   const auto read = [this](const std::string& sha256_hex) { return context_.store.ReadAsset(sha256_hex); };
   Problems found;
-  if (TranslateScene(scene, read, found)) return grpc::Status::OK;
-  Problems problems;
+  if (TranslateScene(scene, read, found) == nullptr && found.empty()) found.Add("", "can't be translated");
   problems.Append("job.scene", found);
-  if (problems.empty()) return Internal("INTERNAL", "the scene could not be translated");
-  return InvalidArgument(problems, details_limit);
 }
 
 grpc::ServerUnaryReactor* JobServiceImpl::GetJob(grpc::CallbackServerContext* call, const v1::GetJobRequest* request,

@@ -1,6 +1,10 @@
 #ifndef FASCICLE_SERVER_RPC_JOB_SERVICE_H_
 #define FASCICLE_SERVER_RPC_JOB_SERVICE_H_
 
+#include <string>
+#include <vector>
+
+#include "core/base/problems.h"
 #include "fascicle/v1/simulation_service.grpc.pb.h"
 #include "server/rpc/rpc_context.h"
 
@@ -25,8 +29,9 @@ class JobServiceImpl : public v1::JobService::CallbackService {
  private:
   grpc::Status Create(const v1::CreateJobRequest& request, v1::Job& response, std::size_t details_limit);
   grpc::Status List(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
-  // OK when every asset that the scene names is there and the scene can be run.
-  grpc::Status CheckScene(const v1::Scene& scene, std::size_t details_limit);
+  // `assets/{sha256}` of those that the scene names and the store lacks.
+  std::vector<std::string> MissingAssets(const v1::Scene& scene);
+  void CheckScene(const v1::Scene& scene, Problems& problems);
 
   RpcContext& context_;
 };

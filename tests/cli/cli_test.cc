@@ -153,8 +153,12 @@ TEST_F(CliTest, RunWithoutDataLeavesNothing) {
 
 TEST_F(CliTest, AFailedJobSaysWhy) {
   std::string text = SceneText(10, 100);
-  text.replace(text.find("-9.81"), 5, "-1000");  // crushes the block
-  text.replace(text.find("1e-4}"), 5, "5e-3}");  // with a step far beyond stability
+  const std::string floor = R"({"region": "floor"}])";  // and a lid that is pushed through it
+  text.replace(text.find(floor), floor.size(), R"({"region": "floor"}, {"region": "lid", "motion": {"translation":
+    [{"axis": "z", "curve": {"times": [0, 0.05], "values": [0, -0.02]}}]}}])");
+  const std::string regions = R"("regions": [)";
+  text.replace(text.find(regions), regions.size(),
+               regions + R"({"name": "lid", "plane": {"point": [0, 0, 1], "normal": [0, 0, 1]}}, )");
   const Finished finished = Fascicle({"run", Scene("scene.json", text), "--json"});
   EXPECT_EQ(finished.exit_code, 1) << finished.out << finished.err;
   const json summary = json::parse(finished.out);
