@@ -25,8 +25,9 @@ class ThreadTeam {
   template <class Body>
   void For(std::size_t count, std::size_t grain, const Body& body) {
     static_assert(std::is_invocable_v<const Body&, std::size_t, std::size_t>);
-    Run(count, grain, [](const void* b, std::size_t begin, std::size_t end) { (*static_cast<const Body*>(b))(begin, end); },
-        &body);
+    Run(
+        count, grain,
+        [](const void* b, std::size_t begin, std::size_t end) { (*static_cast<const Body*>(b))(begin, end); }, &body);
   }
 
   // Sum of body(begin, end) over blocks of fixed size, added in the order of the blocks: the same bits for any number
@@ -34,9 +35,10 @@ class ThreadTeam {
   template <class Body>
   double Sum(std::size_t count, const Body& body) {
     static_assert(std::is_invocable_r_v<double, const Body&, std::size_t, std::size_t>);
-    return RunSum(count, [](const void* b, std::size_t begin, std::size_t end) {
-      return (*static_cast<const Body*>(b))(begin, end);
-    }, &body);
+    return RunSum(
+        count,
+        [](const void* b, std::size_t begin, std::size_t end) { return (*static_cast<const Body*>(b))(begin, end); },
+        &body);
   }
 
  private:

@@ -243,8 +243,8 @@ inline std::vector<MeshSample> MeshSamples() {
   const auto sample = [](std::string name, std::string bytes, std::size_t spare) {
     return MeshSample{std::move(name), bytes, "", bytes.size() - spare};
   };
-  // The end of the last line may be missing, and the end of the XML after raw data. A legacy VTK file is complete without
-  // its attributes, too: it may be cut before the section `last`.
+  // The end of the last line may be missing, and the end of the XML after raw data. A legacy VTK file is complete
+  // without its attributes, too: it may be cut before the section `last`.
   const auto legacy = [](std::string name, std::string bytes, const std::string& last) {
     return MeshSample{std::move(name), bytes, "", bytes.rfind(last) - 1};
   };
