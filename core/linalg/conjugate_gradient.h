@@ -36,7 +36,11 @@ CgResult ConjugateGradient(ThreadTeam& team, const Apply& apply, const NodalVect
                            CgWorkspace& ws) {
   const std::size_t nodes = b.size();
   ws.Resize(nodes);
-  auto& [r, z, p, q] = ws;
+  // Named one by one: clang 14 can't capture structured bindings.
+  NodalVector& r = ws.residual;
+  NodalVector& z = ws.preconditioned;
+  NodalVector& p = ws.direction;
+  NodalVector& q = ws.product;
   apply(x, q);
   ForNodes(team, nodes, [&](std::size_t n) {
     r[n] = b[n] - q[n];

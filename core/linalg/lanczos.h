@@ -39,7 +39,11 @@ double LargestEigenvalue(ThreadTeam& team, const Apply& apply, const NodalVector
   constexpr int kFirstCheck = 8, kCheckEvery = 4;
 
   const std::size_t nodes = W.size();
-  auto& [previous, v, w, scaled] = ws;
+  // Named one by one: clang 14 can't capture structured bindings.
+  NodalVector& previous = ws.previous;
+  NodalVector& v = ws.current;
+  NodalVector& w = ws.next;
+  NodalVector& scaled = ws.scaled;
   previous.assign(nodes, Vec3::Zero());
   v.resize(nodes);
   w.resize(nodes);

@@ -65,7 +65,9 @@ void TetStiffness::Apply(const TetModel& model, const NodalVector& p, ThreadTeam
 double LargestStableStep(const TetModel& model, std::span<const double> activation, const NodalVector& x,
                          bool explicit_damping, ThreadTeam& team, CornerForceArray& corners,
                          StableStepWorkspace& workspace) {
-  auto& [stiffness, inverse_root_mass, lanczos] = workspace;
+  TetStiffness& stiffness = workspace.stiffness;
+  NodalVector& inverse_root_mass = workspace.inverse_root_mass;
+  LanczosWorkspace& lanczos = workspace.lanczos;
   inverse_root_mass.resize(model.nodes());
   ForNodes(team, model.nodes(), [&](std::size_t n) { inverse_root_mass[n] = model.inverse_mass()[n].cwiseSqrt(); });
 

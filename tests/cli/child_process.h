@@ -21,7 +21,8 @@ struct Finished {
 class ChildProcess {
  public:
   // `environment` is added to this process's own; an empty value removes a variable.
-  ChildProcess(const std::vector<std::string>& command, const std::map<std::string, std::string>& environment = {});
+  explicit ChildProcess(const std::vector<std::string>& command,
+                        const std::map<std::string, std::string>& environment = {});
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
