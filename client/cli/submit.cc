@@ -8,7 +8,7 @@ namespace fascicle::client {
 namespace {
 
 constexpr const char* kExamples =
-    R"text(  fascicle --server lab:7878 submit scene.json             prints the job's name
+    R"text(  fascicle --server lab:7300 submit scene.json             prints the job's name
   fascicle submit scene.json --threads 4                   with FASCICLE_SERVER set
   fascicle watch "$(fascicle submit scene.json)"           submit, then follow
 )text";
