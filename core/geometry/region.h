@@ -35,6 +35,7 @@ struct Region {
   std::string name;
   std::vector<std::int32_t> nodes;  // ascending, no duplicates
   std::vector<Triangle> triangles;  // of the surface: outward, all nodes in `nodes` (side, tag: the selected ones)
+  std::vector<std::int32_t> tetrahedra;  // ascending; tag: those with it; plane, box, sphere: whose centroid is inside
 };
 
 // Selects what a selector names; may be empty. Tag: the triangles with the tag, and if there are none the tetrahedra

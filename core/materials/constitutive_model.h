@@ -13,6 +13,10 @@ namespace fascicle {
 struct FibreState {
   Vec3 direction = Vec3::Zero();  // unit rest direction a0; ignored by isotropic laws
   double activation = 0;          // alpha in [0, 1]; ignored by passive laws
+  // For laws that depend on how fast the fibre shortens: its isochoric stretch a step ago [1], and one over the length
+  // of that step [1/s], zero for a fibre that is held.
+  double previous_stretch = 1;
+  double inverse_step = 0;
 };
 
 // A parameter of a law, as in the message of the same name in scene.proto.

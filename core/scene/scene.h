@@ -61,11 +61,22 @@ struct Body {
   TetMesh mesh;           // [m]
   double density = 1060;  // [kg/m^3]
   Material material = NeoHookean(std::array{1e4, 0.3});
+  // Materials beside `material`, and which one each tetrahedron has: 0 for `material`, k for more_materials[k - 1].
+  // All have `material` when empty.
+  std::vector<Material> more_materials;
+  std::vector<std::int32_t> material_of;
   FibreField fibres;  // empty, or one for each tetrahedron
   std::vector<Region> regions;
   std::vector<Constraint> constraints;
   std::vector<Load> loads;
   Curve activation = Curve::Constant(0);
+  // Activations beside `activation`, and which one each tetrahedron follows, counted as the materials are.
+  std::vector<Curve> more_activations;
+  std::vector<std::int32_t> activation_of;
+  // What each tetrahedron makes of its activation, in [0, 1]; 1 when empty.
+  std::vector<double> activation_scale;
+  // Displacement of each node from rest at time 0 [m]; none when empty. May tangle the mesh.
+  std::vector<Vec3> initial_displacement;
   Damping damping;
 };
 
