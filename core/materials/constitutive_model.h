@@ -38,6 +38,10 @@ inline constexpr double kRequired = std::numeric_limits<double>::quiet_NaN();
 //   kSource      paper and equation
 //   kParameters  std::array<ParameterInfo, n>
 //   kNeedsFibres the law is meaningless without fibre directions
+//   VolumeModulus, WithVolumeModulus
+//                the coefficient k of the term k/2 (ln J)^2 that W holds, and the same law with another one, which need
+//                not be positive: a method can take part of that term elsewhere. Laws without the term say 0 and return
+//                themselves.
 // constructed from its parameters' values in the order of kParameters.
 // Where J <= 0 a law that has no meaning there returns non-finite values; it never traps.
 template <class M>
@@ -54,6 +58,8 @@ concept ConstitutiveModel = requires(const M m, const Mat3& F, const FibreState&
   { m.Tangent(F, fibre) } -> std::same_as<Mat9>;   // dP/dF, symmetric [Pa]
   { m.ShearModulus() } -> std::same_as<double>;    // small-strain, passive, without fibres [Pa]
   { m.BulkModulus() } -> std::same_as<double>;     // small-strain [Pa]
+  { m.VolumeModulus() } -> std::same_as<double>;   // [Pa]
+  { m.WithVolumeModulus(0.0) } -> std::same_as<M>;
 };
 
 }  // namespace fascicle

@@ -52,6 +52,8 @@ class CorotatedLinear {
 
   double ShearModulus() const { return moduli_.mu; }
   double BulkModulus() const { return moduli_.Bulk(); }
+  double VolumeModulus() const { return 0; }
+  CorotatedLinear WithVolumeModulus(double) const { return *this; }
 
  private:
   IsotropicModuli moduli_;

@@ -41,6 +41,8 @@ class LinearElastic {
 
   double ShearModulus() const { return moduli_.mu; }
   double BulkModulus() const { return moduli_.Bulk(); }
+  double VolumeModulus() const { return 0; }
+  LinearElastic WithVolumeModulus(double) const { return *this; }
 
  private:
   static Mat3 Strain(const Mat3& F) { return 0.5 * (F + F.transpose()) - Mat3::Identity(); }

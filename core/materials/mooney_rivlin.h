@@ -37,6 +37,12 @@ class MooneyRivlin {
 
   double ShearModulus() const { return 2 * (moduli_.c1 + moduli_.c2); }
   double BulkModulus() const { return moduli_.bulk; }
+  double VolumeModulus() const { return moduli_.bulk; }
+  MooneyRivlin WithVolumeModulus(double k) const {
+    MooneyRivlin law = *this;
+    law.moduli_.bulk = k;
+    return law;
+  }
 
  private:
   MatrixModuli moduli_;

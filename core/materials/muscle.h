@@ -66,6 +66,12 @@ class Muscle {
 
   double ShearModulus() const { return 2 * (moduli_.c1 + moduli_.c2); }
   double BulkModulus() const { return moduli_.bulk; }
+  double VolumeModulus() const { return moduli_.bulk; }
+  Muscle WithVolumeModulus(double k) const {
+    Muscle law = *this;
+    law.moduli_.bulk = k;
+    return law;
+  }
 
   // Cauchy stress that the fibre adds along itself at isochoric stretch lambda: lambda F2'(lambda, alpha) [Pa].
   double FibreStress(double stretch, double activation) const { return stretch * Slope(stretch, activation); }

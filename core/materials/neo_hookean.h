@@ -44,6 +44,12 @@ class NeoHookean {
 
   double ShearModulus() const { return moduli_.mu; }
   double BulkModulus() const { return moduli_.Bulk(); }
+  double VolumeModulus() const { return moduli_.lambda; }
+  NeoHookean WithVolumeModulus(double k) const {
+    NeoHookean law = *this;
+    law.moduli_.lambda = k;
+    return law;
+  }
 
  private:
   IsotropicModuli moduli_;

@@ -41,6 +41,8 @@ class StVenantKirchhoff {
 
   double ShearModulus() const { return moduli_.mu; }
   double BulkModulus() const { return moduli_.Bulk(); }
+  double VolumeModulus() const { return 0; }
+  StVenantKirchhoff WithVolumeModulus(double) const { return *this; }
 
  private:
   static Mat3 GreenStrain(const Mat3& F) { return 0.5 * (F.transpose() * F - Mat3::Identity()); }

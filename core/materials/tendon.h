@@ -55,6 +55,12 @@ class Tendon {
 
   double ShearModulus() const { return 2 * (moduli_.c1 + moduli_.c2); }
   double BulkModulus() const { return moduli_.bulk; }
+  double VolumeModulus() const { return moduli_.bulk; }
+  Tendon WithVolumeModulus(double k) const {
+    Tendon law = *this;
+    law.moduli_.bulk = k;
+    return law;
+  }
 
   // Cauchy stress that the fibre adds along itself at isochoric stretch lambda: lambda F2'(lambda) [Pa].
   double FibreStress(double stretch) const { return curve_.Value(stretch); }

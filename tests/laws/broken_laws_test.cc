@@ -144,6 +144,17 @@ struct WrongModulus : Muscle {
   double ShearModulus() const { return 0.5 * Muscle::ShearModulus(); }
 };
 
+// Reads its volume term as k (ln J)^2 instead of k/2 (ln J)^2.
+struct WrongVolumeModulus : NeoHookean {
+  WrongVolumeModulus() : NeoHookean(kYoungPoisson) {}
+  double VolumeModulus() const { return 0.5 * NeoHookean::VolumeModulus(); }
+  WrongVolumeModulus WithVolumeModulus(double k) const {
+    WrongVolumeModulus law = *this;
+    static_cast<NeoHookean&>(law) = NeoHookean::WithVolumeModulus(2 * k);
+    return law;
+  }
+};
+
 // The largest error that each check reports.
 struct Report {
   double stress = 0, tangent = 0, asymmetry = 0, objectivity = 0, symmetry = 0, rest = 0, moduli = 0;
@@ -255,6 +266,12 @@ TEST(BrokenLaws, ModulusThatIsNotTheTangents) {
   EXPECT_GT(r.moduli, kFound);
   EXPECT_LE(r.stress, kSound);
   EXPECT_LE(r.tangent, kSound);
+}
+
+TEST(BrokenLaws, VolumeModulusThatIsNotTheTerms) {
+  const laws::Sample sample = laws::Sampler(3).Draw(1, 0);
+  EXPECT_LE(laws::VolumeSplitError(NeoHookean(kYoungPoisson), sample, 0), kSound);
+  EXPECT_GT(laws::VolumeSplitError(WrongVolumeModulus(), sample, 0), kFound);
 }
 
 }  // namespace

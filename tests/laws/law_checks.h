@@ -167,6 +167,30 @@ double SymmetryError(const Law& law, const Sample& s, const Mat3& Q) {
   return std::max(energy, stress);
 }
 
+// W - W' = (k - k')/2 (ln J)^2 for the same law with another coefficient k' of its volume term, and the first and
+// second derivatives of that; each relative to the larger of the law's own and the shear modulus.
+template <class Law>
+double VolumeSplitError(const Law& law, const Sample& s, double other_modulus) {
+  const Law other = law.WithVolumeModulus(other_modulus);
+  const double k = law.VolumeModulus() - other.VolumeModulus();
+  const double log_J = std::log(s.F.determinant());
+  const Mat3 H = s.F.inverse().transpose();
+  Mat9 tangent;  // of k/2 (ln J)^2: k (H_ij H_kl - ln J H_il H_kj)
+  for (int column = 0; column < 9; ++column) {
+    for (int row = 0; row < 9; ++row) {
+      const int i = row % 3, j = row / 3, m = column % 3, n = column / 3;
+      tangent(row, column) = k * (H(i, j) * H(m, n) - log_J * H(i, n) * H(m, j));
+    }
+  }
+  const double W = law.Energy(s.F, s.fibre);
+  const Mat3 P = law.Stress(s.F, s.fibre);
+  const Mat9 dP = law.Tangent(s.F, s.fibre);
+  const double floor = std::max(law.ShearModulus(), std::abs(other_modulus));
+  return std::max({std::abs(W - other.Energy(s.F, s.fibre) - 0.5 * k * log_J * log_J) / std::max(std::abs(W), floor),
+                   (P - other.Stress(s.F, s.fibre) - k * log_J * H).norm() / std::max(P.norm(), floor),
+                   (dP - other.Tangent(s.F, s.fibre) - tangent).norm() / std::max(dP.norm(), floor)});
+}
+
 // Stress and energy of the undeformed body without activation.
 template <class Law>
 double RestError(const Law& law, const Vec3& direction) {
