@@ -52,6 +52,22 @@ inline void AddTransposedProduct(double scale, const Mat3& A, Mat9& tangent) {
   }
 }
 
+// [a]x: the matrix with [a]x b = a x b.
+inline Mat3 CrossMatrix(const Vec3& a) {
+  Mat3 m;
+  m << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
+  return m;
+}
+
+// Adds scale * d(cof F)/dF, the second derivative of J: column k of cof F is F_i x F_j, (i, j, k) cyclic.
+inline void AddCofactorTangent(double scale, const Mat3& F, Mat9& tangent) {
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    tangent.block<3, 3>(3 * k, 3 * i) -= CrossMatrix(scale * F.col(j));
+    tangent.block<3, 3>(3 * k, 3 * j) += CrossMatrix(scale * F.col(i));
+  }
+}
+
 }  // namespace fascicle
 
 #endif  // FASCICLE_CORE_MATERIALS_TENSOR_ALGEBRA_H_

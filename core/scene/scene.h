@@ -85,11 +85,21 @@ struct Gravity {
   Curve scale = Curve::Constant(1);
 };
 
-enum class Stepping { kExplicit, kMixed };
+enum class Stepping { kExplicit, kMixed, kBackwardEuler, kNewmark, kBdf2, kQuasiStatic };
+
+// Polynomial order of the displacement in an element: 4 or 10 nodes.
+enum class ElementOrder { kLinear, kQuadratic };
+
+// Where the volume energy of nearly incompressible laws acts: on averages around nodes, or in each element by itself,
+// which locks.
+enum class VolumeForm { kNodal, kElement };
 
 struct TetMethod {
   Stepping stepping = Stepping::kExplicit;
+  ElementOrder element = ElementOrder::kLinear;
+  VolumeForm volume = VolumeForm::kNodal;
   std::optional<double> time_step;  // [s]; automatic when absent
+  double newton_tolerance = 1e-8;   // relative force at which the iterations of implicit steps end
   double safety = 0.9;
   double solver_tolerance = 1e-8;
 };

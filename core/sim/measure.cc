@@ -99,7 +99,7 @@ std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, 
   controls.Set(model, state.time);
   double elastic = 0;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-    elastic += ElasticEnergy(model, b, controls.activation[b], state.positions, team);
+    elastic += ElasticEnergy(model, b, FibreDrive{controls.activation}, state.positions, team);
   }
   std::vector<double> values = {elastic,
                                 KineticEnergy(model, state.velocities, team),
@@ -111,7 +111,7 @@ std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, 
   const std::vector<Vec3> forces = Reactions(model, state, team);
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const VolumeRatios ratios = VolumeRatiosOf(model, b, state.positions);
-    values.insert(values.end(), {ratios.total, ratios.smallest, controls.activation[b]});
+    values.insert(values.end(), {ratios.total, ratios.smallest, controls.activation[model.bodies()[b].activation]});
     for (const RegionReaction& reaction : reactions) {
       if (reaction.body != b) continue;
       Vec3 sum = Vec3::Zero();
@@ -134,13 +134,13 @@ std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& stat
   for (std::size_t b = 0; b < frames.size(); ++b) {
     const TetBody& body = model.bodies()[b];
     frames[b].positions.assign(state.positions.begin() + static_cast<std::ptrdiff_t>(body.node_begin),
-                               state.positions.begin() + static_cast<std::ptrdiff_t>(body.node_end));
+                               state.positions.begin() + static_cast<std::ptrdiff_t>(body.mesh_node_end));
     for (const OutputField field : model.scene().output.fields) {
       const FieldInfo info = InfoOf(field);
       const FieldLocation location =
           field == OutputField::kVelocity ? FieldLocation::kNode : FieldLocation::kTetrahedron;
       frames[b].fields.push_back({info.name, location, ComponentsOf(field), info.unit,
-                                  FieldValuesOf(model, b, field, controls.activation[b], state, team)});
+                                  FieldValuesOf(model, b, field, FibreDrive{controls.activation}, state, team)});
     }
   }
   return frames;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/tet/element.h"
+#include "core/tet/points.h"
 
 namespace fascicle {
 namespace {
@@ -21,24 +21,32 @@ double SmallestHeight(const Mat3& Ds) {
 
 }  // namespace
 
-BadElements FindBadElements(const TetModel& model, std::span<const double> activation, const NodalVector& x) {
+BadElements FindBadElements(const TetModel& model, const FibreDrive& drive, const NodalVector& x) {
   BadElements bad;
-  for (std::size_t b = 0; b < model.bodies().size() && bad.elements.empty(); ++b) {
-    const TetBody& body = model.bodies()[b];
-    bad.body = b;
-    std::visit(
-        [&](const auto& law) {
-          for (std::size_t e = body.tet_begin; e < body.tet_end && bad.elements.size() < kMaxBadElements; ++e) {
-            const Mat3 F = EdgeMatrix(x, model.corners()[e]) * model.Dm_inverse()[e];
-            const Mat3 P = law.Stress(F, FibreState{model.fibres()[e], activation[b]});
-            const double J = Determinant(F);
-            if (J > 0 && std::isfinite(P.sum())) continue;
-            bad.inverted |= J <= 0;
-            bad.elements.push_back(static_cast<std::int64_t>(e - body.tet_begin));
-          }
-        },
-        body.source->material);
+  const auto look_at = [&]<class Element>(Element, const auto& law, std::size_t e) {
+    for (int q = 0; q < Element::kPoints; ++q) {
+      const Mat3 F = GradientAt<Element>(model, e, ValuesOf<Element>(model, e, x), q);
+      const double J = Determinant(F);
+      if (J > 0 && std::isfinite(law.Stress(F, FibreAt<Element>(model, e, drive, q)).sum())) continue;
+      bad.inverted |= J <= 0;
+      bad.elements.push_back(model.source_tetrahedron()[e]);
+      return;
+    }
+  };
+  for (const TetGroup& group : model.groups()) {
+    if (!bad.elements.empty() && group.body != bad.body) break;
+    bad.body = group.body;
+    model.VisitElement([&](auto element) {
+      std::visit(
+          [&](const auto& laws) {
+            for (std::size_t e = group.tet_begin; e < group.tet_end && bad.elements.size() < kMaxBadElements; ++e) {
+              look_at(element, laws[model.law_of()[e]], e);
+            }
+          },
+          group.laws);
+    });
   }
+  std::sort(bad.elements.begin(), bad.elements.end());
   return bad;
 }
 
@@ -52,7 +60,7 @@ BadElements FindThinnestElement(const TetModel& model, const NodalVector& x) {
       if (!(height < least)) continue;
       least = height;
       thinnest.body = b;
-      thinnest.elements = {static_cast<std::int64_t>(e - body.tet_begin)};
+      thinnest.elements = {model.source_tetrahedron()[e]};
     }
   }
   return thinnest;

@@ -37,8 +37,8 @@ RigidMotion MotionAt(const Motion& motion, double time) {
 
 void TetControls::Set(const TetModel& model, double at_time) {
   time = at_time;
-  activation.resize(model.bodies().size());
-  for (std::size_t b = 0; b < activation.size(); ++b) activation[b] = model.bodies()[b].source->activation.At(time);
+  activation.resize(model.activations().size());
+  for (std::size_t k = 0; k < activation.size(); ++k) activation[k] = model.activations()[k]->At(time);
   load_scale.resize(model.loads().size());
   for (std::size_t k = 0; k < load_scale.size(); ++k) load_scale[k] = model.loads()[k].scale->At(time);
   gravity = model.scene().gravity.scale.At(time) * model.scene().gravity.acceleration;

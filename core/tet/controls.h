@@ -24,7 +24,7 @@ struct RigidMotion {
 // What acts on the bodies from outside at one time.
 struct TetControls {
   double time = 0;                   // [s]
-  std::vector<double> activation;    // of each body [1]
+  std::vector<double> activation;    // of each curve in TetModel::activations() [1]
   std::vector<double> load_scale;    // of each load [1]
   Vec3 gravity = Vec3::Zero();       // [m/s^2]
   std::vector<RigidMotion> motions;  // of each support

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/tet/points.h"
+
 namespace fascicle {
 namespace {
 
@@ -11,10 +13,18 @@ struct NodalForces {
   NodalVector elastic, viscous, external;
 
   NodalForces(const TetModel& model, const TetState& state, ThreadTeam& team) {
-    CornerForceArray corners;
+    ForceWorkspace workspace;
     controls.Set(model, state.time);
-    ElasticForce(model, controls.activation, state.positions, team, corners, elastic);
-    ViscousForce(model, state.positions, state.velocities, team, corners, viscous);
+    FibreDrive drive{controls.activation};
+    NodalVector previous;
+    if (model.depends_on_rate() && state.time_step > 0) {
+      previous = state.positions;
+      for (std::size_t n = 0; n < previous.size(); ++n) previous[n] -= state.time_step * state.velocities[n];
+      drive.previous = &previous;
+      drive.inverse_step = 1 / state.time_step;
+    }
+    ElasticForce(model, drive, state.positions, team, workspace, elastic);
+    ViscousForce(model, state.positions, state.velocities, team, workspace, viscous);
     ExternalForce(model, controls, team, external);
   }
 };
@@ -35,13 +45,17 @@ VolumeRatios VolumeRatiosOf(const TetModel& model, std::size_t body_index, const
   const TetBody& body = model.bodies()[body_index];
   VolumeRatios ratios;
   double rest = 0, present = 0;
-  for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
-    const double volume = Determinant(EdgeMatrix(x, model.corners()[e])) / 6;
-    const double J = volume / model.rest_volume()[e];
-    rest += model.rest_volume()[e];
-    present += volume;
-    if (e == body.tet_begin || !(J >= ratios.smallest)) ratios.smallest = J;
-  }
+  model.VisitElement([&]<class Element>(Element) {
+    for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
+      const auto values = ValuesOf<Element>(model, e, x);
+      rest += model.rest_volume()[e];
+      for (int q = 0; q < Element::kPoints; ++q) {
+        const double J = Determinant(GradientAt<Element>(model, e, values, q));
+        present += Element::kPointWeight * model.rest_volume()[e] * J;
+        if ((e == body.tet_begin && q == 0) || !(J >= ratios.smallest)) ratios.smallest = J;
+      }
+    }
+  });
   ratios.total = present / rest;
   return ratios;
 }

@@ -3,11 +3,86 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
+#include <cstdint>
+
 #include "core/geometry/tet_mesh.h"
 #include "core/linalg/nodal_vector.h"
 
-// The arithmetic of one tetrahedron [Teran 2003, 3 and 4].
+// The arithmetic of one element [Teran 2003, 3 and 4].
+//
+// Both elements are made of linear tetrahedra: what happens at a quadrature point of the quadratic element is what
+// happens in a linear tetrahedron whose corners are fixed combinations of the element's ten nodes, because
+//   F = sum_a x_a (x) grad N_a = sum_c y_c (x) g_c,   y_c = (4 L_c - 1) x_c + sum_{j != c} 4 L_j x_cj,
+// with L the barycentric coordinates of the point, g_c their rest gradients (constant: rest edges are straight) and
+// x_cj the node in the middle of the edge from c to j. So all laws and loops are written for a linear tetrahedron.
 namespace fascicle {
+
+// The values at the corners of one such tetrahedron.
+using CornerValues = std::array<Vec3, 4>;
+
+// Four nodes, constant strain.
+struct LinearElement {
+  static constexpr int kNodes = 4;
+  static constexpr int kPoints = 1;
+  static constexpr double kPointWeight = 1;  // part of the element's volume
+  // Share of each node in the element's lumped mass.
+  static constexpr std::array<double, 4> kMassShare = {0.25, 0.25, 0.25, 0.25};
+
+  // Barycentric coordinate of corner c at point q.
+  static constexpr double Barycentric(int /*q*/, int /*c*/) { return 0.25; }
+  static const CornerValues& Corners(const std::array<Vec3, 4>& nodes, int /*q*/) { return nodes; }
+  // The transpose of Corners.
+  static void AddCorners(const CornerValues& corners, int /*q*/, std::array<Vec3, 4>& nodes) {
+    for (int c = 0; c < 4; ++c) nodes[c] += corners[c];
+  }
+  // Part of node a in corner c at point q.
+  static constexpr double Part(int /*q*/, int c, int a) { return c == a ? 1 : 0; }
+};
+
+// The edges of a tetrahedron, in the order of the quadratic element's nodes 4 to 9.
+inline constexpr std::array<std::array<int, 2>, 6> kTetEdges = {{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
+
+// Ten nodes: the corners and the middles of the edges; straight rest edges, linear strain, four-point quadrature of
+// degree two [Zienkiewicz, Taylor & Zhu 2013, 5.11].
+struct QuadraticElement {
+  static constexpr int kNodes = 10;
+  static constexpr int kPoints = 4;
+  static constexpr double kPointWeight = 0.25;
+  // The diagonal of the consistent mass matrix, V/70 and 8V/105, scaled to the element's mass: all positive, unlike row
+  // sums [Hinton, Rock & Zienkiewicz 1976].
+  static constexpr std::array<double, 10> kMassShare = {1. / 36, 1. / 36, 1. / 36, 1. / 36, 4. / 27,
+                                                        4. / 27, 4. / 27, 4. / 27, 4. / 27, 4. / 27};
+
+  static constexpr double Barycentric(int q, int c) { return q == c ? kNear : kFar; }
+  static CornerValues Corners(const std::array<Vec3, 10>& nodes, int q) {
+    CornerValues corners;
+    for (int c = 0; c < 4; ++c) corners[c] = (4 * Barycentric(q, c) - 1) * nodes[c];
+    for (int k = 0; k < 6; ++k) {
+      const auto [i, j] = kTetEdges[k];
+      corners[i] += 4 * Barycentric(q, j) * nodes[4 + k];
+      corners[j] += 4 * Barycentric(q, i) * nodes[4 + k];
+    }
+    return corners;
+  }
+  static void AddCorners(const CornerValues& corners, int q, std::array<Vec3, 10>& nodes) {
+    for (int c = 0; c < 4; ++c) nodes[c] += (4 * Barycentric(q, c) - 1) * corners[c];
+    for (int k = 0; k < 6; ++k) {
+      const auto [i, j] = kTetEdges[k];
+      nodes[4 + k] += 4 * Barycentric(q, j) * corners[i] + 4 * Barycentric(q, i) * corners[j];
+    }
+  }
+  static constexpr double Part(int q, int c, int a) {
+    if (a < 4) return a == c ? 4 * Barycentric(q, c) - 1 : 0;
+    const auto& edge = kTetEdges[a - 4];
+    if (edge[0] == c) return 4 * Barycentric(q, edge[1]);
+    return edge[1] == c ? 4 * Barycentric(q, edge[0]) : 0;
+  }
+
+ private:
+  static constexpr double kNear = 0.58541019662496845446;  // (5 + 3 sqrt 5) / 20
+  static constexpr double kFar = 0.13819660112501051518;   // (5 - sqrt 5) / 20
+};
 
 // [a1 - a0, a2 - a0, a3 - a0] of the values a at the corners: Dm of rest positions, Ds of positions, their rates of
 // velocities.
@@ -17,6 +92,12 @@ inline Mat3 EdgeMatrix(const NodalVector& values, const Tetrahedron& corners) {
   edges.col(0) = values[corners[1]] - origin;
   edges.col(1) = values[corners[2]] - origin;
   edges.col(2) = values[corners[3]] - origin;
+  return edges;
+}
+
+inline Mat3 EdgeMatrix(const CornerValues& corners) {
+  Mat3 edges;
+  for (int c = 0; c < 3; ++c) edges.col(c) = corners[c + 1] - corners[0];
   return edges;
 }
 
@@ -38,11 +119,8 @@ struct ViscousStress {
   double power;  // dissipated, S_v : Edot [W/m^3]
 };
 
-// Forces at the corners [N].
-using CornerForces = std::array<Vec3, 4>;
-
 // [f1 f2 f3] = P Bm3 = -V P Dm^-T, f0 = -(f1 + f2 + f3) [Teran 2003, 4.1].
-inline void SetCornerForces(const Mat3& P, const Mat3& Dm_inverse, double volume, CornerForces& forces) {
+inline void SetCornerForces(const Mat3& P, const Mat3& Dm_inverse, double volume, CornerValues& forces) {
   const Mat3 f = (-volume * P) * Dm_inverse.transpose();
   forces[1] = f.col(0);
   forces[2] = f.col(1);

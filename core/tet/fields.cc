@@ -2,17 +2,16 @@
 
 #include <cmath>
 
-#include "core/tet/element.h"
+#include "core/tet/points.h"
 
 namespace fascicle {
 namespace {
 
-constexpr std::size_t kGrain = 512;
-
 std::vector<double> Velocities(const TetBody& body, const NodalVector& v) {
   std::vector<double> values;
-  values.reserve(3 * (body.node_end - body.node_begin));
-  for (std::size_t n = body.node_begin; n < body.node_end; ++n) values.insert(values.end(), v[n].begin(), v[n].end());
+  values.reserve(3 * (body.mesh_node_end - body.node_begin));
+  for (std::size_t n = body.node_begin; n < body.mesh_node_end; ++n)
+    values.insert(values.end(), v[n].begin(), v[n].end());
   return values;
 }
 
@@ -21,37 +20,42 @@ double VonMises(const Mat3& sigma) {
   return std::sqrt(1.5 * deviator.squaredNorm());
 }
 
-// Calls set(F, sigma, values of the element) for every element, sigma = P F^T / J.
-template <class Set>
-std::vector<double> OfStress(const TetModel& model, const TetBody& body, int components, double activation,
-                             const NodalVector& x, ThreadTeam& team, const Set& set) {
-  std::vector<double> values(static_cast<std::size_t>(components) * (body.tet_end - body.tet_begin));
-  std::visit(
-      [&](const auto& law) {
-        team.For(body.tet_end - body.tet_begin, kGrain, [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t e = body.tet_begin + i;
-            const Mat3 F = EdgeMatrix(x, model.corners()[e]) * model.Dm_inverse()[e];
-            const Mat3 P = law.Stress(F, FibreState{model.fibres()[e], activation});
-            const Mat3 sigma = P * F.transpose() / Determinant(F);
-            set(sigma, &values[components * i]);
-          }
-        });
-      },
-      body.source->material);
-  return values;
-}
+// What a field is made of at one point of an element.
+struct PointState {
+  Mat3 F;
+  double J;
+  Vec3 fibre;  // a0
+  Mat3 sigma;  // P F^T / J [Pa]; only where stress is asked for
+};
 
-// Calls set(F, a0, values of the element) for every element.
-template <class Set>
-std::vector<double> OfDeformation(const TetModel& model, const TetBody& body, int components, const NodalVector& x,
-                                  ThreadTeam& team, const Set& set) {
+// Calls add(PointState, values) for every point of every element of a body; the values of an element are the mean over
+// its points. Elements in the order of the body's mesh.
+template <bool kStress, class Add>
+std::vector<double> OverElements(const TetModel& model, std::size_t body_index, int components, const FibreDrive& drive,
+                                 const NodalVector& x, ThreadTeam& team, const Add& add) {
+  const TetBody& body = model.bodies()[body_index];
   std::vector<double> values(static_cast<std::size_t>(components) * (body.tet_end - body.tet_begin));
-  team.For(body.tet_end - body.tet_begin, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t e = body.tet_begin + i;
-      const Mat3 F = EdgeMatrix(x, model.corners()[e]) * model.Dm_inverse()[e];
-      set(F, model.fibres()[e], &values[components * i]);
+  ForceWorkspace workspace;
+  if (kStress) UpdatePatches(model, x, team, workspace);
+  model.VisitElement([&]<class Element>(Element) {
+    for (const TetGroup& group : model.groups()) {
+      if (group.body != body_index) continue;
+      ForElementsOfGroup(model, group, team, [&](const auto& law, std::size_t e) {
+        const auto positions = ValuesOf<Element>(model, e, x);
+        double* const value = &values[components * model.source_tetrahedron()[e]];
+        for (int q = 0; q < Element::kPoints; ++q) {
+          PointState point;
+          point.F = GradientAt<Element>(model, e, positions, q);
+          point.J = Determinant(point.F);
+          point.fibre = model.fibres()[e];
+          if constexpr (kStress) {
+            const Mat3 P = law.Stress(point.F, FibreAt<Element>(model, e, drive, q));
+            const double pressure = PatchPressure<Element>(model.patches(), workspace.pressure, e, q);
+            point.sigma = P * point.F.transpose() / point.J + pressure * Mat3::Identity();
+          }
+          add(point, Element::kPointWeight, value);
+        }
+      });
     }
   });
   return values;
@@ -71,37 +75,47 @@ int ComponentsOf(OutputField field) {
   }
 }
 
-std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body_index, OutputField field, double activation,
+std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body, OutputField field, const FibreDrive& drive,
                                   const TetState& state, ThreadTeam& team) {
-  const TetBody& body = model.bodies()[body_index];
   const NodalVector& x = state.positions;
   const int components = ComponentsOf(field);
+  const auto of_stress = [&](const auto& add) {
+    return OverElements<true>(model, body, components, drive, x, team, add);
+  };
+  const auto of_deformation = [&](const auto& add) {
+    return OverElements<false>(model, body, components, drive, x, team, add);
+  };
   switch (field) {
     case OutputField::kVelocity:
-      return Velocities(body, state.velocities);
+      return Velocities(model.bodies()[body], state.velocities);
     case OutputField::kCauchyStress:
-      return OfStress(model, body, components, activation, x, team, [](const Mat3& sigma, double* value) {
-        const double six[] = {sigma(0, 0), sigma(1, 1), sigma(2, 2), sigma(0, 1), sigma(1, 2), sigma(0, 2)};
-        std::copy(std::begin(six), std::end(six), value);
+      return of_stress([](const PointState& at, double weight, double* value) {
+        const Mat3& s = at.sigma;
+        const double six[] = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
+        for (int c = 0; c < 6; ++c) value[c] += weight * six[c];
       });
     case OutputField::kVonMisesStress:
-      return OfStress(model, body, components, activation, x, team,
-                      [](const Mat3& sigma, double* value) { *value = VonMises(sigma); });
+      return of_stress(
+          [](const PointState& at, double weight, double* value) { *value += weight * VonMises(at.sigma); });
     case OutputField::kPressure:
-      return OfStress(model, body, components, activation, x, team,
-                      [](const Mat3& sigma, double* value) { *value = sigma.trace() / 3; });
+      return of_stress(
+          [](const PointState& at, double weight, double* value) { *value += weight * at.sigma.trace() / 3; });
     case OutputField::kVolumeRatio:
-      return OfDeformation(model, body, components, x, team,
-                           [](const Mat3& F, const Vec3&, double* value) { *value = Determinant(F); });
+      return of_deformation([](const PointState& at, double weight, double* value) { *value += weight * at.J; });
     case OutputField::kFibreStretch:
-      return OfDeformation(model, body, components, x, team,
-                           [](const Mat3& F, const Vec3& a0, double* value) { *value = (F * a0).norm(); });
-    case OutputField::kFibreDirection:
-      return OfDeformation(model, body, components, x, team, [](const Mat3& F, const Vec3& a0, double* value) {
-        const Vec3 a = F * a0;
-        const Vec3 direction = a.squaredNorm() > 0 ? Vec3(a.normalized()) : Vec3(Vec3::Zero());
-        std::copy(direction.begin(), direction.end(), value);
+      return of_deformation(
+          [](const PointState& at, double weight, double* value) { *value += weight * (at.F * at.fibre).norm(); });
+    case OutputField::kFibreDirection: {
+      std::vector<double> directions = of_deformation([](const PointState& at, double weight, double* value) {
+        const Vec3 a = at.F * at.fibre;
+        for (int c = 0; c < 3; ++c) value[c] += weight * a[c];
       });
+      for (std::size_t i = 0; i < directions.size(); i += 3) {
+        Eigen::Map<Vec3> direction(&directions[i]);
+        if (direction.squaredNorm() > 0) direction.normalize();
+      }
+      return directions;
+    }
   }
   return {};
 }

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/tet/model.h"
+#include "core/tet/forces.h"
 #include "core/tet/state.h"
 
 namespace fascicle {
@@ -11,9 +11,9 @@ namespace fascicle {
 // Number of components of a field: 1, 3 or 6 (xx yy zz xy yz xz).
 int ComponentsOf(OutputField field);
 
-// Values of a field over the nodes (velocity) or elements (all others) of one body, component fastest, as in
-// scene.proto Field. Stresses are elastic and active, without the viscous part. `activation` is the body's.
-std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body, OutputField field, double activation,
+// Values of a field over the mesh nodes (velocity) or elements (all others: the mean over their points) of one body,
+// component fastest, as in scene.proto Field. Stresses are elastic and active, without the viscous part.
+std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body, OutputField field, const FibreDrive& drive,
                                   const TetState& state, ThreadTeam& team);
 
 }  // namespace fascicle

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/tet/points.h"
+
 namespace fascicle {
 namespace {
 
@@ -14,34 +16,44 @@ void TakeLeast(std::atomic<double>& least, double value) {
   }
 }
 
-// Corner forces of one body; `v` may be null for no viscous stress.
-template <bool kViscous, class Law>
-ForceReport BodyForces(const Law& law, const TetModel& model, const TetBody& body, double activation,
-                       const NodalVector& x, const NodalVector* v, ThreadTeam& team, CornerForceArray& corners) {
+// Forces of the elements of one group; `v` may be null for no viscous stress.
+template <class Element, bool kViscous, class Law>
+ForceReport GroupForces(const std::vector<Law>& laws, const TetModel& model, const TetGroup& group,
+                        const FibreDrive& drive, const NodalVector& x, const NodalVector* v, ThreadTeam& team,
+                        ForceWorkspace& workspace) {
+  const TetBody& body = model.bodies()[group.body];
   std::atomic<bool> valid = true;
   std::atomic<double> smallest_ratio = 1;
   ForceReport report;
-  report.dissipated_power = team.Sum(body.tet_end - body.tet_begin, [&](std::size_t begin, std::size_t end) {
-    FibreState fibre{Vec3::Zero(), activation};
+  report.dissipated_power = team.Sum(group.tet_end - group.tet_begin, [&](std::size_t begin, std::size_t end) {
     double power = 0;
     double smallest = 1;
     bool all_valid = true;
-    for (std::size_t e = body.tet_begin + begin; e < body.tet_begin + end; ++e) {
-      const Tetrahedron& tet = model.corners()[e];
-      const Mat3& Dm_inverse = model.Dm_inverse()[e];
-      const double volume = model.rest_volume()[e];
-      const Mat3 F = EdgeMatrix(x, tet) * Dm_inverse;
-      fibre.direction = model.fibres()[e];
-      Mat3 P = law.Stress(F, fibre);
-      const double J = Determinant(F);
-      smallest = std::min(smallest, J);
-      all_valid &= J > 0 && std::isfinite(P.sum());
-      if constexpr (kViscous) {
-        const ViscousStress viscous(F, EdgeMatrix(*v, tet) * Dm_inverse, body.damping_mu, body.damping_lambda);
-        P += F * viscous.S;
-        power += volume * viscous.power;
+    for (std::size_t e = group.tet_begin + begin; e < group.tet_begin + end; ++e) {
+      const Law& law = laws[model.law_of()[e]];
+      const auto values = ValuesOf<Element>(model, e, x);
+      const double volume = Element::kPointWeight * model.rest_volume()[e];
+      std::array<Vec3, Element::kNodes> forces;
+      forces.fill(Vec3::Zero());
+      for (int q = 0; q < Element::kPoints; ++q) {
+        const Mat3 F = GradientAt<Element>(model, e, values, q);
+        Mat3 P = law.Stress(F, FibreAt<Element>(model, e, drive, q));
+        const double J = Determinant(F);
+        const double pressure = PatchPressure<Element>(model.patches(), workspace.pressure, e, q);
+        if (pressure != 0) P += pressure * Cofactor(F);
+        smallest = std::min(smallest, J);
+        all_valid &= J > 0 && std::isfinite(P.sum());
+        if constexpr (kViscous) {
+          const Mat3 F_rate = GradientAt<Element>(model, e, ValuesOf<Element>(model, e, *v), q);
+          const ViscousStress viscous(F, F_rate, body.damping_mu, body.damping_lambda);
+          P += F * viscous.S;
+          power += volume * viscous.power;
+        }
+        CornerValues corners;
+        SetCornerForces(P, model.Dm_inverse()[e], volume, corners);
+        Element::AddCorners(corners, q, forces);
       }
-      SetCornerForces(P, Dm_inverse, volume, corners[e]);
+      std::copy(forces.begin(), forces.end(), &workspace.element_forces[Element::kNodes * e]);
     }
     TakeLeast(smallest_ratio, smallest);
     if (!all_valid) valid.store(false, std::memory_order_relaxed);
@@ -52,33 +64,33 @@ ForceReport BodyForces(const Law& law, const TetModel& model, const TetBody& bod
   return report;
 }
 
-ForceReport AllForces(const TetModel& model, std::span<const double> activation, const NodalVector& x,
-                      const NodalVector* v, ThreadTeam& team, CornerForceArray& corners, NodalVector& force) {
-  corners.resize(model.tetrahedra());
+ForceReport AllForces(const TetModel& model, const FibreDrive& drive, const NodalVector& x, const NodalVector* v,
+                      ThreadTeam& team, ForceWorkspace& workspace, NodalVector& force) {
+  workspace.element_forces.resize(model.nodes_per_element() * model.tetrahedra());
   ForceReport total;
-  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-    const TetBody& body = model.bodies()[b];
-    const bool viscous = v != nullptr && body.HasStrainDamping();
-    const ForceReport report = std::visit(
-        [&](const auto& law) {
-          return viscous ? BodyForces<true>(law, model, body, activation[b], x, v, team, corners)
-                         : BodyForces<false>(law, model, body, activation[b], x, nullptr, team, corners);
-        },
-        body.source->material);
-    total.valid &= report.valid;
-    total.dissipated_power += report.dissipated_power;
-    total.smallest_ratio = std::min(total.smallest_ratio, report.smallest_ratio);
-  }
-  GatherCorners(model, corners, team, force);
+  total.valid = UpdatePatches(model, x, team, workspace);
+  model.VisitElement([&]<class Element>(Element) {
+    for (const TetGroup& group : model.groups()) {
+      const bool viscous = v != nullptr && model.bodies()[group.body].HasStrainDamping();
+      const ForceReport report = std::visit(
+          [&](const auto& laws) {
+            return viscous ? GroupForces<Element, true>(laws, model, group, drive, x, v, team, workspace)
+                           : GroupForces<Element, false>(laws, model, group, drive, x, nullptr, team, workspace);
+          },
+          group.laws);
+      total.valid &= report.valid;
+      total.dissipated_power += report.dissipated_power;
+      total.smallest_ratio = std::min(total.smallest_ratio, report.smallest_ratio);
+    }
+  });
+  GatherForces(model, workspace.element_forces, team, force);
   return total;
 }
 
-constexpr std::size_t kElementGrain = 512;
-
-template <class Element>
-void ForElements(ThreadTeam& team, const TetBody& body, const Element& element) {
+template <class Visit>
+void ForElements(ThreadTeam& team, const TetBody& body, const Visit& visit) {
   team.For(body.tet_end - body.tet_begin, kElementGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = body.tet_begin + begin; e < body.tet_begin + end; ++e) element(e);
+    for (std::size_t e = body.tet_begin + begin; e < body.tet_begin + end; ++e) visit(e);
   });
 }
 
@@ -93,83 +105,175 @@ Vec3 CornerDiagonal(const Mat3& F, const Vec3& g, double mu, double lambda) {
   return diagonal;
 }
 
-}  // namespace
-
-ForceReport ElasticForce(const TetModel& model, std::span<const double> activation, const NodalVector& x,
-                         ThreadTeam& team, CornerForceArray& corners, NodalVector& force) {
-  return AllForces(model, activation, x, nullptr, team, corners, force);
+template <class Element>
+void UpdateCornerVolumes(const TetModel& model, const NodalVector& x, ThreadTeam& team, ForceWorkspace& workspace) {
+  const VolumePatches& patches = model.patches();
+  team.For(patches.of_element.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e) {
+      if (patches.of_element[e][0] == VolumePatches::kNone) continue;
+      const auto values = ValuesOf<Element>(model, e, x);
+      std::array<double, 4> volumes = {};
+      for (int q = 0; q < Element::kPoints; ++q) {
+        const double J = Determinant(GradientAt<Element>(model, e, values, q));
+        const double volume = Element::kPointWeight * model.rest_volume()[e] * J;
+        for (int c = 0; c < 4; ++c) volumes[c] += Element::Barycentric(q, c) * volume;
+      }
+      workspace.corner_volume[e] = volumes;
+    }
+  });
 }
 
-ForceReport ElasticAndViscousForce(const TetModel& model, std::span<const double> activation, const NodalVector& x,
-                                   const NodalVector& v, ThreadTeam& team, CornerForceArray& corners,
+// Energy of the patches' share in elements [begin, end): each patch's energy density, taken at the elements' corners.
+template <class Element>
+double PatchEnergyOf(const TetModel& model, const ForceWorkspace& workspace, std::size_t e) {
+  const VolumePatches& patches = model.patches();
+  if (patches.empty() || patches.of_element[e][0] == VolumePatches::kNone) return 0;
+  double energy = 0;
+  for (const std::int32_t n : patches.of_element[e]) {
+    energy += model.rest_volume()[e] / 4 * PatchEnergy{patches.modulus[n]}.Value(workspace.ratio[n]);
+  }
+  return energy;
+}
+
+}  // namespace
+
+ForceReport ElasticForce(const TetModel& model, const FibreDrive& drive, const NodalVector& x, ThreadTeam& team,
+                         ForceWorkspace& workspace, NodalVector& force) {
+  return AllForces(model, drive, x, nullptr, team, workspace, force);
+}
+
+ForceReport ElasticAndViscousForce(const TetModel& model, const FibreDrive& drive, const NodalVector& x,
+                                   const NodalVector& v, ThreadTeam& team, ForceWorkspace& workspace,
                                    NodalVector& force) {
-  return AllForces(model, activation, x, &v, team, corners, force);
+  return AllForces(model, drive, x, &v, team, workspace, force);
 }
 
 void ViscousForce(const TetModel& model, const NodalVector& x, const NodalVector& v, ThreadTeam& team,
-                  CornerForceArray& corners, NodalVector& force) {
-  corners.resize(model.tetrahedra());
-  for (const TetBody& body : model.bodies()) {
-    const bool damped = body.HasStrainDamping();
-    ForElements(team, body, [&](std::size_t e) {
-      if (!damped) {
-        corners[e].fill(Vec3::Zero());
-        return;
-      }
-      const Mat3& Dm_inverse = model.Dm_inverse()[e];
-      const Mat3 F = EdgeMatrix(x, model.corners()[e]) * Dm_inverse;
-      const Mat3 F_rate = EdgeMatrix(v, model.corners()[e]) * Dm_inverse;
-      const ViscousStress viscous(F, F_rate, body.damping_mu, body.damping_lambda);
-      SetCornerForces(F * viscous.S, Dm_inverse, model.rest_volume()[e], corners[e]);
-    });
-  }
-  GatherCorners(model, corners, team, force);
-}
-
-void ViscousDiagonal(const TetModel& model, const NodalVector& x, ThreadTeam& team, CornerForceArray& corners,
-                     NodalVector& diagonal) {
-  corners.resize(model.tetrahedra());
-  for (const TetBody& body : model.bodies()) {
-    ForElements(team, body, [&](std::size_t e) {
-      const Mat3& Dm_inverse = model.Dm_inverse()[e];
-      const Mat3 F = EdgeMatrix(x, model.corners()[e]) * Dm_inverse;
-      const double volume = model.rest_volume()[e];
-      Vec3 g0 = Vec3::Zero();
-      for (int c = 0; c < 3; ++c) {
-        const Vec3 g = Dm_inverse.row(c);
-        g0 -= g;
-        corners[e][c + 1] = volume * CornerDiagonal(F, g, body.damping_mu, body.damping_lambda);
-      }
-      corners[e][0] = volume * CornerDiagonal(F, g0, body.damping_mu, body.damping_lambda);
-    });
-  }
-  GatherCorners(model, corners, team, diagonal);
-}
-
-double ElasticEnergy(const TetModel& model, std::size_t body_index, double activation, const NodalVector& x,
-                     ThreadTeam& team) {
-  const TetBody& body = model.bodies()[body_index];
-  return std::visit(
-      [&](const auto& law) {
-        return team.Sum(body.tet_end - body.tet_begin, [&](std::size_t begin, std::size_t end) {
-          double energy = 0;
-          for (std::size_t e = body.tet_begin + begin; e < body.tet_begin + end; ++e) {
-            const Mat3 F = EdgeMatrix(x, model.corners()[e]) * model.Dm_inverse()[e];
-            energy += model.rest_volume()[e] * law.Energy(F, FibreState{model.fibres()[e], activation});
+                  ForceWorkspace& workspace, NodalVector& force) {
+  workspace.element_forces.resize(model.nodes_per_element() * model.tetrahedra());
+  model.VisitElement([&]<class Element>(Element) {
+    for (const TetBody& body : model.bodies()) {
+      const bool damped = body.HasStrainDamping();
+      ForElements(team, body, [&](std::size_t e) {
+        std::array<Vec3, Element::kNodes> forces;
+        forces.fill(Vec3::Zero());
+        if (damped) {
+          const auto positions = ValuesOf<Element>(model, e, x), velocities = ValuesOf<Element>(model, e, v);
+          for (int q = 0; q < Element::kPoints; ++q) {
+            const Mat3 F = GradientAt<Element>(model, e, positions, q);
+            const ViscousStress viscous(F, GradientAt<Element>(model, e, velocities, q), body.damping_mu,
+                                        body.damping_lambda);
+            CornerValues corners;
+            SetCornerForces(F * viscous.S, model.Dm_inverse()[e], Element::kPointWeight * model.rest_volume()[e],
+                            corners);
+            Element::AddCorners(corners, q, forces);
           }
-          return energy;
-        });
-      },
-      body.source->material);
+        }
+        std::copy(forces.begin(), forces.end(), &workspace.element_forces[Element::kNodes * e]);
+      });
+    }
+  });
+  GatherForces(model, workspace.element_forces, team, force);
 }
 
-void GatherCorners(const TetModel& model, const CornerForceArray& corners, ThreadTeam& team, NodalVector& sums) {
-  const auto& begin = model.node_corner_begin();
-  const auto& list = model.node_corners();
+void ViscousDiagonal(const TetModel& model, const NodalVector& x, ThreadTeam& team, ForceWorkspace& workspace,
+                     NodalVector& diagonal) {
+  workspace.element_forces.resize(model.nodes_per_element() * model.tetrahedra());
+  model.VisitElement([&]<class Element>(Element) {
+    for (const TetBody& body : model.bodies()) {
+      ForElements(team, body, [&](std::size_t e) {
+        const auto positions = ValuesOf<Element>(model, e, x);
+        Eigen::Matrix<double, 3, 4> g;
+        g.rightCols<3>() = model.Dm_inverse()[e].transpose();
+        g.col(0) = -g.rightCols<3>().rowwise().sum();
+        const double volume = Element::kPointWeight * model.rest_volume()[e];
+        std::array<Vec3, Element::kNodes> sums;
+        sums.fill(Vec3::Zero());
+        for (int q = 0; q < Element::kPoints; ++q) {
+          const Mat3 F = GradientAt<Element>(model, e, positions, q);
+          for (int a = 0; a < Element::kNodes; ++a) {
+            Vec3 gradient = Vec3::Zero();  // of the shape function of node a
+            for (int c = 0; c < 4; ++c) gradient += Element::Part(q, c, a) * g.col(c);
+            sums[a] += volume * CornerDiagonal(F, gradient, body.damping_mu, body.damping_lambda);
+          }
+        }
+        std::copy(sums.begin(), sums.end(), &workspace.element_forces[Element::kNodes * e]);
+      });
+    }
+  });
+  GatherForces(model, workspace.element_forces, team, diagonal);
+}
+
+double ElasticEnergy(const TetModel& model, std::size_t body, const FibreDrive& drive, const NodalVector& x,
+                     ThreadTeam& team) {
+  ForceWorkspace workspace;
+  UpdatePatches(model, x, team, workspace);
+  return model.VisitElement([&]<class Element>(Element) {
+    double total = 0;
+    for (const TetGroup& group : model.groups()) {
+      if (group.body != body) continue;
+      total += std::visit(
+          [&](const auto& laws) {
+            return team.Sum(group.tet_end - group.tet_begin, [&](std::size_t begin, std::size_t end) {
+              double energy = 0;
+              for (std::size_t e = group.tet_begin + begin; e < group.tet_begin + end; ++e) {
+                const auto values = ValuesOf<Element>(model, e, x);
+                for (int q = 0; q < Element::kPoints; ++q) {
+                  const Mat3 F = GradientAt<Element>(model, e, values, q);
+                  const double density = laws[model.law_of()[e]].Energy(F, FibreAt<Element>(model, e, drive, q));
+                  energy += Element::kPointWeight * model.rest_volume()[e] * density;
+                }
+                energy += PatchEnergyOf<Element>(model, workspace, e);
+              }
+              return energy;
+            });
+          },
+          group.laws);
+    }
+    return total;
+  });
+}
+
+bool UpdatePatches(const TetModel& model, const NodalVector& x, ThreadTeam& team, ForceWorkspace& workspace) {
+  const VolumePatches& patches = model.patches();
+  if (patches.empty()) return true;
+  workspace.corner_volume.resize(patches.of_element.size());
+  for (auto* values : {&workspace.raw_ratio, &workspace.ratio, &workspace.own_pressure, &workspace.pressure}) {
+    values->resize(patches.size());
+  }
+  model.VisitElement([&]<class Element>(Element) { UpdateCornerVolumes<Element>(model, x, team, workspace); });
+  GatherCornerVolumes(model, team, workspace, workspace.raw_ratio);
+  patches.Smooth(workspace.raw_ratio, workspace.ratio);
+  bool valid = true;
+  for (std::size_t n = 0; n < patches.size(); ++n) {
+    workspace.own_pressure[n] = PatchEnergy{patches.modulus[n]}.Pressure(workspace.ratio[n]);
+    valid &= workspace.ratio[n] > 0;
+  }
+  patches.Smooth(workspace.own_pressure, workspace.pressure);
+  return valid;
+}
+
+void GatherCornerVolumes(const TetModel& model, ThreadTeam& team, const ForceWorkspace& workspace,
+                         std::vector<double>& sums) {
+  const VolumePatches& patches = model.patches();
+  team.For(patches.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      double volume = 0;
+      for (std::int32_t k = patches.begin[n]; k < patches.begin[n + 1]; ++k) {
+        volume += workspace.corner_volume[patches.corners[k] / 4][patches.corners[k] % 4];
+      }
+      sums[n] = volume / patches.rest_volume[n];
+    }
+  });
+}
+
+void GatherForces(const TetModel& model, const NodalVector& element_forces, ThreadTeam& team, NodalVector& sums) {
+  const auto& begin = model.node_use_begin();
+  const auto& uses = model.node_uses();
   sums.resize(model.nodes());
   ForNodes(team, model.nodes(), [&](std::size_t n) {
     Vec3 sum = Vec3::Zero();
-    for (std::int32_t k = begin[n]; k < begin[n + 1]; ++k) sum += corners[list[k] / 4][list[k] % 4];
+    for (std::int32_t k = begin[n]; k < begin[n + 1]; ++k) sum += element_forces[uses[k]];
     sums[n] = sum;
   });
 }

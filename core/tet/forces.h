@@ -1,52 +1,77 @@
 #ifndef FASCICLE_CORE_TET_FORCES_H_
 #define FASCICLE_CORE_TET_FORCES_H_
 
+#include <concepts>
 #include <span>
 #include <vector>
 
-#include "core/tet/element.h"
 #include "core/tet/model.h"
 
-// Loops over the elements: the law is fixed once for each body and call, nothing is allocated, and results are the same
-// bits for any number of threads, because every element writes its own corner forces and every node adds up its corners
+// Loops over the elements: the law is fixed once for each group and call, nothing is allocated, and results are the
+// same bits for any number of threads, because every element writes its own forces and every node adds up its elements
 // in a fixed order.
-//   activation  of each body [1]
-//   x, v        positions [m] and velocities [m/s] of all nodes
-//   corners     scratch, 4 forces for each element
+//   x, v   positions [m] and velocities [m/s] of all nodes
 namespace fascicle {
 
-// One force for each corner of each element, before they are added up.
-using CornerForceArray = std::vector<CornerForces>;
+// What acts in the fibres beside their stretch.
+struct FibreDrive {
+  // Held fibres, from any array of activations.
+  template <class Activations>
+  requires std::convertible_to<const Activations&, std::span<const double>> FibreDrive(const Activations& of_curves)
+      : activation(of_curves) {}
+  FibreDrive(std::span<const double> of_curves, const NodalVector* positions_before, double one_over_step)
+      : activation(of_curves), previous(positions_before), inverse_step(one_over_step) {}
+  FibreDrive() = default;
+
+  std::span<const double> activation;     // of each curve in TetModel::activations() [1]
+  const NodalVector* previous = nullptr;  // positions a step ago [m], for laws that depend on rate; else held
+  double inverse_step = 0;                // one over the length of that step [1/s]
+};
+
+// Scratch of the functions below; keeps its memory from call to call.
+struct ForceWorkspace {
+  NodalVector element_forces;                        // nodes of an element times elements
+  std::vector<std::array<double, 4>> corner_volume;  // of each element: integral of L_c J [m^3]
+  // Of each patch: theta before and after smoothing [1], U'(theta) and what of it acts on elements, W U'(theta) [Pa].
+  std::vector<double> raw_ratio, ratio, own_pressure, pressure;
+};
 
 struct ForceReport {
-  bool valid = true;            // false where an element has J <= 0 or a stress that is not finite
+  bool valid = true;            // false where J <= 0 in an element or a patch, or a stress is not finite
   double dissipated_power = 0;  // by viscous stress [W]
   double smallest_ratio = 1;    // least J of all elements, at most 1
 };
 
 // Elastic (and active) force of all elements on the nodes [N] [Teran 2003, 4.1].
-ForceReport ElasticForce(const TetModel& model, std::span<const double> activation, const NodalVector& x,
-                         ThreadTeam& team, CornerForceArray& corners, NodalVector& force);
+ForceReport ElasticForce(const TetModel& model, const FibreDrive& drive, const NodalVector& x, ThreadTeam& team,
+                         ForceWorkspace& workspace, NodalVector& force);
 
 // The same with the viscous force added, in one loop.
-ForceReport ElasticAndViscousForce(const TetModel& model, std::span<const double> activation, const NodalVector& x,
-                                   const NodalVector& v, ThreadTeam& team, CornerForceArray& corners,
+ForceReport ElasticAndViscousForce(const TetModel& model, const FibreDrive& drive, const NodalVector& x,
+                                   const NodalVector& v, ThreadTeam& team, ForceWorkspace& workspace,
                                    NodalVector& force);
 
 // The viscous force D v alone: linear in v, symmetric, negative semidefinite.
 void ViscousForce(const TetModel& model, const NodalVector& x, const NodalVector& v, ThreadTeam& team,
-                  CornerForceArray& corners, NodalVector& force);
+                  ForceWorkspace& workspace, NodalVector& force);
 
 // The diagonal of -D [kg/s], not negative.
-void ViscousDiagonal(const TetModel& model, const NodalVector& x, ThreadTeam& team, CornerForceArray& corners,
+void ViscousDiagonal(const TetModel& model, const NodalVector& x, ThreadTeam& team, ForceWorkspace& workspace,
                      NodalVector& diagonal);
 
-// Elastic energy of one body [J].
-double ElasticEnergy(const TetModel& model, std::size_t body, double activation, const NodalVector& x,
+// Elastic energy of one body [J]. With patches, the part of each that lies in this body.
+double ElasticEnergy(const TetModel& model, std::size_t body, const FibreDrive& drive, const NodalVector& x,
                      ThreadTeam& team);
 
-// Adds up the corners of every node; `sums` gets its size.
-void GatherCorners(const TetModel& model, const CornerForceArray& corners, ThreadTeam& team, NodalVector& sums);
+// Volume ratio theta and pressure U'(theta) of every patch into the workspace; false where a ratio is not positive.
+bool UpdatePatches(const TetModel& model, const NodalVector& x, ThreadTeam& team, ForceWorkspace& workspace);
+
+// Adds up the workspace's corner volumes in every patch and divides by V_n; `sums` has a place for each patch.
+void GatherCornerVolumes(const TetModel& model, ThreadTeam& team, const ForceWorkspace& workspace,
+                         std::vector<double>& sums);
+
+// Adds up the forces of all elements on every node; `sums` gets its size.
+void GatherForces(const TetModel& model, const NodalVector& element_forces, ThreadTeam& team, NodalVector& sums);
 
 }  // namespace fascicle
 

@@ -1,33 +1,86 @@
 #include "core/tet/model.h"
 
 #include <Eigen/LU>
-#include <algorithm>
-#include <map>
+#include <set>
 
 #include "core/base/check.h"
-#include "core/tet/element.h"
 
 namespace fascicle {
+namespace {
+
+// Where in `targets` each of `count` numbers occurs: places[begin[n] .. begin[n + 1]), ascending.
+void Invert(std::span<const std::int32_t> targets, std::size_t count, std::vector<std::int32_t>& begin,
+            std::vector<std::int32_t>& places) {
+  begin.assign(count + 1, 0);
+  for (const std::int32_t n : targets) {
+    if (n >= 0) ++begin[n + 1];
+  }
+  for (std::size_t n = 0; n < count; ++n) begin[n + 1] += begin[n];
+  places.resize(begin[count]);
+  std::vector<std::int32_t> next(begin.begin(), begin.end() - 1);
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (targets[i] >= 0) places[next[targets[i]]++] = static_cast<std::int32_t>(i);
+  }
+}
+
+const Material& MaterialOf(const Body& body, std::size_t tet) {
+  const std::int32_t k = body.material_of.empty() ? 0 : body.material_of[tet];
+  return k == 0 ? body.material : body.more_materials[k - 1];
+}
+
+// What is left to an element of its volume modulus when the rest acts on patches. All of it up to a Poisson's ratio of
+// 0.3, which does not lock; beyond, a part of the shear modulus, so that an element alone still resists collapse.
+double ElementVolumeModulus(double modulus, double shear_modulus) {
+  constexpr double kDoesNotLock = 1.5;
+  constexpr double kKept = 0.3;
+  return modulus <= kDoesNotLock * (1 + 1e-12) * shear_modulus ? modulus : kKept * shear_modulus;
+}
+
+// Whether the active stress of any law depends on how fast the fibre shortens.
+template <class Law>
+bool DependsOnRate(const Law& law) {
+  if constexpr (Law::kNeedsFibres) {
+    const Mat3 F = Mat3::Identity();
+    FibreState held{Vec3::UnitX(), 1};
+    FibreState shortening = held;
+    shortening.previous_stretch = 1.01;
+    shortening.inverse_step = 100;
+    return law.Stress(F, held) != law.Stress(F, shortening);
+  } else {
+    return false;
+  }
+}
+
+}  // namespace
 
 TetModel::TetModel(const Scene& scene) : scene_(&scene) {
   for (const Body& body : scene.bodies) AddBody(body);
   inverse_mass_.resize(nodes());
   for (std::size_t n = 0; n < nodes(); ++n) inverse_mass_[n].setConstant(1 / mass_[n]);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    AddLoads(*bodies_[b].source, bodies_[b].node_begin);
-    AddSupports(*bodies_[b].source, static_cast<std::int32_t>(b), bodies_[b].node_begin);
+    AddLoads(*bodies_[b].source, bodies_[b]);
+    AddSupports(*bodies_[b].source, static_cast<std::int32_t>(b));
   }
-  ListCornersOfNodes();
+  std::vector<std::int32_t> element_nodes;
+  VisitElement([&]<class Element>(Element) {
+    for (std::size_t e = 0; e < tetrahedra(); ++e) {
+      for (const std::int32_t n : NodesOf<Element>(e)) element_nodes.push_back(n);
+    }
+  });
+  Invert(element_nodes, nodes(), node_use_begin_, node_uses_);
+  std::vector<std::int32_t> patches;
+  for (const VolumePatches::Corners& corners : patches_.of_element) {
+    patches.insert(patches.end(), corners.begin(), corners.end());
+  }
+  Invert(patches, patches_.size(), patches_.begin, patches_.corners);
+  if (order() == ElementOrder::kLinear) SetSmoothing();
+  middles_.clear();
   FindCurvesEnd();
 }
 
 void TetModel::AddBody(const Body& body) {
   TetBody entry;
   entry.source = &body;
-  entry.node_begin = nodes();
-  entry.tet_begin = tetrahedra();
-  entry.node_end = entry.node_begin + body.mesh.nodes.size();
-  entry.tet_end = entry.tet_begin + body.mesh.tetrahedra.size();
   // C:Edot with C = lambda I(x)I + 2 mu I, as in scene.proto Damping.
   const auto [mu, bulk] = std::visit(
       [](const auto& law) {
@@ -39,84 +92,258 @@ void TetModel::AddBody(const Body& body) {
   entry.mass_damping = body.damping.mass_proportional;
   has_mass_damping_ |= entry.mass_damping != 0;
   has_strain_damping_ |= entry.HasStrainDamping();
-  bodies_.push_back(entry);
 
+  entry.activation = activations_.size();
+  activations_.push_back(&body.activation);
+  for (const Curve& curve : body.more_activations) activations_.push_back(&curve);
+
+  AddNodes(body, entry);
+  AddElements(body, entry);
+  bodies_.push_back(entry);
+}
+
+// The nodes of the mesh, and for quadratic elements one in the middle of every edge, in the order in which elements
+// first name them.
+void TetModel::AddNodes(const Body& body, TetBody& entry) {
+  entry.node_begin = nodes();
   rest_positions_.insert(rest_positions_.end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
+  entry.mesh_node_end = entry.node_end = nodes();
+  if (order() == ElementOrder::kQuadratic) {
+    const auto first = static_cast<std::int32_t>(entry.node_begin);
+    for (const Tetrahedron& tet : body.mesh.tetrahedra) {
+      std::array<std::int32_t, 6>& edges = edge_nodes_.emplace_back();
+      for (int k = 0; k < 6; ++k) {
+        const std::int32_t i = first + tet[kTetEdges[k][0]], j = first + tet[kTetEdges[k][1]];
+        const auto [place, is_new] = middles_.try_emplace(std::minmax(i, j), static_cast<std::int32_t>(nodes()));
+        if (is_new) rest_positions_.push_back(0.5 * (rest_positions_[i] + rest_positions_[j]));
+        edges[k] = place->second;
+      }
+    }
+    entry.node_end = nodes();
+  }
   mass_.resize(entry.node_end, 0.0);
   mass_damping_.resize(entry.node_end, entry.mass_damping);
-  for (const Tetrahedron& tet : body.mesh.tetrahedra) {
+}
+
+void TetModel::AddElements(const Body& body, TetBody& entry) {
+  const std::size_t count = body.mesh.tetrahedra.size();
+  entry.tet_begin = tetrahedra();
+  entry.tet_end = entry.tet_begin + count;
+  // Sorted by the kind of law; AddNodes left the edges in the mesh's order.
+  std::vector<std::size_t> kinds(count);
+  for (std::size_t t = 0; t < count; ++t) kinds[t] = MaterialOf(body, t).index();
+  std::vector<std::int32_t> sorted(count);
+  for (std::size_t t = 0; t < count; ++t) sorted[t] = static_cast<std::int32_t>(t);
+  std::stable_sort(sorted.begin(), sorted.end(), [&](std::int32_t a, std::int32_t b) { return kinds[a] < kinds[b]; });
+  if (!edge_nodes_.empty()) {
+    const std::vector<std::array<std::int32_t, 6>> edges(
+        edge_nodes_.begin() + static_cast<std::ptrdiff_t>(entry.tet_begin), edge_nodes_.end());
+    for (std::size_t i = 0; i < count; ++i) edge_nodes_[entry.tet_begin + i] = edges[sorted[i]];
+  }
+
+  for (const std::int32_t t : sorted) {
     Tetrahedron shifted;
-    for (int c = 0; c < 4; ++c) shifted[c] = tet[c] + static_cast<std::int32_t>(entry.node_begin);
+    for (int c = 0; c < 4; ++c) {
+      shifted[c] = body.mesh.tetrahedra[t][c] + static_cast<std::int32_t>(entry.node_begin);
+    }
     const Mat3 Dm = EdgeMatrix(rest_positions_, shifted);
     const double volume = Dm.determinant() / 6;
     FASCICLE_CHECK(volume > 0, "meshes are checked before they are simulated");
+    const std::size_t e = tetrahedra();
     tetrahedra_.push_back(shifted);
+    source_tetrahedron_.push_back(t);
     Dm_inverse_.push_back(Dm.inverse());
     rest_volume_.push_back(volume);
-    for (const std::int32_t n : shifted) mass_[n] += body.density * volume / 4;
+    fibres_.push_back(body.fibres.empty() ? Vec3(Vec3::Zero()) : body.fibres[t]);
+    const std::int32_t activation = body.activation_of.empty() ? 0 : body.activation_of[t];
+    activation_of_.push_back(static_cast<std::int32_t>(entry.activation) + activation);
+    activation_scale_.push_back(body.activation_scale.empty() ? 1 : body.activation_scale[t]);
+    VisitElement([&]<class Element>(Element) {
+      const auto element_nodes = NodesOf<Element>(e);
+      for (int a = 0; a < Element::kNodes; ++a) {
+        mass_[element_nodes[a]] += body.density * volume * Element::kMassShare[a];
+      }
+    });
   }
-  if (body.fibres.empty()) {
-    fibres_.resize(tetrahedra(), Vec3::Zero());
-  } else {
-    fibres_.insert(fibres_.end(), body.fibres.begin(), body.fibres.end());
+  law_of_.resize(tetrahedra());
+  for (std::size_t i = 0; i < count;) {
+    std::size_t end = i;
+    while (end < count && kinds[sorted[end]] == kinds[sorted[i]]) ++end;
+    TetGroup& group = groups_.emplace_back();
+    group.body = bodies_.size();
+    group.tet_begin = entry.tet_begin + i;
+    group.tet_end = entry.tet_begin + end;
+    FillGroup(body, group);
+    i = end;
   }
 }
 
-void TetModel::AddLoads(const Body& body, std::size_t node_begin) {
-  for (const Load& load : body.loads) {
-    const Region& region = body.regions[load.region];
+// The laws of a group, and the patches that take over what its elements give away of their volume modulus.
+void TetModel::FillGroup(const Body& body, TetGroup& group) {
+  const bool nodal = scene_->method.volume == VolumeForm::kNodal;
+  std::vector<double> given(group.tet_end - group.tet_begin, 0.0);
+  const auto fill = [&]<class Law>(const Law&) {
+    std::map<const Material*, std::int32_t> places;
+    std::vector<Law> laws;
+    std::vector<double> given_by_law;
+    for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
+      const Material& material = MaterialOf(body, source_tetrahedron_[e]);
+      const auto [place, is_new] = places.try_emplace(&material, static_cast<std::int32_t>(laws.size()));
+      if (is_new) {
+        const Law& law = std::get<Law>(material);
+        const double whole = law.VolumeModulus();
+        const double kept = nodal ? ElementVolumeModulus(whole, law.ShearModulus()) : whole;
+        laws.push_back(law.WithVolumeModulus(kept));
+        given_by_law.push_back(whole - kept);
+        depends_on_rate_ |= DependsOnRate(law);
+      }
+      law_of_[e] = place->second;
+      given[e - group.tet_begin] = given_by_law[place->second];
+    }
+    group.laws = std::move(laws);
+  };
+  std::visit(fill, MaterialOf(body, source_tetrahedron_[group.tet_begin]));
+  AddPatches(group, given);
+}
+
+void TetModel::AddPatches(const TetGroup& group, std::span<const double> given) {
+  patches_.of_element.resize(group.tet_end,
+                             {VolumePatches::kNone, VolumePatches::kNone, VolumePatches::kNone, VolumePatches::kNone});
+  std::map<std::int32_t, std::int32_t> patch_of_node;
+  const std::size_t first = patches_.size();
+  for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
+    const double modulus = given[e - group.tet_begin];
+    if (modulus == 0) continue;
+    for (int c = 0; c < 4; ++c) {
+      const auto [place, is_new] =
+          patch_of_node.try_emplace(tetrahedra_[e][c], static_cast<std::int32_t>(patches_.size()));
+      if (is_new) {
+        patches_.rest_volume.push_back(0);
+        patches_.modulus.push_back(0);
+      }
+      const std::int32_t patch = place->second;
+      patches_.of_element[e][c] = patch;
+      patches_.rest_volume[patch] += rest_volume_[e] / 4;
+      patches_.modulus[patch] += rest_volume_[e] / 4 * modulus;
+    }
+  }
+  for (std::size_t n = first; n < patches_.size(); ++n) patches_.modulus[n] /= patches_.rest_volume[n];
+}
+
+// Rows of W: theta from the corners' patches to the mean of each element, and back with the elements' volumes.
+void TetModel::SetSmoothing() {
+  std::vector<std::map<std::int32_t, double>> rows(patches_.size());
+  for (std::size_t e = 0; e < tetrahedra(); ++e) {
+    const VolumePatches::Corners& corners = patches_.of_element[e];
+    if (corners[0] == VolumePatches::kNone) continue;
+    for (const std::int32_t n : corners) {
+      for (const std::int32_t m : corners) rows[n][m] += rest_volume_[e] / 16 / patches_.rest_volume[n];
+    }
+  }
+  patches_.row.push_back(0);
+  for (const auto& row : rows) {
+    for (const auto& [m, weight] : row) {
+      patches_.neighbour.push_back(m);
+      patches_.weight.push_back(weight);
+    }
+    patches_.row.push_back(static_cast<std::int32_t>(patches_.neighbour.size()));
+  }
+}
+
+// The nodes of a region, ascending: those of the mesh, and of quadratic elements the middles of edges both of whose
+// ends belong to it and that lie in the surface or in an element of which all corners do. (An edge through the body
+// from one side of a region to another is not part of it.)
+std::vector<std::int32_t> TetModel::NodesOfRegion(const Region& region, const TetBody& body) const {
+  const auto first = static_cast<std::int32_t>(body.node_begin);
+  std::vector<std::int32_t> nodes;
+  for (const std::int32_t n : region.nodes) nodes.push_back(first + n);
+  if (order() == ElementOrder::kLinear) return nodes;
+  std::vector<bool> inside(body.node_end - body.node_begin, false);
+  for (const std::int32_t n : region.nodes) inside[n] = true;
+  std::set<std::int32_t> middles;
+  const auto add = [&](std::int32_t i, std::int32_t j) {
+    if (inside[i] && inside[j]) middles.insert(middles_.at(std::minmax(first + i, first + j)));
+  };
+  for (const Triangle& t : BoundaryTriangles(body.source->mesh)) {
+    for (int c = 0; c < 3; ++c) add(t[c], t[(c + 1) % 3]);
+  }
+  for (const Tetrahedron& tet : body.source->mesh.tetrahedra) {
+    if (!std::all_of(tet.begin(), tet.end(), [&](std::int32_t n) { return inside[n]; })) continue;
+    for (const auto& [i, j] : kTetEdges) add(tet[i], tet[j]);
+  }
+  nodes.insert(nodes.end(), middles.begin(), middles.end());
+  return nodes;
+}
+
+// Consistent with the shape functions: of each rest triangle a third of the traction to each of its nodes, or with
+// quadratic elements, where those of the corners integrate to zero, to the middles of its edges.
+std::map<std::int32_t, Vec3> TetModel::TractionForces(const Region& region, const TetBody& body,
+                                                      const Vec3& traction) const {
+  const auto first = static_cast<std::int32_t>(body.node_begin);
+  std::map<std::int32_t, Vec3> forces;
+  for (const Triangle& t : region.triangles) {
+    const Triangle n = {first + t[0], first + t[1], first + t[2]};
+    const Vec3& X0 = rest_positions_[n[0]];
+    const double area = 0.5 * (rest_positions_[n[1]] - X0).cross(rest_positions_[n[2]] - X0).norm();
+    for (int c = 0; c < 3; ++c) {
+      const std::int32_t at = order() == ElementOrder::kLinear ? n[c] : middles_.at(std::minmax(n[c], n[(c + 1) % 3]));
+      forces.try_emplace(at, Vec3::Zero()).first->second += area / 3 * traction;
+    }
+  }
+  return forces;
+}
+
+void TetModel::AddLoads(const Body& source, const TetBody& body) {
+  for (const Load& load : source.loads) {
+    const Region& region = source.regions[load.region];
     std::map<std::int32_t, Vec3> forces;  // ordered, so that sums do not depend on where things lie in memory
     if (const auto* force = std::get_if<NodalForce>(&load.kind)) {
-      for (const std::int32_t n : region.nodes) {
-        forces.emplace(n, force->total / static_cast<double>(region.nodes.size()));
-      }
+      const std::vector<std::int32_t> nodes = NodesOfRegion(region, body);
+      for (const std::int32_t n : nodes) forces.emplace(n, force->total / static_cast<double>(nodes.size()));
     } else {
-      // Consistent with linear shape functions: a third of each triangle to each of its nodes.
-      const Vec3& traction = std::get<Traction>(load.kind).vector;
-      const auto& X = body.mesh.nodes;
-      for (const Triangle& t : region.triangles) {
-        const double area = 0.5 * (X[t[1]] - X[t[0]]).cross(X[t[2]] - X[t[0]]).norm();
-        for (const std::int32_t n : t) forces.try_emplace(n, Vec3::Zero()).first->second += area / 3 * traction;
-      }
+      forces = TractionForces(region, body, std::get<Traction>(load.kind).vector);
     }
     NodalLoad& entry = loads_.emplace_back();
     entry.scale = &load.scale;
     for (const auto& [n, force] : forces) {
-      entry.nodes.push_back(n + static_cast<std::int32_t>(node_begin));
+      entry.nodes.push_back(n);
       entry.forces.push_back(force);
     }
   }
 }
 
-void TetModel::AddSupports(const Body& body, std::int32_t body_index, std::size_t node_begin) {
-  for (const Constraint& constraint : body.constraints) {
+void TetModel::AddSupports(const Body& source, std::int32_t body_index) {
+  for (const Constraint& constraint : source.constraints) {
     Support& support = supports_.emplace_back();
     support.source = &constraint;
     support.body = body_index;
-    for (const std::int32_t local : body.regions[constraint.region].nodes) {
-      const std::int32_t n = local + static_cast<std::int32_t>(node_begin);
+    support.nodes = NodesOfRegion(source.regions[constraint.region], bodies_[body_index]);
+    for (const std::int32_t n : support.nodes) {
       std::array<bool, 3> owned = {};
       for (int c = 0; c < 3; ++c) {
         owned[c] = constraint.axes[c] && inverse_mass_[n][c] != 0;
         if (owned[c]) inverse_mass_[n][c] = 0;
       }
-      support.nodes.push_back(n);
       support.owned.push_back(owned);
     }
   }
 }
 
-void TetModel::ListCornersOfNodes() {
-  node_corner_begin_.assign(nodes() + 1, 0);
-  for (const Tetrahedron& tet : tetrahedra_) {
-    for (const std::int32_t n : tet) ++node_corner_begin_[n + 1];
+NodalVector TetModel::InitialPositions() const {
+  NodalVector x = rest_positions_;
+  for (const TetBody& body : bodies_) {
+    const std::vector<Vec3>& displacement = body.source->initial_displacement;
+    if (displacement.empty()) continue;
+    for (std::size_t n = 0; n < displacement.size(); ++n) x[body.node_begin + n] += displacement[n];
+    if (order() == ElementOrder::kLinear) continue;
+    for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
+      for (int k = 0; k < 6; ++k) {
+        const auto& [i, j] = kTetEdges[k];
+        x[edge_nodes_[e][k]] = 0.5 * (x[tetrahedra_[e][i]] + x[tetrahedra_[e][j]]);
+      }
+    }
   }
-  for (std::size_t n = 0; n < nodes(); ++n) node_corner_begin_[n + 1] += node_corner_begin_[n];
-  node_corners_.resize(4 * tetrahedra());
-  std::vector<std::int32_t> next(node_corner_begin_.begin(), node_corner_begin_.end() - 1);
-  for (std::size_t e = 0; e < tetrahedra(); ++e) {
-    for (int c = 0; c < 4; ++c) node_corners_[next[tetrahedra_[e][c]]++] = static_cast<CornerIndex>(4 * e + c);
-  }
+  return x;
 }
 
 void TetModel::FindCurvesEnd() {
@@ -124,8 +351,8 @@ void TetModel::FindCurvesEnd() {
     if (curve.times.size() > 1) curves_end_ = std::max(curves_end_, curve.end());
   };
   take(scene_->gravity.scale);
+  for (const Curve* activation : activations_) take(*activation);
   for (const Body& body : scene_->bodies) {
-    take(body.activation);
     for (const Load& load : body.loads) take(load.scale);
     for (const Constraint& constraint : body.constraints) {
       for (const auto& translation : constraint.motion.translation) {

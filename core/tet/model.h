@@ -1,27 +1,48 @@
 #ifndef FASCICLE_CORE_TET_MODEL_H_
 #define FASCICLE_CORE_TET_MODEL_H_
 
+#include <algorithm>
 #include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/linalg/nodal_vector.h"
 #include "core/scene/scene.h"
+#include "core/tet/element.h"
+#include "core/tet/volume_patches.h"
 
 namespace fascicle {
 
-// One corner of one tetrahedron has the number 4 * tetrahedron + corner.
-using CornerIndex = std::int32_t;
+// One node of one element has the number nodes of an element * element + node.
+using ElementNodeIndex = std::int32_t;
 
-// A body's share of the model's arrays.
+// Laws of one kind: std::variant<std::vector<LinearElastic>, ...>.
+template <class... Laws>
+std::variant<std::vector<Laws>...> LawTableOf(const std::variant<Laws...>&);
+using LawTable = decltype(LawTableOf(std::declval<Material>()));
+
+// A body's share of the model's arrays. Nodes: those of its mesh in their order, then those in the middle of edges.
 struct TetBody {
   const Body* source = nullptr;
   std::size_t node_begin = 0, node_end = 0;
+  std::size_t mesh_node_end = 0;
   std::size_t tet_begin = 0, tet_end = 0;
+  std::size_t activation = 0;  // index of its own one in activations()
   // Viscous stress S_v = 2 damping_mu Edot + damping_lambda tr(Edot) I [Pa s].
   double damping_mu = 0, damping_lambda = 0;
   double mass_damping = 0;  // [1/s]
 
   bool HasStrainDamping() const { return damping_mu != 0 || damping_lambda != 0; }
+};
+
+// Elements of one body whose laws are of one kind, so that a loop over them is compiled for that kind.
+struct TetGroup {
+  std::size_t body = 0;
+  std::size_t tet_begin = 0, tet_end = 0;
+  LawTable laws;  // that of an element is laws[law_of()[element]]
 };
 
 // A load as forces on nodes at scale 1.
@@ -40,8 +61,9 @@ struct Support {
   std::vector<std::array<bool, 3>> owned;
 };
 
-// A scene made ready for stepping: nodes and tetrahedra of all bodies in common arrays, and what does not change.
-// Indices count through all bodies. Immutable; may be shared between threads.
+// A scene made ready for stepping: nodes and elements of all bodies in common arrays, and what does not change. Indices
+// count through all bodies. The elements of a body are sorted by the kind of their law, else in the mesh's order.
+// Immutable; may be shared between threads.
 class TetModel {
  public:
   // The scene must have passed CheckScene and must outlive the model.
@@ -53,11 +75,44 @@ class TetModel {
   std::size_t tetrahedra() const { return tetrahedra_.size(); }
 
   const NodalVector& rest_positions() const { return rest_positions_; }  // X [m]
+  // X, moved by the bodies' initial displacements [m].
+  NodalVector InitialPositions() const;
   const std::vector<Tetrahedron>& corners() const { return tetrahedra_; }
+  ElementOrder order() const { return scene_->method.element; }
+  // Nodes of one element; calls visitor(LinearElement{}) or visitor(QuadraticElement{}).
+  template <class Visitor>
+  decltype(auto) VisitElement(const Visitor& visitor) const {
+    return order() == ElementOrder::kLinear ? visitor(LinearElement{}) : visitor(QuadraticElement{});
+  }
+  // The nodes of an element: its corners, then the middles of its edges.
+  template <class Element>
+  std::array<std::int32_t, Element::kNodes> NodesOf(std::size_t tet) const {
+    if constexpr (Element::kNodes == 4) {
+      return tetrahedra_[tet];
+    } else {
+      std::array<std::int32_t, Element::kNodes> nodes;
+      std::copy(tetrahedra_[tet].begin(), tetrahedra_[tet].end(), nodes.begin());
+      std::copy(edge_nodes_[tet].begin(), edge_nodes_[tet].end(), nodes.begin() + 4);
+      return nodes;
+    }
+  }
+  int nodes_per_element() const { return order() == ElementOrder::kLinear ? 4 : 10; }
+  int points_per_element() const { return order() == ElementOrder::kLinear ? 1 : 4; }
+  const std::vector<TetGroup>& groups() const { return groups_; }
+  const std::vector<std::int32_t>& law_of() const { return law_of_; }
+  // The number of each element in its body's mesh.
+  const std::vector<std::int32_t>& source_tetrahedron() const { return source_tetrahedron_; }
+  const VolumePatches& patches() const { return patches_; }
+
+  // Curves of activation of all bodies, and what each element makes of its one.
+  const std::vector<const Curve*>& activations() const { return activations_; }
+  double ActivationOf(std::size_t tet, std::span<const double> activations) const {
+    return activations[activation_of_[tet]] * activation_scale_[tet];
+  }
   const std::vector<Mat3>& Dm_inverse() const { return Dm_inverse_; }      // Dm^-1 [1/m]
   const std::vector<double>& rest_volume() const { return rest_volume_; }  // V [m^3]
   const std::vector<Vec3>& fibres() const { return fibres_; }              // a0; zero without fibres
-  const std::vector<double>& mass() const { return mass_; }                // lumped: rho V/4 to each corner [kg]
+  const std::vector<double>& mass() const { return mass_; }                // lumped: see Element::kMassShare [kg]
   // 1/m [1/kg], and zero for components whose motion is prescribed.
   const NodalVector& inverse_mass() const { return inverse_mass_; }
   // Rayleigh damping of each node: mass_damping of its body [1/s].
@@ -66,9 +121,9 @@ class TetModel {
   // Bm3 = -V Dm^-T, so that [f1 f2 f3] = P Bm3 [Teran 2003, 4.1].
   Mat3 Bm3(std::size_t tet) const { return -rest_volume_[tet] * Dm_inverse_[tet].transpose(); }
 
-  // The corners at node n: node_corners()[node_corner_begin()[n] .. node_corner_begin()[n + 1]), ascending.
-  const std::vector<std::int32_t>& node_corner_begin() const { return node_corner_begin_; }
-  const std::vector<CornerIndex>& node_corners() const { return node_corners_; }
+  // Where node n is one of an element: node_uses()[node_use_begin()[n] .. node_use_begin()[n + 1]), ascending.
+  const std::vector<std::int32_t>& node_use_begin() const { return node_use_begin_; }
+  const std::vector<ElementNodeIndex>& node_uses() const { return node_uses_; }
 
   const std::vector<NodalLoad>& loads() const { return loads_; }
   const std::vector<Support>& supports() const { return supports_; }
@@ -76,32 +131,51 @@ class TetModel {
   bool has_damping() const { return has_mass_damping_ || has_strain_damping_; }
   bool has_mass_damping() const { return has_mass_damping_; }
   bool has_strain_damping() const { return has_strain_damping_; }
+  // Whether any law depends on how fast its fibres shorten.
+  bool depends_on_rate() const { return depends_on_rate_; }
   // The time after which no curve changes any more [s].
   double curves_end() const { return curves_end_; }
 
  private:
   void AddBody(const Body& body);
-  void AddLoads(const Body& body, std::size_t node_begin);
-  void AddSupports(const Body& body, std::int32_t body_index, std::size_t node_begin);
-  void ListCornersOfNodes();
+  void AddNodes(const Body& body, TetBody& entry);
+  void AddElements(const Body& body, TetBody& entry);
+  void FillGroup(const Body& body, TetGroup& group);
+  void AddPatches(const TetGroup& group, std::span<const double> given);
+  void SetSmoothing();
+  std::vector<std::int32_t> NodesOfRegion(const Region& region, const TetBody& body) const;
+  std::map<std::int32_t, Vec3> TractionForces(const Region& region, const TetBody& body, const Vec3& traction) const;
+  void AddLoads(const Body& source, const TetBody& body);
+  void AddSupports(const Body& source, std::int32_t body_index);
   void FindCurvesEnd();
 
   const Scene* scene_;
   std::vector<TetBody> bodies_;
+  std::vector<TetGroup> groups_;
   NodalVector rest_positions_;
   std::vector<Tetrahedron> tetrahedra_;
+  std::vector<std::array<std::int32_t, 6>> edge_nodes_;  // quadratic elements only
+  // The node in the middle of the edge between two nodes, the lower first; during construction only.
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles_;
+  std::vector<std::int32_t> source_tetrahedron_;
+  std::vector<std::int32_t> law_of_;
+  std::vector<const Curve*> activations_;
+  std::vector<std::int32_t> activation_of_;
+  std::vector<double> activation_scale_;
+  VolumePatches patches_;
   std::vector<Mat3> Dm_inverse_;
   std::vector<double> rest_volume_;
   std::vector<Vec3> fibres_;
   std::vector<double> mass_;
   NodalVector inverse_mass_;
   std::vector<double> mass_damping_;
-  std::vector<std::int32_t> node_corner_begin_;
-  std::vector<CornerIndex> node_corners_;
+  std::vector<std::int32_t> node_use_begin_;
+  std::vector<ElementNodeIndex> node_uses_;
   std::vector<NodalLoad> loads_;
   std::vector<Support> supports_;
   bool has_mass_damping_ = false;
   bool has_strain_damping_ = false;
+  bool depends_on_rate_ = false;
   double curves_end_ = 0;
 };
 

@@ -28,22 +28,33 @@ constexpr double kMostSteps = 1e9;
 }  // namespace
 
 TetSolver::TetSolver(const TetModel& model, ThreadTeam& team)
-    : model_(model), team_(team), method_(model.scene().method) {}
+    : model_(model), team_(team), method_(model.scene().method) {
+  if (IsImplicit()) newton_ = std::make_unique<NewtonSolver>(model, team);
+}
 
 TetState TetSolver::InitialState() {
   TetState state;
   controls_next_.Set(model_, 0);
-  state.positions = model_.rest_positions();
+  state.positions = model_.InitialPositions();
   state.velocities.assign(model_.nodes(), Vec3::Zero());
+  if (IsImplicit()) {
+    state.accelerations = state.previous_velocities = state.velocities;
+    state.previous_positions = state.positions;
+    state.pressures.assign(model_.patches().size(), 0.0);
+  }
   PrescribePositions(model_, controls_next_, state.positions);
   PrescribeVelocities(model_, controls_next_, state.velocities);
   UpdateForce(method_.stepping == Stepping::kExplicit && model_.has_strain_damping() ? &state.velocities : nullptr,
-              state);
-  state.stable.activation.assign(model_.bodies().size(), 0.0);
+              FibreDrive{controls_next_.activation}, state);
+  state.stable.activation.assign(model_.activations().size(), 0.0);
   return state;
 }
 
 StepReport TetSolver::Advance(TetState& state, double end) {
+  return IsImplicit() ? AdvanceImplicit(state, end) : AdvanceExplicit(state, end);
+}
+
+StepReport TetSolver::AdvanceExplicit(TetState& state, double end) {
   if (IsStableStepDue(state)) RefreshStableStep(state);
   for (;;) {
     const double target = TargetStep(state);
@@ -72,17 +83,17 @@ StepReport TetSolver::Advance(TetState& state, double end) {
 
 double TetSolver::StableStepAt(const TetState& state) {
   controls_now_.Set(model_, state.time);
-  return LargestStableStep(model_, controls_now_.activation, state.positions, method_.stepping == Stepping::kExplicit,
-                           team_, corners_, stable_step_);
+  return LargestStableStep(model_, FibreDrive{controls_now_.activation}, state.positions,
+                           method_.stepping == Stepping::kExplicit, team_, forces_, stable_step_);
 }
 
 bool TetSolver::IsStableStepDue(const TetState& state) {
   const StableStep& stable = state.stable;
   if (stable.found_at < 0 || state.step >= stable.found_at + stable.interval) return true;
   if (state.smallest_ratio < kRatioChange * stable.smallest_ratio) return true;
-  for (std::size_t b = 0; b < model_.bodies().size(); ++b) {
-    const double now = model_.bodies()[b].source->activation.At(state.time);
-    if (std::abs(now - stable.activation[b]) > kActivationChange) return true;
+  for (std::size_t k = 0; k < model_.activations().size(); ++k) {
+    const double now = model_.activations()[k]->At(state.time);
+    if (std::abs(now - stable.activation[k]) > kActivationChange) return true;
   }
   return false;
 }
@@ -141,7 +152,7 @@ void TetSolver::Accept(TetState& state) {
 // Says where: the elements that the attempt broke, or else the thinnest one, which asks for the smallest step.
 StepReport TetSolver::Fail(const TetState& state, StepReport report) const {
   if (report.problem == StepProblem::kInvertedElement) {
-    report.bad = FindBadElements(model_, controls_next_.activation, next_.positions);
+    report.bad = FindBadElements(model_, FibreDrive{controls_next_.activation}, next_.positions);
     if (!report.bad.elements.empty() && !report.bad.inverted) report.problem = StepProblem::kNotFinite;
   }
   if (report.bad.elements.empty()) report.bad = FindThinnestElement(model_, state.positions);

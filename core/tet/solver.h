@@ -1,10 +1,13 @@
 #ifndef FASCICLE_CORE_TET_SOLVER_H_
 #define FASCICLE_CORE_TET_SOLVER_H_
 
+#include <memory>
+
 #include "core/linalg/conjugate_gradient.h"
 #include "core/tet/bad_elements.h"
 #include "core/tet/controls.h"
 #include "core/tet/forces.h"
+#include "core/tet/newton.h"
 #include "core/tet/stable_step.h"
 #include "core/tet/state.h"
 
@@ -15,7 +18,7 @@ enum class StepProblem { kNone, kInvertedElement, kNotFinite, kNotConverged, kUn
 
 struct StepReport {
   StepProblem problem = StepProblem::kNone;
-  int iterations = 0;  // of linear solves
+  int iterations = 0;  // of linear solves, or of Newton's method
   // Kinetic energy of the free components at the half step [J].
   double kinetic = 0;
   // Curvature of the energy along the motion of this step times dt^2: a Rayleigh quotient of M^-1 K. The central
@@ -38,6 +41,9 @@ class TetSolver {
   // to kMaxCuts times. On a problem the state keeps its time and motion.
   StepReport Advance(TetState& state, double end);
 
+  // Implicit and quasi-static steps go as far as Newton's method converges: from a whole frame interval at first,
+  // halved when it does not and doubled when it was easy.
+  //
   // One attempt to step from `now` to `next_time`, without cutting; fills all of `next` but what Advance looks after.
   StepReport Step(const TetState& now, double next_time, TetState& next);
 
@@ -52,10 +58,18 @@ class TetSolver {
   // Elastic forces explicit, damping implicit [Teran 2003, 4.3].
   StepReport StepMixed(const TetState& now, double dt, TetState& next);
 
+  // Any stepping that solves for the end of the step: implicit_step.cc.
+  StepReport StepImplicit(const TetState& now, double dt, TetState& next);
+  StepReport AdvanceExplicit(TetState& state, double end);
+  StepReport AdvanceImplicit(TetState& state, double end);
+  bool IsImplicit() const { return method_.stepping != Stepping::kExplicit && method_.stepping != Stepping::kMixed; }
+  double SmallestRatio(const NodalVector& x) const;
+  FibreDrive DriveOf(const TetState& now, double dt) const;
+
   void Drift(const TetState& now, double dt, TetState& next);
   CgResult SolveDamping(const NodalVector& x, const NodalVector& internal, const NodalVector& external,
                         double half_step, TetState& next);
-  ForceReport UpdateForce(const NodalVector* viscous_velocity, TetState& next);
+  ForceReport UpdateForce(const NodalVector* viscous_velocity, const FibreDrive& drive, TetState& next);
   // Fills what tells an unstable step from a stable one; next.velocities are those of the half step.
   void MeasureMotion(const TetState& now, const TetState& next, StepReport& report) const;
   void AddExternalWork(const TetState& now, TetState& next) const;
@@ -74,9 +88,11 @@ class TetSolver {
   TetControls controls_now_, controls_next_;
   NodalVector external_now_, external_next_;
   NodalVector right_side_, inverse_diagonal_;
-  CornerForceArray corners_;
+  ForceWorkspace forces_;
   CgWorkspace cg_;
   StableStepWorkspace stable_step_;
+  std::unique_ptr<NewtonSolver> newton_;  // implicit steppings only
+  IncrementalPotential potential_;
   TetState next_;
 };
 

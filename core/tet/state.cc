@@ -10,6 +10,11 @@ void TetState::Save(ArchiveWriter& archive) const {
   archive.PutVectors("positions", positions);
   archive.PutVectors("velocities", velocities);
   archive.PutVectors("force", force);
+  archive.PutVectors("accelerations", accelerations);
+  archive.PutVectors("previous_positions", previous_positions);
+  archive.PutVectors("previous_velocities", previous_velocities);
+  archive.PutDoubles("pressures", pressures);
+  archive.PutDouble("next_step", next_step);
   archive.PutDouble("smallest_ratio", smallest_ratio);
   archive.PutDouble("peak_kinetic", peak_kinetic);
   archive.PutDouble("time_step", time_step);
@@ -31,6 +36,11 @@ void TetState::Load(ArchiveReader& archive) {
   archive.GetVectors("positions", std::span(positions));
   archive.GetVectors("velocities", std::span(velocities));
   archive.GetVectors("force", std::span(force));
+  archive.GetVectors("accelerations", std::span(accelerations));
+  archive.GetVectors("previous_positions", std::span(previous_positions));
+  archive.GetVectors("previous_velocities", std::span(previous_velocities));
+  archive.GetDoubles("pressures", std::span(pressures));
+  next_step = archive.GetDouble("next_step");
   smallest_ratio = archive.GetDouble("smallest_ratio");
   peak_kinetic = archive.GetDouble("peak_kinetic");
   time_step = archive.GetDouble("time_step");

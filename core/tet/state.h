@@ -15,7 +15,7 @@ struct StableStep {
   std::int64_t found_at = -1;      // step
   std::int64_t interval = 0;       // steps until it is due again
   double smallest_ratio = 1;       // TetState::smallest_ratio at that time
-  std::vector<double> activation;  // of each body at that time
+  std::vector<double> activation;  // of each curve at that time
 };
 
 // What changes from step to step, and all that a checkpoint saves. Values of all bodies in the model's order.
@@ -26,6 +26,11 @@ struct TetState {
   NodalVector velocities;  // v [m/s]
   // Internal force at `positions` [N]: elastic; explicit stepping: with the viscous force of the half step before.
   NodalVector force;
+  // Of implicit and quasi-static steps: accelerations [m/s^2] (kNewmark), positions and velocities a step ago (kBdf2),
+  // the pressure of each patch [Pa], and the length of step to try next [s], 0 when all is to be tried.
+  NodalVector accelerations, previous_positions, previous_velocities;
+  std::vector<double> pressures;
+  double next_step = 0;
   double smallest_ratio = 1;  // least J of all elements, at most 1
   double peak_kinetic = 0;    // largest kinetic energy of the free components at a half step so far [J]
   double time_step = 0;       // of the last step [s]

@@ -24,8 +24,9 @@ StepReport TetSolver::Step(const TetState& now, double next_time, TetState& next
   controls_next_.Set(model_, next_time);
   ExternalForce(model_, controls_now_, team_, external_now_);
   ExternalForce(model_, controls_next_, team_, external_next_);
-  const StepReport report =
-      method_.stepping == Stepping::kExplicit ? StepExplicit(now, dt, next) : StepMixed(now, dt, next);
+  const StepReport report = IsImplicit()                              ? StepImplicit(now, dt, next)
+                            : method_.stepping == Stepping::kExplicit ? StepExplicit(now, dt, next)
+                                                                      : StepMixed(now, dt, next);
   AddExternalWork(now, next);
   return report;
 }
@@ -45,7 +46,8 @@ StepReport TetSolver::StepExplicit(const TetState& now, double dt, TetState& nex
   // x' = x + dt v_half
   Drift(now, dt, next);
   // f' = f(x', v_half)
-  const ForceReport forces = UpdateForce(model_.has_strain_damping() ? &next.velocities : nullptr, next);
+  const ForceReport forces =
+      UpdateForce(model_.has_strain_damping() ? &next.velocities : nullptr, DriveOf(now, dt), next);
   MeasureMotion(now, next, report);
   next.dissipated += dt * forces.dissipated_power;
   if (model_.has_mass_damping()) {
@@ -71,7 +73,7 @@ StepReport TetSolver::StepMixed(const TetState& now, double dt, TetState& next) 
   // x' = x + dt v_half
   Drift(now, dt, next);
   // f' = f(x')
-  const ForceReport forces = UpdateForce(nullptr, next);
+  const ForceReport forces = UpdateForce(nullptr, DriveOf(now, dt), next);
   MeasureMotion(now, next, report);
   report.problem = ProblemOf(forces, first);
   report.iterations = first.iterations;
@@ -100,12 +102,16 @@ void TetSolver::Drift(const TetState& now, double dt, TetState& next) {
   }
 }
 
-ForceReport TetSolver::UpdateForce(const NodalVector* viscous_velocity, TetState& next) {
-  const std::span<const double> activation = controls_next_.activation;
+// What acts in the fibres at the end of a step.
+FibreDrive TetSolver::DriveOf(const TetState& now, double dt) const {
+  return {controls_next_.activation, &now.positions, 1 / dt};
+}
+
+ForceReport TetSolver::UpdateForce(const NodalVector* viscous_velocity, const FibreDrive& drive, TetState& next) {
   const ForceReport report =
       viscous_velocity == nullptr
-          ? ElasticForce(model_, activation, next.positions, team_, corners_, next.force)
-          : ElasticAndViscousForce(model_, activation, next.positions, *viscous_velocity, team_, corners_, next.force);
+          ? ElasticForce(model_, drive, next.positions, team_, forces_, next.force)
+          : ElasticAndViscousForce(model_, drive, next.positions, *viscous_velocity, team_, forces_, next.force);
   next.smallest_ratio = report.smallest_ratio;
   return report;
 }
@@ -132,13 +138,13 @@ CgResult TetSolver::SolveDamping(const NodalVector& x, const NodalVector& intern
     return {true, 0};
   }
   inverse_diagonal_.resize(model_.nodes());
-  ViscousDiagonal(model_, x, team_, corners_, inverse_diagonal_);
+  ViscousDiagonal(model_, x, team_, forces_, inverse_diagonal_);
   ForNodes(team_, model_.nodes(), [&](std::size_t n) {
     const Vec3 diagonal = Vec3::Constant(mass[n] * (1 + half_step * a[n])) + half_step * inverse_diagonal_[n];
     inverse_diagonal_[n] = (mass[n] * inverse_mass[n]).cwiseQuotient(diagonal);
   });
   const auto apply = [&](const NodalVector& p, NodalVector& q) {
-    ViscousForce(model_, x, p, team_, corners_, q);
+    ViscousForce(model_, x, p, team_, forces_, q);
     ForNodes(team_, model_.nodes(),
              [&](std::size_t n) { q[n] = mass[n] * (1 + half_step * a[n]) * p[n] - half_step * q[n]; });
   };

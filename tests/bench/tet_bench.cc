@@ -43,7 +43,7 @@ struct Box {
   ThreadTeam team;
   TetSolver solver;
   TetState state;
-  CornerForceArray corners;
+  ForceWorkspace corners;
   std::array<double, 1> activation = {0.5};
 };
 

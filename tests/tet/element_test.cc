@@ -46,7 +46,7 @@ Vec3 AreaVector(const NodalVector& points, const int face[3]) {
   return 0.5 * (points[face[1]] - points[face[0]]).cross(points[face[2]] - points[face[0]]);
 }
 
-double LargestDifference(const CornerForces& a, const CornerForces& b) {
+double LargestDifference(const CornerValues& a, const CornerValues& b) {
   double largest = 0, scale = 0;
   for (int n = 0; n < 4; ++n) {
     largest = std::max(largest, (a[n] - b[n]).norm());
@@ -59,9 +59,9 @@ class ElementTest : public ::testing::TestWithParam<unsigned> {
  protected:
   Element element_{GetParam()};
 
-  CornerForces Forces(const Mat3& P) const {
-    CornerForces forces;
-    SetCornerForces(P, element_.Dm.inverse(), element_.V, forces);
+  CornerValues Forces(const Mat3& P) const {
+    CornerValues forces;
+    SetCornerValues(P, element_.Dm.inverse(), element_.V, forces);
     return forces;
   }
 };
@@ -69,7 +69,7 @@ class ElementTest : public ::testing::TestWithParam<unsigned> {
 // [Teran 2003, 4]: f_i = -1/3 P (sum of A_j N_j over the three rest faces at i).
 TEST_P(ElementTest, FaceAreaForm) {
   const Mat3 P = element_.StressOf();
-  CornerForces by_faces;
+  CornerValues by_faces;
   for (int i = 0; i < 4; ++i) {
     Vec3 sum = Vec3::Zero();
     for (int j = 0; j < 4; ++j) {
@@ -84,7 +84,7 @@ TEST_P(ElementTest, FaceAreaForm) {
 TEST_P(ElementTest, CauchyForm) {
   const Mat3 P = element_.StressOf();
   const Mat3 sigma = P * element_.F.transpose() / element_.F.determinant();
-  CornerForces by_faces;
+  CornerValues by_faces;
   for (int i = 0; i < 4; ++i) {
     Vec3 sum = Vec3::Zero();
     for (int j = 0; j < 4; ++j) {
@@ -101,7 +101,7 @@ TEST_P(ElementTest, LinearFiniteElements) {
   Eigen::Matrix4d vertices;
   for (int n = 0; n < 4; ++n) vertices.row(n) << 1, element_.X[n].transpose();
   const Eigen::Matrix4d coefficients = vertices.inverse();  // column a: constant and gradient of N_a
-  CornerForces by_gradients;
+  CornerValues by_gradients;
   for (int a = 0; a < 4; ++a) by_gradients[a] = -element_.V * P * coefficients.col(a).tail<3>();
   EXPECT_LT(LargestDifference(by_gradients, Forces(P)), kRoundOff);
 }
@@ -116,7 +116,7 @@ TEST_P(ElementTest, MinusGradientOfEnergy) {
     return element_.V * law.Energy(EdgeMatrix(moved, element_.corners) * element_.Dm.inverse(), {});
   };
   const double h = 0.25;
-  CornerForces by_difference;
+  CornerValues by_difference;
   for (int n = 0; n < 4; ++n) {
     for (int c = 0; c < 3; ++c) {
       const double near = energy(n, c, h) - energy(n, c, -h);

@@ -21,7 +21,7 @@ struct Loaded {
   Scene scene;
   TetModel model;
   ThreadTeam team{1};
-  CornerForceArray corners;
+  ForceWorkspace corners;
 };
 
 Scene SceneOf(const Material& law) {
@@ -60,7 +60,7 @@ TEST_P(EveryLawTest, ForceIsMinusGradientOfEnergy) {
       const auto energy = [&](double shift) {
         NodalVector x = x_;
         x[n][c] += shift;
-        return ElasticEnergy(model_, 0, activation_[0], x, loaded_.team);
+        return ElasticEnergy(model_, 0, activation_, x, loaded_.team);
       };
       const double slope =
           (45 * (energy(h) - energy(-h)) - 9 * (energy(2 * h) - energy(-2 * h)) + (energy(3 * h) - energy(-3 * h))) /
@@ -90,7 +90,7 @@ TEST_P(EveryLawTest, NoResultant) {
 // K p against a difference of forces; K is kept in float.
 TEST_P(EveryLawTest, StiffnessIsDerivativeOfForce) {
   TetStiffness stiffness;
-  stiffness.Set(model_, activation_, x_, loaded_.team);
+  stiffness.Set(model_, activation_, x_, loaded_.team, loaded_.corners);
   const NodalVector p = RandomVectors(model_.nodes(), 11);
   NodalVector product;
   stiffness.Apply(model_, p, loaded_.team, loaded_.corners, product);
@@ -250,7 +250,7 @@ TEST(ThreadsTest, SameBitsForAnyNumber) {
   double reference_power = 0;
   for (const int threads : {1, 2, 3, 4}) {
     ThreadTeam team(threads);
-    CornerForceArray corners;
+    ForceWorkspace corners;
     NodalVector force;
     const ForceReport report = ElasticAndViscousForce(model, activation, x, v, team, corners, force);
     if (threads == 1) {

@@ -36,7 +36,7 @@ class Mode {
   double AmplitudeAt(double time, int steps) {
     TetState state = solver_->InitialState(), next;
     for (std::size_t n = 0; n < model_->nodes(); ++n) state.positions[n] += kScale * shape_[n];
-    CornerForceArray corners;
+    ForceWorkspace corners;
     const std::array<double, 1> activation = {0};
     ElasticForce(*model_, activation, state.positions, team_, corners, state.force);
     for (int i = 1; i <= steps; ++i) {
@@ -57,7 +57,7 @@ class Mode {
   void FindMode() {
     const auto size = static_cast<Eigen::Index>(3 * model_->nodes());
     TetStiffness stiffness;
-    CornerForceArray corners;
+    ForceWorkspace corners;
     const std::array<double, 1> activation = {0};
     Eigen::MatrixXd A(size, size);
     NodalVector unit(model_->nodes(), Vec3::Zero()), ahead, behind;
@@ -256,8 +256,8 @@ TEST(FixedStepTest, IsHalvedUntilItIsStable) {
       ASSERT_EQ(solver.Advance(state, 100).problem, StepProblem::kNone);
       // Steps divide the time to `end` evenly: at most one part in their number shorter.
       EXPECT_NEAR(state.time_step, (factor < 1 ? factor : factor / 4) * limit, 1e-4 * limit);
-      const double energy =
-          ElasticEnergy(model, 0, 0, state.positions, team) + KineticEnergy(model, state.velocities, team);
+      const double energy = ElasticEnergy(model, 0, std::array{0.0}, state.positions, team) +
+                            KineticEnergy(model, state.velocities, team);
       largest_work = std::max(largest_work, std::abs(state.external_work));
       largest_error = std::max(largest_error, std::abs(energy - state.external_work));
     }
@@ -288,7 +288,7 @@ TEST(StepCuttingTest, RecoversFromAViolentStart) {
     }
     EXPECT_GT(most_cuts, 0);
     const double energy =
-        ElasticEnergy(model, 0, 0, state.positions, team) + KineticEnergy(model, state.velocities, team);
+        ElasticEnergy(model, 0, std::array{0.0}, state.positions, team) + KineticEnergy(model, state.velocities, team);
     EXPECT_NEAR(energy + state.dissipated, start, 0.02 * start);
     if (damping > 0) {
       EXPECT_EQ(state.cuts, 0);

@@ -40,9 +40,9 @@ double DenseLargestEigenvalue(const TetModel& model, const Apply& apply) {
 
 double DenseOmegaSquared(const TetModel& model, const NodalVector& x, ThreadTeam& team) {
   TetStiffness stiffness;
-  CornerForceArray corners;
+  ForceWorkspace corners;
   const std::array<double, 1> activation = {0.7};
-  stiffness.Set(model, activation, x, team);
+  stiffness.Set(model, activation, x, team, corners);
   return DenseLargestEigenvalue(
       model, [&](const NodalVector& p, NodalVector& q) { stiffness.Apply(model, p, team, corners, q); });
 }
@@ -58,7 +58,7 @@ class StableStepTest : public ::testing::TestWithParam<int> {
 TEST_P(StableStepTest, IsTheInverseOfTheLargestFrequency) {
   const NodalVector x = Shaken(model_.rest_positions(), 5e-4, 3);
   const double exact = 2 / std::sqrt(DenseOmegaSquared(model_, x, team_));
-  CornerForceArray corners;
+  ForceWorkspace corners;
   StableStepWorkspace workspace;
   const std::array<double, 1> activation = {0.7};
   const double estimate = LargestStableStep(model_, activation, x, true, team_, corners, workspace);
@@ -78,7 +78,7 @@ TEST_P(StableStepTest, SeparatesStableFromUnstable) {
     TetControls controls;
     controls.Set(model, 0);
     PrescribePositions(model, controls, state.positions);
-    CornerForceArray corners;
+    ForceWorkspace corners;
     ElasticForce(model, controls.activation, state.positions, team_, corners, state.force);
     for (int i = 0; i < 600; ++i) {
       if (solver.Step(state, state.time + factor * limit, next).problem != StepProblem::kNone) return 1e9;
@@ -98,7 +98,7 @@ TEST(DampedStableStepTest, AgreesWithTheFormula) {
   const Scene scene = TestScene(NeoHookean(std::array{1e4, 0.3}), {.mass_proportional = 3, .viscosity = 20});
   const TetModel model(scene);
   ThreadTeam team(1);
-  CornerForceArray corners;
+  ForceWorkspace corners;
   StableStepWorkspace workspace;
   const NodalVector& X = model.rest_positions();
   const std::array<double, 1> activation = {0.7};

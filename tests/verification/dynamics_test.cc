@@ -34,7 +34,7 @@ TEST_P(TorusEnergy, DriftStaysBelowOnePercent) {
   for (int step = 0; step < 5000; ++step) {
     ASSERT_EQ(solver.Advance(state, 100).problem, StepProblem::kNone);
     if (step % 10 != 0) continue;
-    const double elastic = ElasticEnergy(model, 0, 0, state.positions, team);
+    const double elastic = ElasticEnergy(model, 0, std::array{0.0}, state.positions, team);
     const double energy = elastic + KineticEnergy(model, state.velocities, team);
     drift = std::max(drift, std::abs(energy / start - 1));
     largest_elastic = std::max(largest_elastic, elastic);

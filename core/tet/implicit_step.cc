@@ -1,0 +1,159 @@
+// Steps that solve for the positions at their end: backward Euler, Newmark, BDF2 and quasi-static.
+#include <algorithm>
+#include <cmath>
+
+#include "core/tet/diagnostics.h"
+#include "core/tet/solver.h"
+
+namespace fascicle {
+namespace {
+
+// An easy step may be followed by one twice as long.
+constexpr int kEasyIterations = 10;
+// A run that needs steps shorter than that part of its duration goes nowhere.
+constexpr double kShortestStep = 0x1p-24;
+
+// How a scheme expresses the velocity and the force of inertia at the end of a step by the positions there:
+// v = rate (x - v_centre), M a = inertia M (x - a_centre).
+struct Scheme {
+  double rate = 0;     // [1/s]
+  double inertia = 0;  // [1/s^2]
+  NodalVector v_centre, a_centre;
+};
+
+// c0 x + c1 x_n + c2 x_{n-1} over dt is the rate at the end of the step; the step before had dt / ratio.
+struct BackwardDifference {
+  double c0 = 1, c1 = -1, c2 = 0;
+};
+BackwardDifference SecondOrder(double ratio) {
+  return {(1 + 2 * ratio) / (1 + ratio), -(1 + ratio), ratio * ratio / (1 + ratio)};
+}
+
+Scheme BackwardScheme(const BackwardDifference& d, const TetState& now, double dt) {
+  Scheme scheme;
+  scheme.rate = d.c0 / dt;
+  scheme.inertia = scheme.rate * scheme.rate;
+  for (std::size_t n = 0; n < now.positions.size(); ++n) {
+    Vec3 x = d.c1 * now.positions[n], v = d.c1 * now.velocities[n];
+    if (d.c2 != 0) {
+      x += d.c2 * now.previous_positions[n];
+      v += d.c2 * now.previous_velocities[n];
+    }
+    scheme.v_centre.push_back(-x / d.c0);
+    // a = (c0 v + v_history) / dt with v = (c0 x + x_history) / dt
+    scheme.a_centre.push_back(-(x + dt / d.c0 * v) / d.c0);
+  }
+  return scheme;
+}
+
+// Average acceleration: beta = 1/4, gamma = 1/2 [Newmark 1959].
+Scheme NewmarkScheme(const TetState& now, double dt) {
+  Scheme scheme;
+  scheme.rate = 2 / dt;
+  scheme.inertia = 4 / (dt * dt);
+  for (std::size_t n = 0; n < now.positions.size(); ++n) {
+    scheme.v_centre.push_back(now.positions[n] + dt / 2 * now.velocities[n]);
+    scheme.a_centre.push_back(now.positions[n] + dt * now.velocities[n] + dt * dt / 4 * now.accelerations[n]);
+  }
+  return scheme;
+}
+
+Scheme SchemeOf(Stepping stepping, const TetState& now, double dt) {
+  if (stepping == Stepping::kNewmark) return NewmarkScheme(now, dt);
+  const bool has_history = stepping == Stepping::kBdf2 && now.step > 0;
+  return BackwardScheme(has_history ? SecondOrder(dt / now.time_step) : BackwardDifference(), now, dt);
+}
+
+StepProblem ProblemOf(const NewtonResult& result) {
+  switch (result.end) {
+    case NewtonResult::End::kConverged:
+      return StepProblem::kNone;
+    case NewtonResult::End::kInvalid:
+      return StepProblem::kInvertedElement;
+    default:
+      return StepProblem::kNotConverged;
+  }
+}
+
+}  // namespace
+
+StepReport TetSolver::AdvanceImplicit(TetState& state, double end) {
+  for (;;) {
+    const double remaining = end - state.time;
+    double target = method_.time_step ? *method_.time_step : remaining;
+    if (state.next_step > 0) target = std::min(target, state.next_step);
+    const double steps = std::ceil(remaining / target * (1 - 1e-9));
+    const double next_time = steps <= 1 ? end : state.time + remaining / steps;
+    const StepReport report = Step(state, next_time, next_);
+    const double dt = next_time - state.time;
+    if (report.problem == StepProblem::kNone) {
+      next_.next_step = report.iterations <= kEasyIterations ? 2 * dt : dt;
+      std::swap(state, next_);
+      return report;
+    }
+    state.next_step = dt / 2;
+    if (dt / 2 < kShortestStep * model_.scene().duration) return Fail(state, report);
+  }
+}
+
+StepReport TetSolver::StepImplicit(const TetState& now, double dt, TetState& next) {
+  const bool is_static = method_.stepping == Stepping::kQuasiStatic;
+  next.positions = now.positions;
+  next.pressures = now.pressures;
+  NodalVector target = now.positions;
+  PrescribePositions(model_, controls_next_, target);
+
+  potential_.drive = is_static ? FibreDrive{controls_next_.activation} : DriveOf(now, dt);
+  potential_.load = &external_next_;
+  potential_.previous = &now.positions;
+  potential_.viscous_rate = is_static || !model_.has_strain_damping() ? 0 : 1 / dt;
+  Scheme scheme;
+  if (!is_static) {
+    scheme = SchemeOf(method_.stepping, now, dt);
+    // Mass damping a M v joins inertia: m (x - c) = M [inertia (x - a_centre) + a rate (x - v_centre)].
+    potential_.inertia.resize(model_.nodes());
+    potential_.inertia_centre.resize(model_.nodes());
+    for (std::size_t n = 0; n < model_.nodes(); ++n) {
+      const double damping = model_.mass_damping()[n] * scheme.rate;
+      const double sum = scheme.inertia + damping;
+      potential_.inertia[n] = model_.mass()[n] * sum;
+      potential_.inertia_centre[n] = (scheme.inertia * scheme.a_centre[n] + damping * scheme.v_centre[n]) / sum;
+    }
+  }
+  const NewtonResult result =
+      newton_->Solve(potential_, target, {method_.newton_tolerance, 50}, next.positions, next.pressures);
+
+  StepReport report;
+  report.iterations = result.iterations;
+  report.problem = ProblemOf(result);
+  next.iterations = now.iterations + result.iterations;
+  if (report.problem != StepProblem::kNone) return report;
+
+  next.velocities.assign(model_.nodes(), Vec3::Zero());
+  next.accelerations.assign(model_.nodes(), Vec3::Zero());
+  next.previous_positions = now.positions;
+  next.previous_velocities = now.velocities;
+  if (!is_static) {
+    for (std::size_t n = 0; n < model_.nodes(); ++n) {
+      next.velocities[n] = scheme.rate * (next.positions[n] - scheme.v_centre[n]);
+      const Vec3 free = model_.mass()[n] * model_.inverse_mass()[n];
+      next.accelerations[n] = free.cwiseProduct(scheme.inertia * (next.positions[n] - scheme.a_centre[n]));
+    }
+    PrescribeVelocities(model_, controls_next_, next.velocities);
+  }
+  next.force = now.force;
+  next.stable = now.stable;
+  next.smallest_ratio = SmallestRatio(next.positions);
+  next.peak_kinetic = now.peak_kinetic;
+  return report;
+}
+
+double TetSolver::SmallestRatio(const NodalVector& x) const {
+  double smallest = 1;
+  for (std::size_t b = 0; b < model_.bodies().size(); ++b) {
+    smallest = std::min(smallest, VolumeRatiosOf(model_, b, x).smallest);
+  }
+  return smallest;
+}
+
+}  // namespace fascicle

@@ -1,0 +1,62 @@
+#ifndef FASCICLE_CORE_TET_NEWTON_H_
+#define FASCICLE_CORE_TET_NEWTON_H_
+
+#include <memory>
+
+#include "core/tet/newton_system.h"
+
+namespace fascicle {
+
+struct NewtonOptions {
+  double tolerance = 1e-8;  // of the force, relative to the norm of all element forces
+  int max_iterations = 50;
+};
+
+struct NewtonResult {
+  enum class End { kConverged, kNotConverged, kInvalid };
+  End end = End::kNotConverged;
+  int iterations = 0;    // factorizations
+  double residual = 0;   // largest |force| on an unknown component over the norm of all element forces [1]
+  std::size_t node = 0;  // where
+};
+
+// Finds a stationary point of an IncrementalPotential, a minimum wherever there is one nearby.
+//
+// Newton's method on positions and pressures (NewtonSystem). A step is cut until it leaves no element inverted and
+// lowers the augmented Lagrangian
+//   L(x) = Phi without patches + sum V_n [p'_n theta_n + rho_n/2 (theta_n - theta'_n)^2],   p' = p + dp,
+// theta' the volume ratio that goes with p' to first order: its slope along dx is -dx.A dx - sum rho V dtheta^2, so it
+// falls wherever A is positive definite [Nocedal & Wright 2006, 18.3]. The exact tangent comes first; where its
+// inertia is not that of a minimum, the projected one takes over for the iteration. Components that are prescribed move
+// with the first iterations, as the linear system says the rest of the body would follow. One thread at a time.
+class NewtonSolver {
+ public:
+  // Model and team must outlive the solver.
+  NewtonSolver(const TetModel& model, ThreadTeam& team);
+
+  // x is where to start and the result; its prescribed components go to those of `target`. `pressure` likewise (one for
+  // each patch). On anything but kConverged both are where the iteration ended.
+  NewtonResult Solve(const IncrementalPotential& potential, const NodalVector& target, const NewtonOptions& options,
+                     NodalVector& x, std::vector<double>& pressure);
+
+ private:
+  bool TakeStep(const IncrementalPotential& potential, NewtonSystem::Tangent tangent, bool prescribed_move,
+                NodalVector& x, std::vector<double>& pressure);
+  void LookAhead(std::span<const double> pressure);
+  double LineSearch(const IncrementalPotential& potential, const NodalVector& x, bool prescribed_move);
+  double PatchMerit(std::span<const double> ratio, double augmentation) const;
+  bool FindRemaining(const NodalVector& target, const NodalVector& x);
+  double RelativeForce(NewtonResult& result) const;
+  bool PressuresAgree(std::span<const double> pressure, double tolerance) const;
+
+  const TetModel& model_;
+  ThreadTeam& team_;
+  NewtonSystem system_;
+  NodalVector force_, trial_, trial_force_, dx_, remaining_;
+  std::vector<double> dp_, pressure_ahead_, ratio_, ratio_ahead_;  // of each patch
+  NewtonSystem::Evaluation now_;
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_TET_NEWTON_H_

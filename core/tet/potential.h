@@ -1,0 +1,92 @@
+#ifndef FASCICLE_CORE_TET_POTENTIAL_H_
+#define FASCICLE_CORE_TET_POTENTIAL_H_
+
+#include "core/tet/points.h"
+
+namespace fascicle {
+
+// The function of the positions x at the end of a step whose stationary point the step looks for:
+//
+//   Phi(x) = sum V W(F) + sum V_n U(theta_n) + 1/2 sum m (x - c)^2 + W_v(x) - f . x
+//
+// elastic and active energy of points and patches; inertia and mass damping, with coefficient m and centre c of each
+// node; the viscous increment W_v = dt (mu' |dE|^2 + lambda'/2 tr(dE)^2) / dt^2 with dE the change of Green strain in
+// the step, whose derivative is the viscous stress of ViscousStress at the mean rate of the step; dead loads f.
+// Quasi-static steps have neither m nor W_v.
+struct IncrementalPotential {
+  FibreDrive drive;
+  const NodalVector* load = nullptr;      // f [N]
+  std::vector<double> inertia;            // m of each node [N/m]; empty in quasi-static steps
+  NodalVector inertia_centre;             // c [m]
+  const NodalVector* previous = nullptr;  // positions a step ago, for W_v [m]
+  double viscous_rate = 0;                // 1/dt [1/s]; 0 without W_v
+};
+
+// The stress and energy at one point under the potential, without those of patches.
+template <class Element, class Law>
+struct PointPotential {
+  PointPotential(const IncrementalPotential& potential, const TetModel& model, const TetBody& body, const Law& law,
+                 std::size_t tet, int q)
+      : law_(law), fibre_(FibreAt<Element>(model, tet, potential.drive, q)) {
+    if (potential.viscous_rate == 0 || !body.HasStrainDamping()) return;
+    mu_ = body.damping_mu * potential.viscous_rate;
+    lambda_ = body.damping_lambda * potential.viscous_rate;
+    const Mat3 F = GradientAt<Element>(model, tet, ValuesOf<Element>(model, tet, *potential.previous), q);
+    previous_C_ = F.transpose() * F;
+  }
+
+  double Energy(const Mat3& F) const {
+    double energy = law_.Energy(F, fibre_);
+    if (IsViscous()) {
+      const Mat3 dE = StrainChange(F);
+      energy += mu_ * dE.squaredNorm() + 0.5 * lambda_ * dE.trace() * dE.trace();
+    }
+    return energy;
+  }
+
+  Mat3 Stress(const Mat3& F) const {
+    Mat3 P = law_.Stress(F, fibre_);
+    if (IsViscous()) P += F * SecondStress(StrainChange(F));
+    return P;
+  }
+
+  Mat9 Tangent(const Mat3& F) const {
+    Mat9 tangent = law_.Tangent(F, fibre_);
+    if (IsViscous()) {
+      const Vec9 f = Flatten(F);
+      tangent += lambda_ * f * f.transpose();
+      AddRightProduct(1, SecondStress(StrainChange(F)), tangent);
+      AddTransposedProduct(mu_, F, tangent);
+      AddLeftProduct(mu_, F * F.transpose(), tangent);
+    }
+    return tangent;
+  }
+
+ private:
+  bool IsViscous() const { return mu_ != 0 || lambda_ != 0; }
+  Mat3 StrainChange(const Mat3& F) const { return 0.5 * (F.transpose() * F - previous_C_); }
+  Mat3 SecondStress(const Mat3& dE) const { return 2 * mu_ * dE + lambda_ * dE.trace() * Mat3::Identity(); }
+
+  const Law& law_;
+  FibreState fibre_;
+  double mu_ = 0, lambda_ = 0;
+  Mat3 previous_C_ = Mat3::Identity();
+};
+
+// Rest gradients of an element's shape functions at point q, a column for each node [1/m].
+template <class Element>
+Eigen::Matrix<double, 3, Element::kNodes> ShapeGradients(const TetModel& model, std::size_t tet, int q) {
+  Eigen::Matrix<double, 3, 4> g;
+  g.rightCols<3>() = model.Dm_inverse()[tet].transpose();
+  g.col(0) = -g.rightCols<3>().rowwise().sum();
+  Eigen::Matrix<double, 3, Element::kNodes> gradients;
+  for (int a = 0; a < Element::kNodes; ++a) {
+    gradients.col(a).setZero();
+    for (int c = 0; c < 4; ++c) gradients.col(a) += Element::Part(q, c, a) * g.col(c);
+  }
+  return gradients;
+}
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_TET_POTENTIAL_H_

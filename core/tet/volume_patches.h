@@ -1,0 +1,69 @@
+#ifndef FASCICLE_CORE_TET_VOLUME_PATCHES_H_
+#define FASCICLE_CORE_TET_VOLUME_PATCHES_H_
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fascicle {
+
+// Volume ratios averaged around nodes: the cure for volumetric locking.
+//
+// A patch is the dual region of a corner node among elements of one group, weighted by the corner's barycentric
+// coordinate L_n:
+//   V_n = sum of the integrals of L_n over those elements at rest,   theta_n = (1/V_n) sum of the integrals of L_n J.
+// Most of a nearly incompressible law's volume energy acts on theta_n, U = k/2 (ln theta)^2, not on each element's J:
+// there are about six linear elements for each node, too many constraints for its three displacements. With quadratic
+// elements the constraint theta_n = 1 is that of the Taylor-Hood element (linear continuous pressure with a lumped mass
+// matrix), with linear ones that of the nodally averaged tetrahedron [Bonet & Burton 1998]. There pressures can
+// alternate from node to node and balance nothing, so theta is averaged once more, from nodes to elements to nodes (the
+// cyclic smoothing of [Onishi & Amaya 2017]): W, self-adjoint in the inner product weighted by V. See README.md.
+// Immutable once built.
+struct VolumePatches {
+  // The patch at each corner of an element; kNone in elements whose whole volume energy is their own.
+  using Corners = std::array<std::int32_t, 4>;
+  static constexpr std::int32_t kNone = -1;
+
+  std::vector<Corners> of_element;
+  std::vector<double> rest_volume;  // V_n [m^3]
+  std::vector<double> modulus;      // k_n [Pa], volume mean over the patch
+  // The corners that make patch n: corners[begin[n] .. begin[n + 1]), each 4 * element + corner, ascending.
+  std::vector<std::int32_t> begin;
+  std::vector<std::int32_t> corners;
+  // Row n of W: weights weight[k] of patches neighbour[k], k in [row[n], row[n + 1]); empty for W = 1.
+  std::vector<std::int32_t> row, neighbour;
+  std::vector<double> weight;
+
+  // out = W in; both of size(), not the same.
+  void Smooth(std::span<const double> in, std::span<double> out) const {
+    for (std::size_t n = 0; n < size(); ++n) out[n] = row.empty() ? in[n] : RowOf(n, in);
+  }
+  double RowOf(std::size_t n, std::span<const double> in) const {
+    double sum = 0;
+    for (std::int32_t k = row[n]; k < row[n + 1]; ++k) sum += weight[k] * in[neighbour[k]];
+    return sum;
+  }
+
+  std::size_t size() const { return rest_volume.size(); }
+  bool empty() const { return rest_volume.empty(); }
+};
+
+// U = k/2 (ln theta)^2 for one patch of modulus k; not finite where theta <= 0.
+struct PatchEnergy {
+  double k;  // [Pa]
+
+  double Value(double theta) const {
+    const double log_theta = std::log(theta);
+    return 0.5 * k * log_theta * log_theta;
+  }
+  double Pressure(double theta) const { return k * std::log(theta) / theta; }
+  double Slope(double theta) const { return k * (1 - std::log(theta)) / (theta * theta); }
+  // U'' as far as the energy is convex, to theta = e, and a safe positive value from a little before.
+  double ConvexSlope(double theta) const { return Slope(theta < 2 ? theta : 2); }
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_TET_VOLUME_PATCHES_H_
