@@ -13,13 +13,14 @@
 #include "core/materials/neo_hookean.h"
 #include "core/materials/st_venant_kirchhoff.h"
 #include "core/materials/tendon.h"
+#include "core/materials/trans_iso_mooney_rivlin.h"
 
 namespace fascicle {
 
 // The closed list of laws. A new law is a header, an entry here and a message in scene.proto of the same name; range
 // checks, the test battery, `fascicle materials` and the tables in the documentation follow from it.
-using Material =
-    std::variant<LinearElastic, StVenantKirchhoff, CorotatedLinear, NeoHookean, MooneyRivlin, Muscle, Tendon>;
+using Material = std::variant<LinearElastic, StVenantKirchhoff, CorotatedLinear, NeoHookean, MooneyRivlin, Muscle,
+                              Tendon, TransIsoMooneyRivlin>;
 
 // What the list says of a law, without its type.
 struct LawInfo {

@@ -186,6 +186,35 @@ TEST(Muscle, NoEnergyAtRestWhateverTheActivation) {
   EXPECT_LT(muscle.Energy(F, {Vec3::UnitX(), 1}), muscle.Energy(F, {Vec3::UnitX(), 0}));
 }
 
+// Incompressible limit: matrix as Mooney-Rivlin, the fibre's lambda F2', and the Cauchy stress T0 alpha s^2 of the
+// active second Piola-Kirchhoff stress.
+TEST(TransIsoMooneyRivlin, CauchyStressAlongTheFibre) {
+  constexpr double kBulk = 1e12, kC3 = 2e4, kC4 = 8, kC5 = 1.5e6, kLamMax = 1.2, kActive = 3e5;
+  const Material law =
+      FindLaw("trans_iso_mooney_rivlin")->make(std::array{3e4, 1e4, kC3, kC4, kC5, kLamMax, kBulk, kActive});
+  const double c6 = kC3 * (std::exp(kC4 * (kLamMax - 1)) - 1) - kC5 * kLamMax;
+  for (const double alpha : {0.0, 0.4, 1.0}) {
+    for (const double s : {0.8, 1.0, 1.1, 1.2, 1.3, 1.5}) {
+      const double passive = s <= 1 ? 0 : s < kLamMax ? kC3 * (std::exp(kC4 * (s - 1)) - 1) : kC5 * s + c6;
+      const double expected = 2 * (s * s - 1 / s) * (3e4 + 1e4 / s) + passive + kActive * alpha * s * s;
+      const UniaxialPoint p = UniaxialTension(law, alpha, s);
+      ASSERT_TRUE(p.converged);
+      EXPECT_NEAR(p.cauchy_stress, expected, 1e-5 * kActive) << "alpha " << alpha << " s " << s;
+    }
+  }
+}
+
+// The active stress is T0 alpha/J (F a0)(F a0)^T and nothing across the fibre: no pressure, unlike an isochoric one.
+TEST(TransIsoMooneyRivlin, ActiveStressIsAlongTheFibreOnly) {
+  const TransIsoMooneyRivlin law(std::array{3e4, 1e4, 2e4, 8.0, 1.5e6, 1.2, 8e6, 3e5});
+  Mat3 F;
+  F << 1.1, 0.2, 0, -0.1, 0.9, 0.3, 0, 0.1, 1.3;
+  const Vec3 a0 = Vec3(1, 2, -2) / 3;
+  const Mat3 active = law.Stress(F, {a0, 0.7}) - law.Stress(F, {a0, 0});
+  const Vec3 a = F * a0;
+  EXPECT_LE((active * F.transpose() - 0.7 * 3e5 * a * a.transpose()).norm(), 1e-9 * 3e5);
+}
+
 // Slack fibres carry nothing: below stretch one tendon and passive muscle are Mooney-Rivlin.
 TEST(Fibres, CarryNoCompression) {
   const FibreState fibre{Vec3::UnitZ(), 0};
