@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/materials/material.h"
@@ -258,7 +259,10 @@ TEST(UniaxialCurve, GivesEveryStretchAndSaysWhereThereIsNoAnswer) {
 TEST(UniaxialCurve, ConvergesForEveryLawWithItsDefaultsOverTheUsualRange) {
   for (const LawInfo& law : Laws()) {
     std::vector<double> values;
-    for (const ParameterInfo& p : law.parameters) values.push_back(std::isnan(p.default_value) ? 1e5 : p.default_value);
+    for (const ParameterInfo& p : law.parameters) {
+      const double given = std::string_view(p.unit) == "Pa" ? 1e5 : p.min + 1;
+      values.push_back(std::isnan(p.default_value) ? given : p.default_value);
+    }
     const Material material = law.make(values);
     for (const double alpha : {0.0, 0.5, 1.0}) {
       for (double s = 0.6; s < 1.8; s += 0.01) {
