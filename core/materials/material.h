@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_MATERIALS_MATERIAL_H_
 
 #include <span>
+#include <string>
 #include <string_view>
 #include <variant>
 
@@ -31,6 +32,10 @@ struct LawInfo {
   std::span<const ParameterInfo> parameters;
   Material (*make)(std::span<const double> values);  // values in the order of `parameters`, within their ranges
 };
+
+bool InRange(const ParameterInfo& parameter, double value);
+// As in scene.proto: "(0, 1e+12]".
+std::string RangeText(const ParameterInfo& parameter);
 
 // All laws in the order of the list.
 std::span<const LawInfo> Laws();

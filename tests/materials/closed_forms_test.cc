@@ -245,7 +245,7 @@ TEST(Tendon, CauchyStressAlongTheFibre) {
 TEST(UniaxialCurve, GivesEveryStretchAndSaysWhereThereIsNoAnswer) {
   // A linear law narrows to nothing at 1 + 1/nu.
   const std::vector<double> stretches = {0.5, 1, 2, 4.2, 4.4, 6};
-  const std::vector<UniaxialPoint> points = UniaxialCurve(YoungLaw("linear_elastic"), 0, stretches);
+  const std::vector<UniaxialPoint> points = UniaxialCurve(YoungLaw("linear_elastic"), {}, stretches);
   ASSERT_EQ(points.size(), stretches.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(points[i].stretch, stretches[i]);
