@@ -65,6 +65,9 @@ std::vector<Example> AllExamples() {
         if (path.ends_with(".node")) AddFile(path.substr(0, path.size() - 5) + ".ele", example);
       }
       if (body.fibres().has_file()) AddFile(body.fibres().file().path(), example);
+      if (body.has_element_parameters()) AddFile(body.element_parameters().path(), example);
+      if (body.has_activation_scale()) AddFile(body.activation_scale().path(), example);
+      if (body.has_initial_displacement()) AddFile(body.initial_displacement().path(), example);
     }
     examples.push_back(std::move(example));
   }

@@ -26,6 +26,7 @@ constexpr const char* kExamples =
 constexpr const char* kCurveExamples = R"(  fascicle materials curve muscle --activation 0 0.5 1 --stretch 0.6 1.8
   fascicle materials curve tendon --stretch 1 1.1 --csv tendon.csv --out tendon.png
   fascicle materials curve mooney_rivlin --set c1=1e4 --set bulk_modulus=1e6
+  fascicle materials curve muscle --activation 1 --set max_velocity=10 --velocity -5
 
 A bar is stretched along its fibres with free sides; the stress is force per rest area (nominal) and per deformed area
 (Cauchy).
@@ -36,6 +37,7 @@ struct CurveOptions {
   std::vector<std::string> settings;
   std::vector<double> activations = {0};
   std::vector<double> range = {0.6, 1.8};
+  double velocity = 0;  // [1/s]
   int points = 121;
   std::string csv;
   std::string out;
@@ -45,11 +47,6 @@ std::string Number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", value);
   return text;
-}
-
-std::string RangeText(const ParameterInfo& parameter) {
-  return (parameter.min_open ? "(" : "[") + Number(parameter.min) + ", " + Number(parameter.max) +
-         (parameter.max_open ? ")" : "]");
 }
 
 Json LawJson(const LawInfo& law) {
@@ -82,11 +79,6 @@ const LawInfo& LawOrFail(const std::string& name) {
   std::string known;
   for (const LawInfo& law : Laws()) known += std::string(known.empty() ? "" : ", ") + law.name;
   throw CommandError::Invalid("there is no law `" + name + "`; there are: " + known);
-}
-
-bool InRange(const ParameterInfo& p, double value) {
-  return std::isfinite(value) && (p.min_open ? value > p.min : value >= p.min) &&
-         (p.max_open ? value < p.max : value <= p.max);
 }
 
 // The law's parameters: defaults, then what `--set name=value` says; all mistakes at once.
@@ -144,7 +136,7 @@ int Curve(const CurveOptions& options, const Context& context) {
     CsvColumn nominal{"nominal_stress" + suffix + " [Pa]", {}}, cauchy{"cauchy_stress" + suffix + " [Pa]", {}},
         volume{"volume_ratio" + suffix + " [1]", {}};
     PlotLine line{"activation " + Number(activation), stretches, {}};
-    for (const UniaxialPoint& point : UniaxialCurve(material, activation, stretches)) {
+    for (const UniaxialPoint& point : UniaxialCurve(material, {activation, options.velocity}, stretches)) {
       nominal.values.push_back(point.nominal_stress);
       cauchy.values.push_back(point.cauchy_stress);
       volume.values.push_back(point.volume_ratio);
@@ -153,6 +145,7 @@ int Curve(const CurveOptions& options, const Context& context) {
     if (context.json) {
       PrintJson({{"law", law.name},
                  {"activation", activation},
+                 {"velocity", options.velocity},
                  {"stretch", stretches},
                  {"nominal_stress", nominal.values},
                  {"cauchy_stress", cauchy.values},
@@ -203,6 +196,10 @@ void AddMaterials(CLI::App& app, Context& context) {
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("A ...");
   curve->add_option("--stretch", options->range, "Lowest and highest stretch")->expected(2)->type_name("LOW HIGH");
+  curve
+      ->add_option("--velocity", options->velocity,
+                   "Rate of the fibre stretch [1/s], negative while it shortens; for laws that heed it")
+      ->type_name("V");
   curve->add_option("--points", options->points, "Points of a curve")->check(CLI::Range(2, 100000));
   curve->add_option("--csv", options->csv, "Write the curves as a table")->type_name("FILE.csv");
   curve->add_option("--out", options->out, "Draw the curves")->type_name("FILE.png");

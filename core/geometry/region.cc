@@ -22,7 +22,7 @@ double Diagonal(const TetMesh& mesh) {
   return (highest - lowest).norm();
 }
 
-// Nodes that are `inside`, and the surface triangles between them.
+// Nodes that are `inside`, the surface triangles between them, and the tetrahedra with their centroid inside.
 template <class Inside>
 void SelectNodes(const TetMesh& mesh, const std::vector<Triangle>& surface, const Inside& inside, Region& region) {
   std::vector<char> chosen(mesh.nodes.size());
@@ -32,6 +32,11 @@ void SelectNodes(const TetMesh& mesh, const std::vector<Triangle>& surface, cons
   }
   for (const Triangle& triangle : surface) {
     if (chosen[triangle[0]] && chosen[triangle[1]] && chosen[triangle[2]]) region.triangles.push_back(triangle);
+  }
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const auto& [a, b, c, d] = mesh.tetrahedra[t];
+    const Vec3 centroid = 0.25 * (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c] + mesh.nodes[d]);
+    if (inside(centroid)) region.tetrahedra.push_back(static_cast<std::int32_t>(t));
   }
 }
 
@@ -60,9 +65,11 @@ struct Select {
       AddNodes(mesh.tagged_triangles[i], region);
       chosen.push_back(Ascending(mesh.tagged_triangles[i]));
     }
+    for (std::size_t t = 0; t < mesh.tetrahedron_tags.size(); ++t) {
+      if (mesh.tetrahedron_tags[t] == selector.tag) region.tetrahedra.push_back(static_cast<std::int32_t>(t));
+    }
     if (chosen.empty()) {
-      for (std::size_t t = 0; t < mesh.tetrahedron_tags.size(); ++t) {
-        if (mesh.tetrahedron_tags[t] != selector.tag) continue;
+      for (const std::int32_t t : region.tetrahedra) {
         AddNodes(mesh.tetrahedra[t], region);
         for (int side = 0; side < 4; ++side) chosen.push_back(Ascending(OutwardTriangle(mesh.tetrahedra[t], side)));
       }

@@ -33,15 +33,15 @@ using Selector = std::variant<TagSelector, PlaneSelector, BoxSelector, SphereSel
 // A named part of a mesh.
 struct Region {
   std::string name;
-  std::vector<std::int32_t> nodes;  // ascending, no duplicates
-  std::vector<Triangle> triangles;  // of the surface: outward, all nodes in `nodes` (side, tag: the selected ones)
+  std::vector<std::int32_t> nodes;       // ascending, no duplicates
+  std::vector<Triangle> triangles;       // of the surface: outward, all nodes in `nodes` (side, tag: the selected ones)
   std::vector<std::int32_t> tetrahedra;  // ascending; tag: those with it; plane, box, sphere: whose centroid is inside
 };
 
 // Selects what a selector names; may be empty. Tag: the triangles with the tag, and if there are none the tetrahedra
-// with it; triangles inside of the body give nodes only. Side: triangles whose outward normal is within the angle.
-// Round-off allowance of plane, box and sphere: 1e-9 of the mesh's diagonal; of the angle: 1e-9 rad.
-// `surface` must be BoundaryTriangles(mesh).
+// with it; triangles inside of the body give nodes only. Tetrahedra are those with the tag in any case. Side: triangles
+// whose outward normal is within the angle. Round-off allowance of plane, box and sphere: 1e-9 of the mesh's diagonal;
+// of the angle: 1e-9 rad. `surface` must be BoundaryTriangles(mesh).
 Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name,
                     const Selector& selector);
 

@@ -46,6 +46,8 @@ class ExponentialToeCurve {
  public:
   // scale >= 0; exponent > 0; transition > 1.
   ExponentialToeCurve(double scale, double exponent, double transition);
+  // With a line of another slope: then the curve's own slope jumps at the transition.
+  ExponentialToeCurve(double scale, double exponent, double transition, double slope);
 
   double Value(double x) const {
     if (x <= 1) return 0;

@@ -1,7 +1,9 @@
 #include "core/materials/material.h"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <utility>
 
 namespace fascicle {
@@ -25,6 +27,17 @@ constexpr auto InfosOf(std::index_sequence<kIndex...>) {
 constexpr auto kLaws = InfosOf(std::make_index_sequence<std::variant_size_v<Material>>());
 
 }  // namespace
+
+bool InRange(const ParameterInfo& p, double value) {
+  return std::isfinite(value) && (p.min_open ? value > p.min : value >= p.min) &&
+         (p.max_open ? value < p.max : value <= p.max);
+}
+
+std::string RangeText(const ParameterInfo& p) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%c%g, %g%c", p.min_open ? '(' : '[', p.min, p.max, p.max_open ? ')' : ']');
+  return text;
+}
 
 std::span<const LawInfo> Laws() { return kLaws; }
 

@@ -2,9 +2,11 @@
 #define FASCICLE_CORE_MATERIALS_MUSCLE_H_
 
 #include <array>
+#include <cstddef>
 #include <span>
 
 #include "core/materials/fibre_curves.h"
+#include "core/materials/force_velocity.h"
 #include "core/materials/isochoric.h"
 
 namespace fascicle {
@@ -12,10 +14,12 @@ namespace fascicle {
 // Active skeletal muscle: transversely isotropic, nearly incompressible.
 //
 //   W = c1 (I1bar - 3) + c2 (I2bar - 3) + K/2 (ln J)^2 + F2(lambda, alpha)
-//   lambda F2' = smax r [alpha f_act(r) + f_pass(r)],  r = lambda / lo
+//   lambda F2' = smax r [alpha f_act(r) f_v(v) + f_pass(r)],  r = lambda / lo,  v = (r - r_before) / (step vmax)
 //
-// lambda is the isochoric fibre stretch, lo the optimal stretch, smax the peak stress; f_act and f_pass are ActiveCurve
-// and ExponentialToeCurve. F2(1, alpha) = 0, so that W = 0 at rest for every activation. Departs from the letter of
+// lambda is the isochoric fibre stretch, lo the optimal stretch, smax the peak stress, vmax the largest speed of
+// shortening; f_act, f_pass and f_v are ActiveCurve, ExponentialToeCurve and ForceVelocityCurve. Over a step the rate
+// is implicit in F, so the stress still has a potential, the step's own; f_v = 1 where vmax or the step is not given.
+// F2(1, alpha) = 0 for a fibre without rate, so that W = 0 at rest for every activation. Departs from the letter of
 // [Teran 2003, 5]: U = K/2 (ln J)^2, and W4 = dW/d(lambda^2) where the paper's W_lambda reads as dF2/dlambda; see
 // README.md. Not finite where J <= 0.
 class Muscle {
@@ -23,7 +27,7 @@ class Muscle {
   static constexpr const char* kName = "muscle";
   static constexpr const char* kTitle = "Active skeletal muscle";
   static constexpr const char* kSource = "Teran 2003, section 5; Blemker, Pinsky, Delp 2005; Weiss 1996";
-  static constexpr std::array<ParameterInfo, 8> kParameters = {{
+  static constexpr std::array<ParameterInfo, 11> kParameters = {{
       {"c1", "Pa", 0, true, 1e9, false, 500, "matrix coefficient A"},
       {"c2", "Pa", 0, false, 1e9, false, 500, "matrix coefficient B"},
       {"bulk_modulus", "Pa", 0, true, 1e12, false, 1e7, "bulk modulus K"},
@@ -32,35 +36,41 @@ class Muscle {
       {"passive_scale", "1", 0, false, 10, false, 0.05, "scale of the passive curve, relative to the peak stress"},
       {"passive_exponent", "1", 0, true, 100, false, 6.6, "exponent of the passive curve"},
       {"passive_transition", "1", 1, true, 3, false, 1.4, "normalized length from which the passive curve is a line"},
+      {"max_velocity", "1/s", 0, false, 1000, false, 0, "largest shortening in optimal lengths per second; 0: no rate"},
+      {"hill_curvature", "1", 0, true, 10, false, 0.25, "Hill's a over the isometric force"},
+      {"eccentric_force", "1", 1, true, 5, false, 1.4, "plateau of the active stress of a lengthening fibre"},
   }};
   static constexpr bool kNeedsFibres = true;
 
+  // Values that are left off at the end take their defaults.
   explicit Muscle(std::span<const double> values)
       : moduli_{values[0], values[1], values[2]},
         peak_stress_(values[3]),
         length_per_stretch_(1 / values[4]),
         passive_(values[5], values[6], values[7]),
+        max_velocity_(ValueOr(values, 8)),
+        force_velocity_(ValueOr(values, 9), ValueOr(values, 10)),
         active_at_rest_(ActiveCurve::Integral(length_per_stretch_)),
         passive_at_rest_(passive_.Integral(length_per_stretch_)) {}
 
   double Energy(const Mat3& F, const FibreState& fibre) const {
     const IsochoricKinematics k(F);
     const double r = k.FibreStretch(fibre.direction) * length_per_stretch_;
-    return MatrixEnergy(moduli_, k) + peak_stress_ * (fibre.activation * (ActiveCurve::Integral(r) - active_at_rest_) +
+    return MatrixEnergy(moduli_, k) + peak_stress_ * (fibre.activation * (ActiveWork(r, fibre) - active_at_rest_) +
                                                       (passive_.Integral(r) - passive_at_rest_));
   }
 
   Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
     const IsochoricKinematics k(F);
     const double stretch = k.FibreStretch(fibre.direction);
-    const double W4 = Slope(stretch, fibre.activation) / (2 * stretch);
+    const double W4 = Slope(stretch, fibre) / (2 * stretch);
     return NearlyIncompressibleStress(F, k, FibreWeight(moduli_.c1, W4, fibre.direction), moduli_.c2, moduli_.bulk);
   }
 
   Mat9 Tangent(const Mat3& F, const FibreState& fibre) const {
     const IsochoricKinematics k(F);
     const double stretch = k.FibreStretch(fibre.direction);
-    const FibreDerivatives derivatives(stretch, Slope(stretch, fibre.activation), Curvature(stretch, fibre.activation));
+    const FibreDerivatives derivatives(stretch, Slope(stretch, fibre), Curvature(stretch, fibre));
     return FibreTangent(F, k, moduli_, fibre.direction, derivatives);
   }
 
@@ -73,26 +83,62 @@ class Muscle {
     return law;
   }
 
-  // Cauchy stress that the fibre adds along itself at isochoric stretch lambda: lambda F2'(lambda, alpha) [Pa].
-  double FibreStress(double stretch, double activation) const { return stretch * Slope(stretch, activation); }
+  // Cauchy stress that a held fibre adds along itself at isochoric stretch lambda: lambda F2'(lambda, alpha) [Pa].
+  double FibreStress(double stretch, double activation) const {
+    return stretch * Slope(stretch, {Vec3::Zero(), activation});
+  }
 
  private:
+  static double ValueOr(std::span<const double> values, std::size_t index) {
+    return index < values.size() ? values[index] : kParameters[index].default_value;
+  }
+
+  // Normalized velocity for a unit of normalized length gained over the step; 0 where no rate counts.
+  double VelocityPerLength(const FibreState& fibre) const {
+    return max_velocity_ > 0 ? fibre.inverse_step / max_velocity_ : 0;
+  }
+  // Integral of f_act f_v up to r; f_v counts over the step only, so that the integral is that of a held fibre before
+  // it.
+  double ActiveWork(double r, const FibreState& fibre) const {
+    const double rate = VelocityPerLength(fibre);
+    if (rate == 0) return ActiveCurve::Integral(r);
+    const double before = fibre.previous_stretch * length_per_stretch_;
+    return ActiveCurve::Integral(before) + force_velocity_.ActiveWork(before, r, rate);
+  }
+  // f_act f_v.
+  double ActivePull(double r, const FibreState& fibre) const {
+    const double rate = VelocityPerLength(fibre);
+    if (rate == 0) return ActiveCurve::Value(r);
+    const double v = rate * (r - fibre.previous_stretch * length_per_stretch_);
+    return ActiveCurve::Value(r) * force_velocity_.Value(v);
+  }
+  // Its derivative by r, to which the rate adds, as it is never negative.
+  double ActiveStiffness(double r, const FibreState& fibre) const {
+    const double rate = VelocityPerLength(fibre);
+    if (rate == 0) return ActiveCurve::Derivative(r);
+    const double v = rate * (r - fibre.previous_stretch * length_per_stretch_);
+    return ActiveCurve::Derivative(r) * force_velocity_.Value(v) +
+           ActiveCurve::Value(r) * force_velocity_.Derivative(v) * rate;
+  }
+
   // F2'(lambda) [Pa].
-  double Slope(double stretch, double activation) const {
+  double Slope(double stretch, const FibreState& fibre) const {
     const double r = stretch * length_per_stretch_;
-    return peak_stress_ * length_per_stretch_ * (activation * ActiveCurve::Value(r) + passive_.Value(r));
+    return peak_stress_ * length_per_stretch_ * (fibre.activation * ActivePull(r, fibre) + passive_.Value(r));
   }
   // F2''(lambda) [Pa].
-  double Curvature(double stretch, double activation) const {
+  double Curvature(double stretch, const FibreState& fibre) const {
     const double r = stretch * length_per_stretch_;
     return peak_stress_ * length_per_stretch_ * length_per_stretch_ *
-           (activation * ActiveCurve::Derivative(r) + passive_.Derivative(r));
+           (fibre.activation * ActiveStiffness(r, fibre) + passive_.Derivative(r));
   }
 
   MatrixModuli moduli_;
   double peak_stress_;         // smax [Pa]
   double length_per_stretch_;  // 1 / lo
   ExponentialToeCurve passive_;
+  double max_velocity_;  // vmax [1/s]
+  ForceVelocityCurve force_velocity_;
   double active_at_rest_, passive_at_rest_;  // integrals of the curves up to lambda = 1
 };
 static_assert(ConstitutiveModel<Muscle>);

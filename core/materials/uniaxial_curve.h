@@ -20,11 +20,20 @@ struct UniaxialPoint {
   bool converged = false;
 };
 
-// stretch > 0; activation in [0, 1]. Thread-safe, as all of this room.
-UniaxialPoint UniaxialTension(const Material& material, double activation, double stretch);
+// What the muscle does meanwhile.
+struct Contraction {
+  double activation = 0;  // in [0, 1]
+  double velocity = 0;    // rate of the isochoric fibre stretch [1/s], negative while it shortens
+};
+
+// stretch > 0. Thread-safe, as all of this room.
+UniaxialPoint UniaxialTension(const Material& material, const Contraction& contraction, double stretch);
+inline UniaxialPoint UniaxialTension(const Material& material, double activation, double stretch) {
+  return UniaxialTension(material, Contraction{activation}, stretch);
+}
 
 // The same for each of `stretches`: what `fascicle materials curve` prints and draws.
-std::vector<UniaxialPoint> UniaxialCurve(const Material& material, double activation,
+std::vector<UniaxialPoint> UniaxialCurve(const Material& material, const Contraction& contraction,
                                          std::span<const double> stretches);
 
 }  // namespace fascicle

@@ -56,6 +56,10 @@ void CheckCurves(const Scene& scene, Problems& problems) {
     const Body& body = scene.bodies[i];
     const std::string path = IndexPath("bodies", i);
     CheckActivation(body.activation, JoinPath(path, "activation"), problems);
+    for (std::size_t k = 0; k < body.more_activations.size(); ++k) {
+      CheckActivation(body.more_activations[k], JoinPath(path, JoinPath(IndexPath("region_activations", k), "curve")),
+                      problems);
+    }
     for (std::size_t k = 0; k < body.constraints.size(); ++k) {
       CheckMotion(body.constraints[k].motion, JoinPath(path, JoinPath(IndexPath("constraints", k), "motion")),
                   problems);

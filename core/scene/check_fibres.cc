@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "core/scene/checks.h"
@@ -6,7 +7,11 @@ namespace fascicle::scene_checks {
 namespace {
 
 void CheckBody(const Body& body, const std::string& path, Problems& problems) {
-  const bool needed = std::visit([](const auto& law) { return law.kNeedsFibres; }, body.material);
+  const auto needs = [](const Material& material) {
+    return std::visit([](const auto& law) { return law.kNeedsFibres; }, material);
+  };
+  const bool needed =
+      needs(body.material) || std::any_of(body.more_materials.begin(), body.more_materials.end(), needs);
   if (body.fibres.empty()) {
     if (needed) {
       problems.Add(path, "this material needs fibre directions",

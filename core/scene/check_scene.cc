@@ -5,6 +5,9 @@ namespace fascicle {
 void CheckScene(const Scene& scene, Problems& problems) {
   scene_checks::CheckBodies(scene, problems);
   scene_checks::CheckCurves(scene, problems);
+  scene_checks::CheckMaterials(scene, problems);
+  scene_checks::CheckActivations(scene, problems);
+  scene_checks::CheckInitialDisplacement(scene, problems);
   scene_checks::CheckFibres(scene, problems);
   scene_checks::CheckConstraints(scene, problems);
   scene_checks::CheckLoads(scene, problems);

@@ -1,6 +1,11 @@
 #ifndef FASCICLE_CORE_SCENE_CHECKS_H_
 #define FASCICLE_CORE_SCENE_CHECKS_H_
 
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "core/scene/scene.h"
 
 // The checks that CheckScene runs, one to a file. Each adds what it finds to `problems` and leaves the rest alone.
@@ -8,7 +13,13 @@ namespace fascicle::scene_checks {
 
 // At least one body; each with tetrahedra, a positive density and a name of its own.
 void CheckBodies(const Scene& scene, Problems& problems);
-// Fibre directions where the law needs them: one for each tetrahedron, finite and of unit length.
+// Materials of the parts of a body: one for each tetrahedron, of those that there are.
+void CheckMaterials(const Scene& scene, Problems& problems);
+// Activations of the parts likewise, and what each tetrahedron makes of its own: within [0, 1].
+void CheckActivations(const Scene& scene, Problems& problems);
+// Initial displacements: one for each node, finite.
+void CheckInitialDisplacement(const Scene& scene, Problems& problems);
+// Fibre directions where a law needs them: one for each tetrahedron, finite and of unit length.
 void CheckFibres(const Scene& scene, Problems& problems);
 // Curves: as many values as times, times increasing, all finite; activations within [0, 1].
 void CheckCurves(const Scene& scene, Problems& problems);
@@ -20,6 +31,10 @@ void CheckLoads(const Scene& scene, Problems& problems);
 void CheckSupports(const Scene& scene, Problems& problems);
 // Probes that follow a node that exists; the number of frames; duration.
 void CheckOutput(const Scene& scene, Problems& problems);
+
+// `parts` is empty or has, for each tetrahedron, 0 or one of the numbers of `others`, counted from 1.
+void CheckPartNumbers(const std::vector<std::int32_t>& parts, std::size_t tetrahedra, std::size_t others,
+                      const std::string& path, Problems& problems);
 
 }  // namespace fascicle::scene_checks
 

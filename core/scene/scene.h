@@ -8,12 +8,12 @@
 #include <variant>
 #include <vector>
 
+#include "core/base/curve.h"
 #include "core/base/problems.h"
 #include "core/geometry/region.h"
 #include "core/geometry/tet_mesh.h"
 #include "core/materials/material.h"
 #include "core/muscle/fibre_field.h"
-#include "core/scene/curve.h"
 
 namespace fascicle {
 

@@ -1,7 +1,7 @@
 #include "core/sim/fingerprint.h"
 
-#include <cmath>
 #include <span>
+#include <type_traits>
 
 namespace fascicle {
 namespace {
@@ -59,17 +59,13 @@ class Fingerprint {
     Put(motion.rotation->angle);
   }
 
-  // Stretches along, across and between the axes, short and long of every bend in a fibre curve.
+  // A law holds nothing but numbers, which follow from its parameters.
   void Put(const Material& material) {
     Put(material.index());
     std::visit(
-        [this](const auto& law) {
-          for (const double stretch : {0.45, 0.7, 0.95, 1.01, 1.05, 1.3, 1.7, 2.5, 4.0}) {
-            Mat3 F = Mat3::Identity() / std::sqrt(stretch);
-            F(0, 0) = 1.01 * stretch;
-            F(0, 1) = 0.1;
-            for (const double activation : {0.0, 1.0}) PutItems(law.Stress(F, FibreState{Vec3::UnitX(), activation}));
-          }
+        [this]<class Law>(const Law& law) {
+          static_assert(std::is_trivially_copyable_v<Law> && sizeof(Law) % sizeof(double) == 0);
+          sha_.Update(std::as_bytes(std::span(&law, 1)));
         },
         material);
   }
@@ -80,6 +76,9 @@ class Fingerprint {
     PutItems(body.mesh.tetrahedra);
     Put(body.density);
     Put(body.material);
+    Put(body.more_materials.size());
+    for (const Material& material : body.more_materials) Put(material);
+    PutItems(body.material_of);
     PutItems(body.fibres);
     Put(body.regions.size());
     for (const Region& region : body.regions) {
@@ -101,6 +100,11 @@ class Fingerprint {
       Put(load.scale);
     }
     Put(body.activation);
+    Put(body.more_activations.size());
+    for (const Curve& activation : body.more_activations) Put(activation);
+    PutItems(body.activation_of);
+    PutItems(body.activation_scale);
+    PutItems(body.initial_displacement);
     Put(body.damping.mass_proportional);
     Put(body.damping.stiffness_proportional);
     Put(body.damping.viscosity);

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "core/base/curve.h"
 #include "core/base/problems.h"
-#include "core/scene/curve.h"
 #include "fascicle/v1/scene.pb.h"
 
 namespace fascicle::server {

@@ -48,16 +48,26 @@ FibreField TranslateSource(const v1::Fibres& fibres, const std::string& path, co
   return own.empty() ? field : FibreField();
 }
 
+// A law of the body, or of a part of it, that needs fibres; nullptr when none does.
+const LawInfo* LawWithFibres(const v1::Body& body) {
+  const LawInfo* law = LawOf(body.material());
+  if (law != nullptr && law->needs_fibres) return law;
+  for (const v1::RegionMaterial& part : body.region_materials()) {
+    law = LawOf(part.material());
+    if (law != nullptr && law->needs_fibres) return law;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 FibreField TranslateFibres(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
                            const TranslatedRegions& regions, const AssetReader& assets, Problems& problems) {
   const std::string path = JoinPath(body_path, "fibres");
   FibreField fibres;
-  const LawInfo* law = LawOf(body.material());
   if (body.has_fibres()) {
     fibres = TranslateSource(body.fibres(), path, mesh, regions, assets, problems);
-  } else if (law != nullptr && law->needs_fibres) {
+  } else if (const LawInfo* law = LawWithFibres(body)) {
     problems.Add(path, std::string("is missing: the law `") + law->name + "` needs fibre directions",
                  "give one of: constant, file, harmonic");
   } else {

@@ -1,7 +1,6 @@
 #include "server/translate/materials.h"
 
 #include <stdexcept>
-#include <vector>
 
 #include "server/translate/values.h"
 
@@ -30,20 +29,26 @@ const LawInfo* LawOf(const v1::Material& material) {
   return law;
 }
 
-Material TranslateMaterial(const v1::Body& body, const std::string& body_path, Problems& problems) {
+std::vector<double> ParametersOf(const v1::Material& material) {
+  const auto& message = material.GetReflection()->GetMessage(material, LawField(material));
+  std::vector<double> values;
+  for (const ParameterInfo& parameter : LawOf(material)->parameters) {
+    values.push_back(Parameter(message, parameter.name));
+  }
+  return values;
+}
+
+Material TranslateMaterial(const v1::Material* material, const std::string& owner_path, Problems& problems) {
   const Material neutral = Body().material;
-  if (!body.has_material()) {
+  if (material == nullptr) {
     std::string names;
     for (const LawInfo& law : Laws()) names += (names.empty() ? "" : ", ") + std::string(law.name);
-    problems.Add(JoinPath(body_path, "material"), "is missing", "give one of: " + names);
+    problems.Add(JoinPath(owner_path, "material"), "is missing", "give one of: " + names);
     return neutral;
   }
-  const LawInfo* law = LawOf(body.material());
-  if (law == nullptr || !ObeysRules(body.material())) return neutral;
-  const auto& message = body.material().GetReflection()->GetMessage(body.material(), LawField(body.material()));
-  std::vector<double> values;
-  for (const ParameterInfo& parameter : law->parameters) values.push_back(Parameter(message, parameter.name));
-  return law->make(values);
+  const LawInfo* law = LawOf(*material);
+  if (law == nullptr || !ObeysRules(*material)) return neutral;
+  return law->make(ParametersOf(*material));
 }
 
 Damping TranslateDamping(const v1::Body& body) {

@@ -2,6 +2,7 @@
 #define FASCICLE_SERVER_TRANSLATE_MATERIALS_H_
 
 #include <string>
+#include <vector>
 
 #include "core/base/problems.h"
 #include "core/materials/material.h"
@@ -13,8 +14,12 @@ namespace fascicle::server {
 // The law that a material message names; nullptr when it names none.
 const LawInfo* LawOf(const v1::Material& material);
 
-// The material of a body, defaults filled in. A soft isotropic one stands for a wrong one in later checks.
-Material TranslateMaterial(const v1::Body& body, const std::string& body_path, Problems& problems);
+// The values of its law's parameters in their order, defaults filled in; it names a law and obeys the rules.
+std::vector<double> ParametersOf(const v1::Material& material);
+
+// The material that a body or a part of it has; nullptr, a problem, where there is none. A soft isotropic one stands
+// for a wrong one in later checks.
+Material TranslateMaterial(const v1::Material* material, const std::string& owner_path, Problems& problems);
 
 Damping TranslateDamping(const v1::Body& body);
 

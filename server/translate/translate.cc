@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "proto/rules/field_rules.h"
-#include "server/translate/curves.h"
 #include "server/translate/fibres.h"
 #include "server/translate/materials.h"
 #include "server/translate/meshes.h"
 #include "server/translate/names.h"
 #include "server/translate/outputs.h"
+#include "server/translate/parts.h"
 #include "server/translate/regions.h"
 #include "server/translate/scene_checks.h"
 #include "server/translate/supports_and_loads.h"
@@ -40,17 +40,14 @@ struct TranslatedBody {
   bool complete = false;
 };
 
-TranslatedBody TranslateBody(const v1::Body& wire, const std::string& path, const AssetReader& assets,
+TranslatedBody TranslateBody(const v1::Body& wire, const std::string& path, double duration, const AssetReader& assets,
                              std::int64_t& budget, Problems& problems) {
   TranslatedBody result;
   Body& body = result.body;
   body.name = wire.name();
   if (std::isfinite(wire.density()) && wire.density() > 0) body.density = wire.density();
-  body.material = TranslateMaterial(wire, path, problems);
+  body.material = TranslateMaterial(wire.has_material() ? &wire.material() : nullptr, path, problems);
   body.damping = TranslateDamping(wire);
-  if (wire.has_activation()) {
-    body.activation = TranslateCurve(wire.activation(), kActivationCurve, JoinPath(path, "activation"), problems);
-  }
 
   Problems structure;
   auto mesh = TranslateMesh(wire, path, assets, budget, structure);
@@ -63,7 +60,11 @@ TranslatedBody TranslateBody(const v1::Body& wire, const std::string& path, cons
                     std::all_of(wire.loads().begin(), wire.loads().end(), ObeysRules);
   problems.Append("", structure);
 
+  const TetMesh* tetrahedra = mesh ? &mesh->mesh : nullptr;
   body.fibres = TranslateFibres(wire, path, mesh ? &*mesh : nullptr, regions, assets, problems);
+  TranslateMaterialParts(wire, path, tetrahedra, regions, assets, body, problems);
+  TranslateActivations(wire, path, duration, tetrahedra, regions, assets, body, problems);
+  TranslateInitialDisplacement(wire, path, tetrahedra, assets, body, problems);
   body.regions = std::move(regions.regions);
   if (mesh) body.mesh = std::move(mesh->mesh);
   return result;
@@ -82,6 +83,9 @@ std::vector<std::string> AssetsOf(const v1::Scene& scene) {
     add(body.mesh().file());
     add(body.mesh().elements());
     add(body.fibres().file());
+    add(body.element_parameters());
+    add(body.activation_scale());
+    add(body.initial_displacement());
   }
   return digests;
 }
@@ -106,7 +110,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   for (int i = 0; i < filled.bodies_size(); ++i) {
     const std::string path = IndexPath("bodies", static_cast<std::size_t>(i));
     names.Add(filled.bodies(i).name(), JoinPath(path, "name"), found);
-    TranslatedBody body = TranslateBody(filled.bodies(i), path, assets, budget, found);
+    TranslatedBody body = TranslateBody(filled.bodies(i), path, filled.duration(), assets, budget, found);
     complete.push_back(body.complete);
     result->bodies.push_back(std::move(body.body));
   }

@@ -210,7 +210,7 @@ TEST_F(CliTest, SchemaTellsUnitsRangesAndDefaults) {
 
 TEST_F(CliTest, MaterialCurvesAsTableAndPlot) {
   const Finished list = Fascicle({"materials", "--json"});
-  EXPECT_EQ(Lines(list.out).size(), 7u);
+  EXPECT_EQ(Lines(list.out).size(), 8u);
   const Finished curve = Fascicle({"materials", "curve", "muscle", "--activation", "0", "1", "--stretch", "1", "1.4",
                                    "--points", "5", "--csv", folder_ / "curve.csv", "--out", folder_ / "curve.png"});
   EXPECT_EQ(curve.exit_code, 0) << curve.err;
@@ -224,6 +224,16 @@ TEST_F(CliTest, MaterialCurvesAsTableAndPlot) {
   ASSERT_EQ(curves.size(), 2u);
   EXPECT_NEAR(curves[0]["nominal_stress"][0].get<double>(), 0, 1e-6) << "no stress at rest";
   EXPECT_GT(curves[1]["nominal_stress"][4], curves[0]["nominal_stress"][4]) << "activation pulls";
+  const std::vector<json> slow =
+      Lines(Fascicle({"materials", "curve", "muscle", "--activation", "1", "--set", "max_velocity=10", "--velocity",
+                      "-7", "--stretch", "1", "1.4", "--points", "5", "--json"})
+                .out);
+  ASSERT_EQ(slow.size(), 1u);
+  // -7/s at an optimal stretch of 1.4 is half of the largest speed: Hill's (1 - 0.5)/(1 + 0.5/0.25) of the active
+  // stress.
+  const double held = curves[1]["cauchy_stress"][4].get<double>() - curves[0]["cauchy_stress"][4].get<double>();
+  EXPECT_NEAR(slow[0]["cauchy_stress"][4].get<double>() - curves[0]["cauchy_stress"][4].get<double>(), held / 6,
+              0.01 * held);
   const Finished bad = Fascicle({"materials", "curve", "neo_hookean", "--set", "poisson_ratio=0.7", "--set", "x=1"});
   EXPECT_EQ(bad.exit_code, 2);
   EXPECT_THAT(bad.err,

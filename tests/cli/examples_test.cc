@@ -51,10 +51,11 @@ TEST_F(ExampleTest, NoneIsForgotten) {
   for (std::string line; std::getline(list, line);) names.insert(json::parse(line)["example"]);
   // The last two need real anatomy and are run in tests/verification; the isometric spindle takes the demonstration's
   // time.
-  EXPECT_THAT(names, ::testing::UnorderedElementsAre("bar_tension", "bar_twist", "cantilever_gravity", "mesh_file",
-                                                     "muscle_lifts", "rubber_stretch", "sphere_hanging", "tendon_pull",
-                                                     "torus_ringing", "fusiform_isometric", "biceps_isometric",
-                                                     "biceps_femoris_isometric"));
+  EXPECT_THAT(names, ::testing::UnorderedElementsAre(
+                         "bar_of_two_materials", "bar_tension", "bar_twist", "cantilever_gravity", "graded_bar",
+                         "let_go", "mesh_file", "muscle_lifts", "partial_recruitment", "rubber_stretch",
+                         "sphere_hanging", "tendon_pull", "torus_ringing", "twitch", "two_compartments",
+                         "fusiform_isometric", "biceps_isometric", "biceps_femoris_isometric"));
 }
 
 TEST_F(ExampleTest, BarTension) {
@@ -133,6 +134,22 @@ TEST_F(ExampleTest, TorusRinging) {
   }
   EXPECT_GT(lowest, 0);
   EXPECT_LT(highest / lowest, 1.01);
+}
+
+TEST_F(ExampleTest, Twitch) {
+  const json summary = RunExample("twitch");
+  EXPECT_NEAR(Final(summary, "strip/activation"), 0.8, 1e-4);
+  EXPECT_LT(Final(summary, "strip/reaction/left/x"), 0);
+}
+
+// Written with their files, and sound.
+TEST_F(ExampleTest, PartsOfBodiesAreValid) {
+  for (const std::string name :
+       {"bar_of_two_materials", "graded_bar", "two_compartments", "partial_recruitment", "let_go"}) {
+    RunProgram({FASCICLE_PROGRAM, "examples", "write", name, "--out", folder_.path().string()});
+    const Finished finished = RunProgram({FASCICLE_PROGRAM, "validate", folder_ / (name + ".json")});
+    EXPECT_EQ(finished.exit_code, 0) << finished.out << finished.err;
+  }
 }
 
 }  // namespace

@@ -55,6 +55,19 @@ TEST_F(RegionTest, PlaneTakesNodesOnAndBeyondIt) {
   EXPECT_TRUE(Select(PlaneSelector{{0.91, 0, 0}, {1, 0, 0}}).nodes.empty());
 }
 
+// 9 x 4 x 4 hexahedra of six tetrahedra each: those of whole layers, for no centroid lies on a node's plane.
+TEST_F(RegionTest, TetrahedraAreThoseWithTheirCentroidInside) {
+  const auto count = [&](const Selector& selector) { return Select(selector).tetrahedra.size(); };
+  EXPECT_EQ(count(PlaneSelector{{0.3, 0, 0}, {-1, 0, 0}}), 3u * 16u * 6u);
+  EXPECT_EQ(count(PlaneSelector{{0.9, 0, 0}, {1, 0, 0}}), 0u);
+  EXPECT_EQ(count(BoxSelector{{0.1, 0.1, 0.1}, {0.3, 0.2, 0.4}}), 2u * 1u * 3u * 6u);
+  EXPECT_EQ(count(SphereSelector{{0.45, 0.2, 0.2}, 1}), mesh_.tetrahedra.size());
+  EXPECT_EQ(count(SideSelector{{0, 0, 1}, 0.1}), 0u);
+  mesh_.tetrahedron_tags.assign(mesh_.tetrahedra.size(), 1);
+  mesh_.tetrahedron_tags[5] = mesh_.tetrahedron_tags[77] = 3;
+  EXPECT_EQ(Select(TagSelector{3}).tetrahedra, (std::vector<std::int32_t>{5, 77}));
+}
+
 TEST_F(RegionTest, BoxIncludesItsFaces) {
   EXPECT_EQ(Select(BoxSelector{{0.1, 0.1, 0.1}, {0.3, 0.2, 0.1}}).nodes.size(), 6u);
   EXPECT_EQ(Select(BoxSelector{{-1, -1, -1}, {1, 1, 1}}).nodes.size(), mesh_.nodes.size());

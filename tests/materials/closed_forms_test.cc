@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/materials/material.h"
@@ -186,6 +187,35 @@ TEST(Muscle, NoEnergyAtRestWhateverTheActivation) {
   EXPECT_LT(muscle.Energy(F, {Vec3::UnitX(), 1}), muscle.Energy(F, {Vec3::UnitX(), 0}));
 }
 
+// Incompressible limit: matrix as Mooney-Rivlin, the fibre's lambda F2', and the Cauchy stress T0 alpha s^2 of the
+// active second Piola-Kirchhoff stress.
+TEST(TransIsoMooneyRivlin, CauchyStressAlongTheFibre) {
+  constexpr double kBulk = 1e12, kC3 = 2e4, kC4 = 8, kC5 = 1.5e6, kLamMax = 1.2, kActive = 3e5;
+  const Material law =
+      FindLaw("trans_iso_mooney_rivlin")->make(std::array{3e4, 1e4, kC3, kC4, kC5, kLamMax, kBulk, kActive});
+  const double c6 = kC3 * (std::exp(kC4 * (kLamMax - 1)) - 1) - kC5 * kLamMax;
+  for (const double alpha : {0.0, 0.4, 1.0}) {
+    for (const double s : {0.8, 1.0, 1.1, 1.2, 1.3, 1.5}) {
+      const double passive = s <= 1 ? 0 : s < kLamMax ? kC3 * (std::exp(kC4 * (s - 1)) - 1) : kC5 * s + c6;
+      const double expected = 2 * (s * s - 1 / s) * (3e4 + 1e4 / s) + passive + kActive * alpha * s * s;
+      const UniaxialPoint p = UniaxialTension(law, alpha, s);
+      ASSERT_TRUE(p.converged);
+      EXPECT_NEAR(p.cauchy_stress, expected, 1e-5 * kActive) << "alpha " << alpha << " s " << s;
+    }
+  }
+}
+
+// The active stress is T0 alpha/J (F a0)(F a0)^T and nothing across the fibre: no pressure, unlike an isochoric one.
+TEST(TransIsoMooneyRivlin, ActiveStressIsAlongTheFibreOnly) {
+  const TransIsoMooneyRivlin law(std::array{3e4, 1e4, 2e4, 8.0, 1.5e6, 1.2, 8e6, 3e5});
+  Mat3 F;
+  F << 1.1, 0.2, 0, -0.1, 0.9, 0.3, 0, 0.1, 1.3;
+  const Vec3 a0 = Vec3(1, 2, -2) / 3;
+  const Mat3 active = law.Stress(F, {a0, 0.7}) - law.Stress(F, {a0, 0});
+  const Vec3 a = F * a0;
+  EXPECT_LE((active * F.transpose() - 0.7 * 3e5 * a * a.transpose()).norm(), 1e-9 * 3e5);
+}
+
 // Slack fibres carry nothing: below stretch one tendon and passive muscle are Mooney-Rivlin.
 TEST(Fibres, CarryNoCompression) {
   const FibreState fibre{Vec3::UnitZ(), 0};
@@ -215,7 +245,7 @@ TEST(Tendon, CauchyStressAlongTheFibre) {
 TEST(UniaxialCurve, GivesEveryStretchAndSaysWhereThereIsNoAnswer) {
   // A linear law narrows to nothing at 1 + 1/nu.
   const std::vector<double> stretches = {0.5, 1, 2, 4.2, 4.4, 6};
-  const std::vector<UniaxialPoint> points = UniaxialCurve(YoungLaw("linear_elastic"), 0, stretches);
+  const std::vector<UniaxialPoint> points = UniaxialCurve(YoungLaw("linear_elastic"), {}, stretches);
   ASSERT_EQ(points.size(), stretches.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(points[i].stretch, stretches[i]);
@@ -229,7 +259,10 @@ TEST(UniaxialCurve, GivesEveryStretchAndSaysWhereThereIsNoAnswer) {
 TEST(UniaxialCurve, ConvergesForEveryLawWithItsDefaultsOverTheUsualRange) {
   for (const LawInfo& law : Laws()) {
     std::vector<double> values;
-    for (const ParameterInfo& p : law.parameters) values.push_back(std::isnan(p.default_value) ? 1e5 : p.default_value);
+    for (const ParameterInfo& p : law.parameters) {
+      const double given = std::string_view(p.unit) == "Pa" ? 1e5 : p.min + 1;
+      values.push_back(std::isnan(p.default_value) ? given : p.default_value);
+    }
     const Material material = law.make(values);
     for (const double alpha : {0.0, 0.5, 1.0}) {
       for (double s = 0.6; s < 1.8; s += 0.01) {

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/scene/scene.h"
 #include "tet_scenes.h"
 
@@ -74,6 +76,70 @@ TEST(CheckSceneTest, FibreThatIsNoDirection) {
   Scene scene = GoodScene();
   scene.bodies[0].fibres[5] *= 2;
   EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 5"));
+}
+
+TEST(CheckSceneTest, FibresThatOnlyAPartNeeds) {
+  Scene scene = GoodScene();
+  Body& body = scene.bodies[0];
+  body.more_materials = {body.material};
+  body.material = NeoHookean(std::array{1e4, 0.3});
+  body.material_of.assign(body.mesh.tetrahedra.size(), 0);
+  body.material_of[3] = 1;
+  body.fibres.clear();
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].fibres");
+}
+
+TEST(CheckSceneTest, PartsWithMaterialsAndActivationsThatThereAreNot) {
+  const std::size_t tetrahedra = GoodScene().bodies[0].mesh.tetrahedra.size();
+  for (const bool of_material : {true, false}) {
+    Scene scene = GoodScene();
+    Body& body = scene.bodies[0];
+    auto& parts = of_material ? body.material_of : body.activation_of;
+    const std::string path = of_material ? "bodies[0].region_materials" : "bodies[0].region_activations";
+    parts.assign(tetrahedra, 0);
+    Problems none;
+    CheckScene(scene, none);
+    EXPECT_TRUE(none.empty()) << none.ToString();
+    parts[7] = 1;
+    EXPECT_EQ(ProblemOf(scene).path, path);
+    EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 7"));
+    parts[7] = -1;
+    EXPECT_EQ(ProblemOf(scene).path, path);
+    parts.assign(tetrahedra - 1, 0);
+    EXPECT_THAT(ProblemOf(scene).message, HasSubstr("71 entries for 72"));
+  }
+}
+
+TEST(CheckSceneTest, ActivationOfAPartOutsideItsRange) {
+  Scene scene = GoodScene();
+  scene.bodies[0].more_activations = {Curve::Constant(1), Curve::Constant(2)};
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].region_activations[1].curve.values");
+}
+
+TEST(CheckSceneTest, ActivationScale) {
+  Scene scene = GoodScene();
+  std::vector<double>& scale = scene.bodies[0].activation_scale;
+  scale.assign(scene.bodies[0].mesh.tetrahedra.size(), 0.5);
+  scale[9] = 1.5;
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].activation_scale");
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 9"));
+  scale[9] = std::nan("");
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 9"));
+  scale[9] = 1;
+  scale.pop_back();
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("71 values for 72"));
+}
+
+TEST(CheckSceneTest, InitialDisplacement) {
+  Scene scene = GoodScene();
+  std::vector<Vec3>& displacement = scene.bodies[0].initial_displacement;
+  displacement.assign(scene.bodies[0].mesh.nodes.size(), Vec3(0, 0, 1e-3));
+  displacement[2].y() = std::nan("");
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].initial_displacement");
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("node 2"));
+  displacement[2].y() = 0;
+  displacement.pop_back();
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("35 displacements for 36"));
 }
 
 TEST(CheckSceneTest, ActivationOutsideItsRange) {

@@ -207,19 +207,102 @@ TEST(TranslateScene, EstimatesShapesExactly) {
   }
 }
 
+// The material of each tetrahedron of a box of 2 x 3 x 4 hexahedra, x fastest, six tetrahedra each.
+const Material& MaterialOf(const Body& body, std::size_t tetrahedron) {
+  const std::int32_t part = body.material_of[tetrahedron];
+  return part == 0 ? body.material : body.more_materials[static_cast<std::size_t>(part - 1)];
+}
+
+double ShearModulus(const Material& material) {
+  return std::visit([](const auto& law) { return law.ShearModulus(); }, material);
+}
+
+TEST(TranslateScene, PartsOfABodyTakeTheirMaterials) {
+  v1::Scene wire = BoxScene();
+  Files files;
+  v1::Body& body = *wire.mutable_bodies(0);
+  google::protobuf::TextFormat::MergeFromString(R"(
+    regions { name: "upper" plane { point: [0, 0, 2] normal: [0, 0, 1] } }
+    regions { name: "uppermost" plane { point: [0, 0, 3] normal: [0, 0, 1] } }
+    region_materials { region: "upper" material { neo_hookean { young_modulus: 2e4 poisson_ratio: 0 } } }
+    region_materials { region: "uppermost" material { mooney_rivlin { c1: 3e4 bulk_modulus: 1e6 } } }
+    element_parameters { path: "p.txt" })",
+                                                &body);
+  std::string text = "poisson_ratio young_modulus # columns\n";
+  for (int t = 0; t < 144; ++t) text += "0 " + std::to_string(1000 + t) + "\n";
+  body.mutable_element_parameters()->set_asset(files.Add(text));
+  const auto scene = Translate(wire, files);
+  ASSERT_NE(scene, nullptr);
+  const Body& box = scene->bodies[0];
+  ASSERT_EQ(box.material_of.size(), 144u);
+  EXPECT_EQ(box.more_materials.size(), 2u + 72u);
+  EXPECT_NEAR(ShearModulus(box.material), 1e4 / 2.6, 1e-9);
+  for (std::size_t t = 0; t < 72; ++t) EXPECT_NEAR(ShearModulus(MaterialOf(box, t)), (1000.0 + t) / 2, 1e-9);
+  for (std::size_t t = 72; t < 108; ++t) EXPECT_NEAR(ShearModulus(MaterialOf(box, t)), 1e4, 1e-9);
+  for (std::size_t t = 108; t < 144; ++t) EXPECT_TRUE(std::holds_alternative<MooneyRivlin>(MaterialOf(box, t)));
+}
+
+TEST(TranslateScene, PartsOfABodyTakeTheirActivations) {
+  v1::Scene wire = BoxScene();
+  Files files;
+  v1::Body& body = *wire.mutable_bodies(0);
+  google::protobuf::TextFormat::MergeFromString(R"(
+    regions { name: "upper" plane { point: [0, 0, 2] normal: [0, 0, 1] } }
+    activation { times: 0 values: 0.25 }
+    region_activations { region: "upper" curve { times: [0, 1] values: [0, 0.75] } }
+    activation_scale { path: "s.txt" } initial_displacement { path: "u.txt" })",
+                                                &body);
+  std::string scale, displacement;
+  for (int t = 0; t < 144; ++t) scale += std::to_string(t / 200.0) + "\n";
+  for (int n = 0; n < 60; ++n) displacement += std::to_string(n) + " 0 -0.5\n";
+  body.mutable_activation_scale()->set_asset(files.Add(scale));
+  body.mutable_initial_displacement()->set_asset(files.Add(displacement));
+  const auto scene = Translate(wire, files);
+  ASSERT_NE(scene, nullptr);
+  const Body& box = scene->bodies[0];
+  EXPECT_EQ(box.activation.values, std::vector<double>({0.25}));
+  ASSERT_EQ(box.more_activations.size(), 1u);
+  EXPECT_EQ(box.more_activations[0].values, std::vector<double>({0, 0.75}));
+  ASSERT_EQ(box.activation_of.size(), 144u);
+  for (std::size_t t = 0; t < 144; ++t) EXPECT_EQ(box.activation_of[t], t < 72 ? 0 : 1);
+  ASSERT_EQ(box.activation_scale.size(), 144u);
+  EXPECT_EQ(box.activation_scale[100], 0.5);
+  ASSERT_EQ(box.initial_displacement.size(), 60u);
+  EXPECT_LT((box.initial_displacement[7] - Vec3(0.07, 0, -0.005)).norm(), 1e-17);
+}
+
+TEST(TranslateScene, AnExcitationBecomesAnActivation) {
+  v1::Scene wire = BoxScene();
+  google::protobuf::TextFormat::MergeFromString(
+      R"(excitation { curve { times: 0 values: 1 } activation_time: 0.02 initial_activation: 0.5 })",
+      wire.mutable_bodies(0));
+  const auto scene = Translate(wire);
+  ASSERT_NE(scene, nullptr);
+  const Curve& activation = scene->bodies[0].activation;
+  EXPECT_EQ(activation.At(0), 0.5);
+  // t = tau (-2 ln(1 - a) - 1.5 a), less the same at the start.
+  const auto time = [](double a) { return 0.02 * (-2 * std::log(1 - a) - 1.5 * a); };
+  EXPECT_NEAR(activation.At(time(0.9) - time(0.5)), 0.9, 1e-4);
+}
+
 TEST(AssetsOf, NamesEachAssetOnce) {
   Files files;
   const std::string mesh = files.Add("a"), elements = files.Add("b"), fibres = files.Add("c");
+  const std::string parameters = files.Add("d"), scale = files.Add("e"), displacement = files.Add("f");
   v1::Scene scene;
   for (int i = 0; i < 2; ++i) {
     v1::Body& body = *scene.add_bodies();
     body.mutable_mesh()->mutable_file()->set_asset(mesh);
     body.mutable_mesh()->mutable_elements()->set_asset(elements);
     body.mutable_fibres()->mutable_file()->set_asset(fibres);
+    body.mutable_element_parameters()->set_asset(parameters);
+    body.mutable_activation_scale()->set_asset(scale);
+    body.mutable_initial_displacement()->set_asset(displacement);
   }
   scene.add_bodies()->mutable_mesh()->mutable_file()->set_asset("assets/XYZ");
   scene.add_bodies()->mutable_mesh()->mutable_box();
-  EXPECT_THAT(AssetsOf(scene), ElementsAre(mesh.substr(7), elements.substr(7), fibres.substr(7)));
+  EXPECT_THAT(AssetsOf(scene), ElementsAre(mesh.substr(7), elements.substr(7), fibres.substr(7), parameters.substr(7),
+                                           scale.substr(7), displacement.substr(7)));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-#ifndef FASCICLE_CORE_SCENE_CURVE_H_
-#define FASCICLE_CORE_SCENE_CURVE_H_
+#ifndef FASCICLE_CORE_BASE_CURVE_H_
+#define FASCICLE_CORE_BASE_CURVE_H_
 
 #include <vector>
 
@@ -24,4 +24,4 @@ struct Curve {
 
 }  // namespace fascicle
 
-#endif  // FASCICLE_CORE_SCENE_CURVE_H_
+#endif  // FASCICLE_CORE_BASE_CURVE_H_

@@ -1,4 +1,4 @@
-#include "core/scene/curve.h"
+#include "core/base/curve.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,0 +1,148 @@
+#include "core/muscle/activation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace fascicle {
+namespace {
+
+constexpr std::size_t kMaxPoints = 10'000;
+
+// These add up to less than 1e-4: points left out, the arcs between two steps, and what is left when it rests. An arc
+// is (step/tau)^2 / 2 at most where an activation begins to rise, and, where the excitation rises in a time T < tau,
+// (step/T)^2 / 5 at most.
+constexpr double kLeftOut = 5e-5;
+constexpr double kStepsPerTimeConstant = 256;
+constexpr double kStepsPerInterval = 128;
+constexpr double kRest = 1e-5;
+
+double TimeConstant(double u, double a, const ActivationDynamics& dynamics) {
+  const double slowing = 0.5 + 1.5 * a;
+  return u > a ? dynamics.activation_time * slowing : dynamics.deactivation_time / slowing;
+}
+
+// The smaller of both: where the excitation stands still at the activation, it may be about to turn either way.
+double LeastTimeConstant(double a, const ActivationDynamics& dynamics) {
+  return std::min(TimeConstant(1, a, dynamics), TimeConstant(0, a, dynamics));
+}
+
+// A step of the classical Runge-Kutta method of fourth order.
+double Stepped(const Curve& excitation, const ActivationDynamics& dynamics, double time, double a, double step) {
+  const auto rate = [&](double offset, double value) {
+    const double u = excitation.At(time + offset);
+    return (u - value) / TimeConstant(u, value, dynamics);
+  };
+  const double k1 = rate(0, a);
+  const double k2 = rate(step / 2, a + step / 2 * k1);
+  const double k3 = rate(step / 2, a + step / 2 * k2);
+  const double k4 = rate(step, a + step * k3);
+  return std::clamp(a + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4), 0.0, 1.0);
+}
+
+// The largest step from `time` that keeps within `limit`, and, where excitation and activation cross, that ends there:
+// the time constant jumps.
+double StepBefore(const Curve& excitation, const ActivationDynamics& dynamics, double time, double a, double limit) {
+  constexpr double kClose = 1e-7;
+  const double ahead = excitation.At(time) - a;
+  const double least = 1e-5 * LeastTimeConstant(a, dynamics);
+  double step = limit;
+  while (step > least) {
+    const double ahead_then = excitation.At(time + step) - Stepped(excitation, dynamics, time, a, step);
+    if (ahead * ahead_then >= 0 || std::abs(ahead_then) < kClose) break;
+    step /= 2;
+  }
+  return step;
+}
+
+// A curve of straight lines through some of the points that it is given, with all others within a tolerance: a line
+// grows until no slope from its start passes all points closely enough.
+class LineFitter {
+ public:
+  explicit LineFitter(double tolerance) : tolerance_(tolerance) {}
+
+  // Times must not decrease; a point that was added already counts once.
+  void Add(double time, double value) {
+    if (curve_.times.empty()) {
+      Push(time, value);
+    } else if (time == time_) {
+      return;
+    } else {
+      const double slope = SlopeTo(time, value);
+      if (slope < low_ || slope > high_) Push(time_, value_);
+      low_ = std::max(low_, SlopeTo(time, value - tolerance_));
+      high_ = std::min(high_, SlopeTo(time, value + tolerance_));
+    }
+    time_ = time;
+    value_ = value;
+  }
+
+  Curve Finish() {
+    if (time_ > curve_.times.back()) Push(time_, value_);
+    return std::move(curve_);
+  }
+
+ private:
+  double SlopeTo(double time, double value) const {
+    return (value - curve_.values.back()) / (time - curve_.times.back());
+  }
+  void Push(double time, double value) {
+    curve_.times.push_back(time);
+    curve_.values.push_back(value);
+    low_ = -std::numeric_limits<double>::infinity();
+    high_ = std::numeric_limits<double>::infinity();
+  }
+
+  double tolerance_;
+  Curve curve_;
+  double time_ = 0, value_ = 0;  // the last point
+  double low_ = 0, high_ = 0;    // slopes that pass all points since the last one of the curve
+};
+
+// Follows the excitation, which has no bend in between, from `begin` to `end` or, where it is held, until the
+// activation rests. Returns the activation then.
+double Follow(const Curve& excitation, const ActivationDynamics& dynamics, double begin, double end, double a,
+              LineFitter& fitter) {
+  const bool held = excitation.At(begin) == excitation.At(end);
+  double time = begin;
+  while (time < end) {
+    const double u = excitation.At(time);
+    if (held && std::abs(u - a) <= kRest) break;
+    double limit = std::min(LeastTimeConstant(a, dynamics) / kStepsPerTimeConstant, end - time);
+    if (!held) limit = std::min(limit, (end - begin) / kStepsPerInterval);
+    const double step = StepBefore(excitation, dynamics, time, a, limit);
+    a = Stepped(excitation, dynamics, time, a, step);
+    time = time + step < end ? time + step : end;
+    fitter.Add(time, a);
+  }
+  return a;
+}
+
+}  // namespace
+
+Curve ActivationOf(const Curve& excitation, const ActivationDynamics& dynamics, double duration, Problems& problems) {
+  LineFitter fitter(kLeftOut);
+  double a = dynamics.initial_activation;
+  fitter.Add(0, a);
+  double begin = 0;
+  for (const double time : excitation.times) {
+    if (time <= begin) continue;
+    if (time >= duration) break;
+    a = Follow(excitation, dynamics, begin, time, a, fitter);
+    fitter.Add(time, a);
+    begin = time;
+  }
+  Follow(excitation, dynamics, begin, duration, a, fitter);
+  Curve activation = fitter.Finish();
+  if (activation.times.size() <= kMaxPoints) return activation;
+  problems.Add({},
+               "its activation changes so often that it takes " + std::to_string(activation.times.size()) +
+                   " points to follow it",
+               "at most 10,000: shorten the scene, or let the excitation change less often");
+  return Curve::Constant(dynamics.initial_activation);
+}
+
+}  // namespace fascicle
