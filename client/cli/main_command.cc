@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <iostream>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
@@ -31,6 +32,7 @@ int Main(int argc, char** argv) {
       ->envname("FASCICLE_SERVER")
       ->type_name("HOST:PORT");
   app.add_flag("--json", context.json, "Write one JSON object a line to stdout");
+  app.set_version_flag("--version", std::string("fascicle ") + FASCICLE_VERSION);
   app.require_subcommand(1);
   app.footer(kFooter);
   AddRun(app, context);

@@ -27,6 +27,10 @@ if(FASCICLE_SANITIZE)
   add_compile_options(-fsanitize=${FASCICLE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g1)
   add_link_options(-fsanitize=${FASCICLE_SANITIZE})
 endif()
+if(FASCICLE_SANITIZE MATCHES "address" AND NOT FASCICLE_FUZZ)
+  target_sources(fascicle_settings INTERFACE
+    $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${CMAKE_CURRENT_LIST_DIR}/keep_libraries_loaded.cc>)
+endif()
 
 # Precompiled headers: parsing Eigen, gRPC and Google Test would otherwise take most of a build. Headers stay
 # self-contained all the same: tests/architecture compiles each without them.

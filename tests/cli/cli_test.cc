@@ -74,6 +74,12 @@ TEST_F(CliTest, HelpTellsExitCodesAndExamples) {
   }
 }
 
+TEST_F(CliTest, TellsItsVersion) {
+  const Finished version = Fascicle({"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_THAT(version.out, ::testing::MatchesRegex("fascicle [0-9.]+\n"));
+}
+
 TEST_F(CliTest, WrongCommandLinesAreInvalidInput) {
   EXPECT_EQ(Fascicle({}).exit_code, 2);
   EXPECT_EQ(Fascicle({"fly"}).exit_code, 2);

@@ -1,0 +1,49 @@
+// A file of its own: where gcc sees both ends of operator new and delete, it takes them for mismatched.
+#include "allocation_count.h"
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+std::atomic<long> count = 0;
+
+}  // namespace
+
+long fascicle::testing::AllocationCount() { return count; }
+
+// Eigen's matrices take their memory from malloc: the linker sends the calls of all that is linked statically here, and
+// those of operator new below come this way too.
+extern "C" {
+// NOLINTBEGIN(readability-identifier-naming): the linker's names
+void* __real_malloc(std::size_t size);
+void* __real_realloc(void* block, std::size_t size);
+void* __wrap_malloc(std::size_t size) {
+  ++count;
+  return __real_malloc(size);
+}
+void* __wrap_realloc(void* block, std::size_t size) {
+  ++count;
+  return __real_realloc(block, size);
+}
+// NOLINTEND(readability-identifier-naming)
+}
+
+// The array and nothrow forms of the standard library come down to these.
+void* operator new(std::size_t size) {
+  void* block = std::malloc(size);
+  if (block == nullptr) throw std::bad_alloc();
+  return block;
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++count;
+  const auto unit = static_cast<std::size_t>(alignment);
+  void* block = std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
+  if (block == nullptr) throw std::bad_alloc();
+  return block;
+}
+void operator delete(void* block) noexcept { std::free(block); }
+void operator delete(void* block, std::size_t) noexcept { std::free(block); }
+void operator delete(void* block, std::align_val_t) noexcept { std::free(block); }
+void operator delete(void* block, std::size_t, std::align_val_t) noexcept { std::free(block); }
