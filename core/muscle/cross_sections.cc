@@ -34,10 +34,13 @@ std::vector<Piece> PiecesAlong(const TetMesh& mesh, const std::vector<double>& p
 
 }  // namespace
 
-CrossSections::CrossSections(const TetMesh& mesh, const std::vector<double>& potential) {
-  Cut(mesh, potential);
-  Smooth();
-  LayFrames();
+std::optional<CrossSections> CrossSections::Make(const TetMesh& mesh, const std::vector<double>& potential) {
+  CrossSections sections;
+  sections.Cut(mesh, potential);
+  if (sections.slices_.size() < 2) return std::nullopt;
+  sections.Smooth();
+  sections.LayFrames();
+  return sections;
 }
 
 void CrossSections::Cut(const TetMesh& mesh, const std::vector<double>& potential) {

@@ -1,6 +1,8 @@
 #ifndef FASCICLE_CORE_MUSCLE_CROSS_SECTIONS_H_
 #define FASCICLE_CORE_MUSCLE_CROSS_SECTIONS_H_
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/geometry/tet_mesh.h"
@@ -10,8 +12,8 @@ namespace fascicle {
 // A muscle cut into slices along its harmonic potential: a middle line, and what lies across it.
 class CrossSections {
  public:
-  // `potential` at the nodes, in [0, 1]; at least one tetrahedron in which it is not the same everywhere.
-  CrossSections(const TetMesh& mesh, const std::vector<double>& potential);
+  // `potential` at the nodes, in [0, 1]. Nothing for a mesh too short to be cut in two.
+  static std::optional<CrossSections> Make(const TetMesh& mesh, const std::vector<double>& potential);
 
   // Length of the middle line up to a potential, from 0 at potential 0 to 1 at potential 1.
   double Along(double potential) const;
@@ -33,6 +35,7 @@ class CrossSections {
     double fraction;
   };
 
+  CrossSections() = default;
   void Cut(const TetMesh& mesh, const std::vector<double>& potential);
   void Smooth();
   void LayFrames();

@@ -1,6 +1,10 @@
 #include "core/muscle/muscle_solid.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <iomanip>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -10,6 +14,8 @@
 
 namespace fascicle {
 namespace {
+
+constexpr double kMostMissed = 0.05;  // rms distance of a usable fit, of the body's diagonal; muscles have 0.005
 
 // Whether a potential is the same, that of a region, at all of a cell's nodes.
 template <class Cell>
@@ -66,6 +72,18 @@ std::vector<SolidSample> MakeSamples(const TetMesh& mesh, const std::vector<doub
   return samples;
 }
 
+double Diagonal(const TetMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& X : mesh.nodes) box.extend(X);
+  return box.diagonal().norm();
+}
+
+std::string Rounded(double value) {
+  std::ostringstream text;
+  text << std::setprecision(2) << value;
+  return text.str();
+}
+
 // At most kMost samples, evenly chosen: more cost memory and change nothing.
 void Thin(std::vector<SolidSample>& samples) {
   constexpr std::size_t kMost = 100'000;
@@ -75,6 +93,18 @@ void Thin(std::vector<SolidSample>& samples) {
   samples.resize((samples.size() + stride - 1) / stride);
 }
 
+std::optional<SolidFit> FitAlong(const TetMesh& mesh, const std::vector<double>& potential,
+                                 const MuscleSolidOptions& options) {
+  const auto sections = CrossSections::Make(mesh, potential);
+  if (!sections) return std::nullopt;
+  const auto across = ParametersAcross(mesh, potential, *sections);
+  if (!across) return std::nullopt;
+  std::vector<SolidSample> samples = MakeSamples(mesh, potential, *sections, *across);
+  Thin(samples);
+  const auto basis = [&](std::size_t d) { return BsplineBasis::Uniform(options.degrees[d], options.controls[d]); };
+  return FitBsplineSolid({basis(0), basis(1), basis(2)}, samples, options.smoothing);
+}
+
 }  // namespace
 
 std::optional<SolidFit> FitMuscleSolid(const TetMesh& mesh, std::span<const std::int32_t> origin,
@@ -82,18 +112,14 @@ std::optional<SolidFit> FitMuscleSolid(const TetMesh& mesh, std::span<const std:
                                        Problems& problems) {
   const auto harmonic = SolveHarmonicPotential(mesh, origin, insertion, problems);
   if (!harmonic) return std::nullopt;
-  const CrossSections sections(mesh, harmonic->values);
-  const auto across = ParametersAcross(mesh, harmonic->values, sections);
-  std::optional<SolidFit> fit;
-  if (across) {
-    std::vector<SolidSample> samples = MakeSamples(mesh, harmonic->values, sections, *across);
-    Thin(samples);
-    const auto basis = [&](std::size_t d) { return BsplineBasis::Uniform(options.degrees[d], options.controls[d]); };
-    fit = FitBsplineSolid({basis(0), basis(1), basis(2)}, samples, options.smoothing);
-  }
+  auto fit = FitAlong(mesh, harmonic->values, options);
   if (!fit) {
     problems.Add({}, "no B-spline solid could be fitted to the mesh",
                  "choose regions at the two ends of the muscle, with a surface between them");
+  } else if (fit->rms > kMostMissed * Diagonal(mesh)) {
+    problems.Add({}, "the fitted B-spline solid misses the mesh: its nodes are " + Rounded(fit->rms) + " m off (rms)",
+                 "refine the mesh along the muscle, or choose regions at its two ends");
+    fit.reset();
   }
   return fit;
 }

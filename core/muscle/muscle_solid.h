@@ -14,7 +14,7 @@ namespace fascicle {
 
 struct MuscleSolidOptions {
   std::array<int, 3> degrees = {3, 3, 3};    // along u, v, w; 1 to 5
-  std::array<int, 3> controls = {6, 6, 12};  // along u, v, w; each larger than its degree
+  std::array<int, 3> controls = {5, 5, 16};  // along u, v, w; each larger than its degree
   double smoothing = 1e-3;                   // see FitBsplineSolid
 };
 
@@ -24,7 +24,7 @@ struct MuscleSolidOptions {
 //   u, v   harmonic inside; on the surface between the regions the circle about (1/2, 1/2), by the angle at the middle
 //          line of the slice's cross-section scaled round
 // so that lines of constant (u, v) follow the surface. A disc has no corners, the square's are free: no fibre passes
-// there. Problems (nothing is returned): those of HarmonicFibres, no surface between the regions, no fit.
+// there. Problems (nothing is returned): those of HarmonicFibres, no fit, or one that misses the nodes.
 std::optional<SolidFit> FitMuscleSolid(const TetMesh& mesh, std::span<const std::int32_t> origin,
                                        std::span<const std::int32_t> insertion, const MuscleSolidOptions& options,
                                        Problems& problems);

@@ -356,7 +356,7 @@ TEST(ReadBsplineSolid, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(message(""), HasSubstr("file ends where bspline_solid"));
   EXPECT_THAT(message("solid"), HasSubstr("expected bspline_solid but found `solid`"));
   EXPECT_THAT(message(head + "degrees 1 1 x"), HasSubstr("line 2: expected a degree"));
-  EXPECT_THAT(message(head + "degrees 1 1 1 controls 2 2 2000000000000 points 1 1 1 1 1 1"),
+  EXPECT_THAT(message(head + "degrees 1 1 1 controls 2 2 2000000000000 points" + std::string(200, ' ')),
               HasSubstr("2000000000000 control points"));
   EXPECT_THAT(message(head + "degrees 1 1 1 controls 9 9 9 points" + std::string(200, ' ')),
               HasSubstr("control points"));
