@@ -108,7 +108,7 @@ TranslatedRegions TranslateRegions(const v1::Body& body, const std::string& body
     const v1::Region& region = body.regions(i);
     const std::string path = JoinPath(body_path, IndexPath("regions", static_cast<std::size_t>(i)));
     result.names.Add(region.name(), JoinPath(path, "name"), problems);
-    result.regions.push_back({region.name(), {}, {}});
+    result.regions.push_back({region.name(), {}, {}, {}});
     const auto selector = TranslateSelector(region, MetresIn(body.unit()), path, problems);
     if (mesh == nullptr || !selector) continue;
     result.regions.back() = SelectRegion(*mesh, surface, region.name(), *selector);
