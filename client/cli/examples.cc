@@ -65,6 +65,7 @@ std::vector<Example> AllExamples() {
         if (path.ends_with(".node")) AddFile(path.substr(0, path.size() - 5) + ".ele", example);
       }
       if (body.fibres().has_file()) AddFile(body.fibres().file().path(), example);
+      if (body.fibres().bspline().has_file()) AddFile(body.fibres().bspline().file().path(), example);
     }
     examples.push_back(std::move(example));
   }

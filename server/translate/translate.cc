@@ -82,6 +82,7 @@ std::vector<std::string> AssetsOf(const v1::Scene& scene) {
     add(body.mesh().file());
     add(body.mesh().elements());
     add(body.fibres().file());
+    add(body.fibres().bspline().file());
   }
   return digests;
 }
