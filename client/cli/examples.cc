@@ -68,6 +68,7 @@ std::vector<Example> AllExamples() {
       if (body.has_element_parameters()) AddFile(body.element_parameters().path(), example);
       if (body.has_activation_scale()) AddFile(body.activation_scale().path(), example);
       if (body.has_initial_displacement()) AddFile(body.initial_displacement().path(), example);
+      if (body.fibres().bspline().has_file()) AddFile(body.fibres().bspline().file().path(), example);
     }
     examples.push_back(std::move(example));
   }

@@ -14,6 +14,11 @@ double SignedVolume(const TetMesh& mesh, std::size_t tetrahedron) {
   return (mesh.nodes[b] - origin).cross(mesh.nodes[c] - origin).dot(mesh.nodes[d] - origin) / 6;
 }
 
+Vec3 Centroid(const TetMesh& mesh, std::size_t tetrahedron) {
+  const auto& [a, b, c, d] = mesh.tetrahedra[tetrahedron];
+  return (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c] + mesh.nodes[d]) / 4;
+}
+
 double TotalVolume(const TetMesh& mesh) {
   double volume = 0;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) volume += SignedVolume(mesh, t);

@@ -23,6 +23,8 @@ struct TetMesh {
 
 // det[X1-X0, X2-X0, X3-X0] / 6 [m^3].
 double SignedVolume(const TetMesh& mesh, std::size_t tetrahedron);
+// Mean of the four nodes [m].
+Vec3 Centroid(const TetMesh& mesh, std::size_t tetrahedron);
 // Sum of the signed volumes [m^3].
 double TotalVolume(const TetMesh& mesh);
 // Faces that belong to one tetrahedron only, outward oriented, in a fixed order.

@@ -15,7 +15,7 @@ void CheckBody(const Body& body, const std::string& path, Problems& problems) {
   if (body.fibres.empty()) {
     if (needed) {
       problems.Add(path, "this material needs fibre directions",
-                   "give constant, file or harmonic fibres, or choose an isotropic material");
+                   "give constant, file, harmonic or bspline fibres, or choose an isotropic material");
     }
     return;
   }

@@ -2,6 +2,9 @@
 
 #include <utility>
 
+#include "core/muscle/pennation.h"
+#include "server/translate/bspline_fibres.h"
+#include "server/translate/fibre_ends.h"
 #include "server/translate/materials.h"
 #include "server/translate/values.h"
 
@@ -10,25 +13,18 @@ namespace {
 
 FibreField TranslateHarmonic(const v1::HarmonicFibres& harmonic, const std::string& path, const TranslatedMesh* mesh,
                              const TranslatedRegions& regions, Problems& problems) {
-  const auto origin = regions.names.Find(harmonic.origin(), JoinPath(path, "origin"), problems);
-  const auto insertion = regions.names.Find(harmonic.insertion(), JoinPath(path, "insertion"), problems);
-  if (!origin || !insertion) return {};
-  if (*origin == *insertion) {
-    problems.Add(JoinPath(path, "insertion"), "is the region of the origin, too", "give two different regions");
-    return {};
-  }
-  const auto& from = regions.regions[*origin].nodes;
-  const auto& to = regions.regions[*insertion].nodes;
-  // Empty regions and broken meshes have been reported.
-  if (mesh == nullptr || !mesh->sound || from.empty() || to.empty()) return {};
+  const auto ends = FindFibreEnds(harmonic, path, regions, problems);
+  // Broken meshes have been reported.
+  if (!ends || mesh == nullptr || !mesh->sound) return {};
   Problems own;
-  FibreField fibres = HarmonicFibres(mesh->mesh, from, to, own);
+  FibreField fibres = HarmonicFibres(mesh->mesh, ends->origin, ends->insertion, own);
   problems.Append(path, own);
   return own.empty() ? fibres : FibreField();
 }
 
-FibreField TranslateSource(const v1::Fibres& fibres, const std::string& path, const TranslatedMesh* mesh,
-                           const TranslatedRegions& regions, const AssetReader& assets, Problems& problems) {
+FibreField TranslateSource(const v1::Fibres& fibres, v1::LengthUnit unit, const std::string& path,
+                           const TranslatedMesh* mesh, const TranslatedRegions& regions, const AssetReader& assets,
+                           Problems& problems) {
   if (fibres.has_constant()) {
     Problems own;
     const Vec3 direction = ToDirection(fibres.constant().direction(), JoinPath(path, "constant.direction"), own);
@@ -37,6 +33,9 @@ FibreField TranslateSource(const v1::Fibres& fibres, const std::string& path, co
   }
   if (fibres.has_harmonic()) {
     return TranslateHarmonic(fibres.harmonic(), JoinPath(path, "harmonic"), mesh, regions, problems);
+  }
+  if (fibres.has_bspline()) {
+    return TranslateBsplineFibres(fibres.bspline(), unit, JoinPath(path, "bspline"), mesh, regions, assets, problems);
   }
   if (!fibres.has_file()) return {};
   const std::string file_path = JoinPath(path, "file");
@@ -59,6 +58,17 @@ const LawInfo* LawWithFibres(const v1::Body& body) {
   return nullptr;
 }
 
+void TranslatePennation(const v1::Pennation& wire, double unit, const std::string& path, const TranslatedMesh* mesh,
+                        FibreField& fibres, Problems& problems) {
+  Problems own;
+  Pennation pennation{.angle = wire.angle(), .normal = ToDirection(wire.normal(), "normal", own), .mirror_point = {}};
+  if (wire.mirror_point_size() == 3) pennation.mirror_point = unit * ToVec3(wire.mirror_point());
+  if (own.empty() && ObeysRules(wire) && mesh != nullptr && !fibres.empty()) {
+    Pennate(mesh->mesh, pennation, fibres, own);
+  }
+  problems.Append(path, own);
+}
+
 }  // namespace
 
 FibreField TranslateFibres(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
@@ -66,10 +76,14 @@ FibreField TranslateFibres(const v1::Body& body, const std::string& body_path, c
   const std::string path = JoinPath(body_path, "fibres");
   FibreField fibres;
   if (body.has_fibres()) {
-    fibres = TranslateSource(body.fibres(), path, mesh, regions, assets, problems);
+    fibres = TranslateSource(body.fibres(), body.unit(), path, mesh, regions, assets, problems);
+    if (body.fibres().has_pennation()) {
+      TranslatePennation(body.fibres().pennation(), MetresIn(body.unit()), JoinPath(path, "pennation"), mesh, fibres,
+                         problems);
+    }
   } else if (const LawInfo* law = LawWithFibres(body)) {
     problems.Add(path, std::string("is missing: the law `") + law->name + "` needs fibre directions",
-                 "give one of: constant, file, harmonic");
+                 "give one of: constant, file, harmonic, bspline");
   } else {
     return {};
   }

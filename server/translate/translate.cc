@@ -86,6 +86,7 @@ std::vector<std::string> AssetsOf(const v1::Scene& scene) {
     add(body.element_parameters());
     add(body.activation_scale());
     add(body.initial_displacement());
+    add(body.fibres().bspline().file());
   }
   return digests;
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -22,8 +23,17 @@ class ExampleTest : public ::testing::Test {
     const Finished written =
         RunProgram({FASCICLE_PROGRAM, "examples", "write", name, "--out", folder_.path().string()});
     EXPECT_EQ(written.exit_code, 0) << written.err;
-    std::vector<std::string> command = {FASCICLE_PROGRAM, "run",       folder_ / (name + ".json"),
-                                        "--json",         "--threads", "2"};
+    return Run(folder_ / (name + ".json"), more);
+  }
+  // The same of an example whose first body has other fibres.
+  json RunWithFibres(const std::string& name, const std::function<void(json&)>& change) {
+    json scene = json::parse(RunProgram({FASCICLE_PROGRAM, "examples", "show", name}).out, nullptr, true, true);
+    change(scene["bodies"][0]["fibres"]);
+    WriteText(folder_ / "changed.json", scene.dump());
+    return Run(folder_ / "changed.json", {});
+  }
+  static json Run(const std::string& scene, const std::vector<std::string>& more) {
+    std::vector<std::string> command = {FASCICLE_PROGRAM, "run", scene, "--json", "--threads", "2"};
     command.insert(command.end(), more.begin(), more.end());
     const Finished finished = RunProgram(command);
     EXPECT_EQ(finished.exit_code, 0) << finished.out << finished.err;
@@ -52,10 +62,10 @@ TEST_F(ExampleTest, NoneIsForgotten) {
   // The last two need real anatomy and are run in tests/verification; the isometric spindle takes the demonstration's
   // time.
   EXPECT_THAT(names, ::testing::UnorderedElementsAre(
-                         "bar_of_two_materials", "bar_tension", "bar_twist", "cantilever_gravity", "graded_bar",
-                         "let_go", "mesh_file", "muscle_lifts", "partial_recruitment", "rubber_stretch",
-                         "sphere_hanging", "tendon_pull", "torus_ringing", "twitch", "two_compartments",
-                         "fusiform_isometric", "biceps_isometric", "biceps_femoris_isometric"));
+                         "bar_of_two_materials", "bar_tension", "bar_twist", "cantilever_gravity", "fusiform_bipennate",
+                         "fusiform_bspline", "graded_bar", "let_go", "mesh_file", "muscle_lifts", "partial_recruitment",
+                         "rubber_stretch", "sphere_hanging", "tendon_pull", "torus_ringing", "twitch",
+                         "two_compartments", "fusiform_isometric", "biceps_isometric", "biceps_femoris_isometric"));
 }
 
 TEST_F(ExampleTest, BarTension) {
@@ -80,6 +90,31 @@ TEST_F(ExampleTest, CantileverGravity) {
   const double theory = 1.5 * 1026 * 9.81 * std::pow(0.04, 4) / (4e5 * 0.0125 * 0.0125);
   EXPECT_LT(-Final(summary, "probe/tip/z"), theory);
   EXPECT_GT(-Final(summary, "probe/tip/z"), 0.85 * theory);
+}
+
+TEST_F(ExampleTest, FusiformBipennate) {
+  const json summary = RunExample("fusiform_bipennate");
+  const double pull = Final(summary, "muscle/reaction/insertion/z");
+  EXPECT_GT(pull, 1);
+  EXPECT_LT(std::abs(Final(summary, "muscle/reaction/insertion/x")), 0.001 * pull);
+
+  const json leaning =
+      RunWithFibres("fusiform_bipennate", [](json& fibres) { fibres["pennation"].erase("mirror_point"); });
+  EXPECT_GT(std::abs(Final(leaning, "muscle/reaction/insertion/x")), 0.02 * pull);
+  const json parallel = RunWithFibres("fusiform_bipennate", [](json& fibres) { fibres.erase("pennation"); });
+  EXPECT_LT(pull, 0.85 * Final(parallel, "muscle/reaction/insertion/z"));
+}
+
+TEST_F(ExampleTest, FusiformBspline) {
+  const json summary = RunExample("fusiform_bspline");
+  const double pull = Final(summary, "muscle/reaction/insertion/z");
+  EXPECT_GT(pull, 1);
+  EXPECT_NEAR(Final(summary, "muscle/reaction/origin/z"), -pull, 0.01 * pull);
+  EXPECT_GT(Final(summary, "probe/belly/x"), 0);
+  const json harmonic = RunWithFibres("fusiform_bspline", [](json& fibres) {
+    fibres = {{"harmonic", {{"origin", "origin"}, {"insertion", "insertion"}}}};
+  });
+  EXPECT_NEAR(pull, Final(harmonic, "muscle/reaction/insertion/z"), 0.1 * pull);
 }
 
 TEST_F(ExampleTest, MeshFile) {

@@ -32,12 +32,6 @@ std::vector<std::int32_t> NodesWhere(const TetMesh& mesh, const auto& predicate)
   return nodes;
 }
 
-Vec3 Centroid(const TetMesh& mesh, std::size_t e) {
-  Vec3 sum = Vec3::Zero();
-  for (const std::int32_t n : mesh.tetrahedra[e]) sum += mesh.nodes[static_cast<std::size_t>(n)];
-  return sum / 4;
-}
-
 // --- Constant --------------------------------------------------------------------------------------------------------
 
 TEST(ConstantFibres, AreUnitWhateverTheLength) {

@@ -187,6 +187,55 @@ TEST(TranslateScene, ReadsFibresOfEverySource) {
   EXPECT_LT((read->bodies[0].fibres.back() - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
 }
 
+TEST(TranslateScene, ReadsBsplineFibres) {
+  Files files;
+  v1::Scene wire = BoxScene();
+  v1::Body& body = *wire.mutable_bodies(0);
+  v1::BsplineFibres& bspline = *body.mutable_fibres()->mutable_bspline();
+  bspline.mutable_fitted()->set_origin("bottom");
+  bspline.mutable_fitted()->set_insertion("top");
+  const auto fitted = Translate(wire);
+  ASSERT_NE(fitted, nullptr);
+  ASSERT_EQ(fitted->bodies[0].fibres.size(), fitted->bodies[0].mesh.tetrahedra.size());
+  for (const Vec3& direction : fitted->bodies[0].fibres) EXPECT_GT(direction.z(), 0.9);
+
+  // A block around the body in its unit, cm, whose fibres lean along y by 3 in 4.
+  bspline.mutable_file()->set_path("solid.txt");
+  bspline.mutable_file()->set_asset(files.Add(R"(bspline_solid degrees 1 1 1 controls 2 2 2 points
+    -1 -9 -1   3 -9 -1   -1 9 -1   3 9 -1
+    -1 -3  7   3 -3  7   -1 15 7   3 15 7)"));
+  ASSERT_EQ(AssetsOf(wire).size(), 1u);
+  const auto read = Translate(wire, files);
+  ASSERT_NE(read, nullptr);
+  for (const Vec3& direction : read->bodies[0].fibres) EXPECT_LT((direction - Vec3(0, 0.6, 0.8)).norm(), 1e-12);
+}
+
+TEST(TranslateScene, TurnsFibresByTheirPennation) {
+  v1::Scene wire = BoxScene();
+  v1::Body& body = *wire.mutable_bodies(0);
+  for (const double value : {0, 0, 2}) body.mutable_fibres()->mutable_constant()->add_direction(value);
+  v1::Pennation& pennation = *body.mutable_fibres()->mutable_pennation();
+  pennation.set_angle(0.4);
+  for (const double value : {0, 3, 0}) pennation.add_normal(value);
+  const auto all = Translate(wire);
+  ASSERT_NE(all, nullptr);
+  for (const Vec3& direction : all->bodies[0].fibres) {
+    EXPECT_LT((direction - Vec3(0, std::sin(0.4), std::cos(0.4))).norm(), 1e-15);
+  }
+
+  // About the middle of the body's 3 cm along y.
+  for (const double value : {0.0, 1.5, 0.0}) pennation.add_mirror_point(value);
+  const auto mirrored = Translate(wire);
+  ASSERT_NE(mirrored, nullptr);
+  const Body& half = mirrored->bodies[0];
+  for (std::size_t e = 0; e < half.fibres.size(); ++e) {
+    const double distance = Centroid(half.mesh, e).y() - 0.015;
+    // The middle layer of tetrahedra has some whose centroid is in the plane, up to round-off.
+    if (std::abs(distance) < 1e-9) continue;
+    EXPECT_LT((half.fibres[e] - Vec3(0, std::copysign(std::sin(0.4), distance), std::cos(0.4))).norm(), 1e-12);
+  }
+}
+
 // The estimate that guards memory before a shape is built must be what is built.
 TEST(TranslateScene, EstimatesShapesExactly) {
   for (const char* mesh :

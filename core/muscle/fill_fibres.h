@@ -1,0 +1,16 @@
+#ifndef FASCICLE_CORE_MUSCLE_FILL_FIBRES_H_
+#define FASCICLE_CORE_MUSCLE_FILL_FIBRES_H_
+
+#include <cstddef>
+
+#include "core/muscle/fibre_field.h"
+
+namespace fascicle {
+
+// Gives tetrahedra without a direction (zero) the mean of their face neighbours', layer by layer. Returns how many have
+// none left.
+std::size_t FillFromNeighbours(const TetMesh& mesh, FibreField& fibres);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_MUSCLE_FILL_FIBRES_H_

@@ -1,0 +1,26 @@
+#ifndef FASCICLE_CORE_MUSCLE_HARMONIC_POTENTIAL_H_
+#define FASCICLE_CORE_MUSCLE_HARMONIC_POTENTIAL_H_
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/base/problems.h"
+#include "core/muscle/fibre_field.h"
+
+namespace fascicle {
+
+// What lies between a muscle's two attachments.
+struct HarmonicPotential {
+  std::vector<double> values;  // at the nodes: exactly 0 on the origin, exactly 1 on the insertion
+  FibreField directions;       // of the gradient in each tetrahedron, as HarmonicFibres
+};
+
+// Nothing, with the problems that HarmonicFibres names, where there is none.
+std::optional<HarmonicPotential> SolveHarmonicPotential(const TetMesh& mesh, std::span<const std::int32_t> origin,
+                                                        std::span<const std::int32_t> insertion, Problems& problems);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_MUSCLE_HARMONIC_POTENTIAL_H_

@@ -1,0 +1,34 @@
+#ifndef FASCICLE_CORE_MUSCLE_MUSCLE_SOLID_H_
+#define FASCICLE_CORE_MUSCLE_MUSCLE_SOLID_H_
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/base/problems.h"
+#include "core/geometry/bspline_fit.h"
+#include "core/geometry/tet_mesh.h"
+
+namespace fascicle {
+
+struct MuscleSolidOptions {
+  std::array<int, 3> degrees = {3, 3, 3};    // along u, v, w; 1 to 5
+  std::array<int, 3> controls = {5, 5, 16};  // along u, v, w; each larger than its degree
+  double smoothing = 1e-3;                   // see FitBsplineSolid
+};
+
+// A B-spline solid on [0, 1]^3 fitted to the nodes of a muscle, w from the origin to the insertion. Parameters of
+// nodes:
+//   w      length of the middle line up to the node's slice along the harmonic potential between both regions
+//   u, v   harmonic inside; on the surface between the regions the circle about (1/2, 1/2), by the angle at the middle
+//          line of the slice's cross-section scaled round
+// so that lines of constant (u, v) follow the surface. A disc has no corners, the square's are free: no fibre passes
+// there. Problems (nothing is returned): those of HarmonicFibres, no fit, or one that misses the nodes.
+std::optional<SolidFit> FitMuscleSolid(const TetMesh& mesh, std::span<const std::int32_t> origin,
+                                       std::span<const std::int32_t> insertion, const MuscleSolidOptions& options,
+                                       Problems& problems);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_MUSCLE_MUSCLE_SOLID_H_

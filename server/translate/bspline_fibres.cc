@@ -1,0 +1,89 @@
+#include "server/translate/bspline_fibres.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/bspline_reader.h"
+#include "core/muscle/bspline_fibres.h"
+#include "core/muscle/muscle_solid.h"
+#include "server/translate/fibre_ends.h"
+#include "server/translate/values.h"
+
+namespace fascicle::server {
+namespace {
+
+// The factors of the fit's matrix fill up: time grows with the third power, to some seconds.
+constexpr std::int64_t kMostControls = 4000;
+// More would be taken from jobs that run.
+constexpr unsigned kMostThreads = 4;
+
+std::optional<BsplineSolid> ReadSolid(const v1::FileRef& file, double unit, const std::string& path,
+                                      const AssetReader& assets, Problems& problems) {
+  const auto bytes = ReadFile(file, path, assets, problems);
+  if (!bytes) return std::nullopt;
+  Problems own;
+  const auto solid = ReadBsplineSolid(*bytes, own);
+  problems.Append(path, own);
+  if (!solid) return std::nullopt;
+  std::vector<Vec3> controls = solid->controls();
+  for (Vec3& q : controls) q *= unit;
+  return BsplineSolid(solid->bases(), std::move(controls));
+}
+
+// Degrees and numbers of control points that belong together; rules have been checked.
+void CheckSizes(const v1::FittedSolid& fitted, const std::string& path, Problems& problems) {
+  std::int64_t controls = 1;
+  for (int d = 0; d < 3; ++d) {
+    Problems own;
+    BsplineBasis::CheckSize(fitted.degrees(d), fitted.controls(d), own);
+    problems.Append(IndexPath(JoinPath(path, "controls"), static_cast<std::size_t>(d)), own);
+    controls *= fitted.controls(d);
+  }
+  if (controls > kMostControls) {
+    problems.Add(JoinPath(path, "controls"), std::to_string(controls) + " control points are too many",
+                 "at most " + std::to_string(kMostControls) + "; 5 5 16 will do for most muscles");
+  }
+}
+
+std::optional<BsplineSolid> FitSolid(const v1::FittedSolid& fitted, const std::string& path, const TranslatedMesh* mesh,
+                                     const TranslatedRegions& regions, Problems& problems) {
+  Problems own;
+  const auto ends = FindFibreEnds(fitted, path, regions, own);
+  const bool ruled = ObeysRules(fitted);
+  if (ruled) CheckSizes(fitted, path, own);
+  problems.Append("", own);
+  if (!own.empty() || !ruled || !ends || mesh == nullptr || !mesh->sound) return std::nullopt;
+  MuscleSolidOptions options;
+  std::copy_n(fitted.degrees().begin(), 3, options.degrees.begin());
+  std::copy_n(fitted.controls().begin(), 3, options.controls.begin());
+  options.smoothing = fitted.smoothing();
+  auto fit = FitMuscleSolid(mesh->mesh, ends->origin, ends->insertion, options, own);
+  problems.Append(path, own);
+  if (!fit) return std::nullopt;
+  return std::move(fit->solid);
+}
+
+}  // namespace
+
+FibreField TranslateBsplineFibres(const v1::BsplineFibres& bspline, v1::LengthUnit unit, const std::string& path,
+                                  const TranslatedMesh* mesh, const TranslatedRegions& regions,
+                                  const AssetReader& assets, Problems& problems) {
+  std::optional<BsplineSolid> solid;
+  if (bspline.has_file()) {
+    solid = ReadSolid(bspline.file(), MetresIn(unit), JoinPath(path, "file"), assets, problems);
+  } else if (bspline.has_fitted()) {
+    solid = FitSolid(bspline.fitted(), JoinPath(path, "fitted"), mesh, regions, problems);
+  }
+  if (!solid || mesh == nullptr || !mesh->sound) return {};
+  ThreadTeam team(static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads)));
+  Problems own;
+  BsplineFibreField field = BsplineFibres(mesh->mesh, BsplineLocator(std::move(*solid)), team, own);
+  problems.Append(path, own);
+  return std::move(field.fibres);
+}
+
+}  // namespace fascicle::server

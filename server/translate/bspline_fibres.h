@@ -1,0 +1,23 @@
+#ifndef FASCICLE_SERVER_TRANSLATE_BSPLINE_FIBRES_H_
+#define FASCICLE_SERVER_TRANSLATE_BSPLINE_FIBRES_H_
+
+#include <string>
+
+#include "core/base/problems.h"
+#include "core/muscle/fibre_field.h"
+#include "fascicle/v1/scene.pb.h"
+#include "server/translate/meshes.h"
+#include "server/translate/regions.h"
+#include "server/translate/translate.h"
+
+namespace fascicle::server {
+
+// Fibres along a B-spline solid from a file, in the body's `unit`, or fitted to the mesh. `mesh` may be nullptr: then
+// only what does not depend on it is checked. Empty where something is wrong.
+FibreField TranslateBsplineFibres(const v1::BsplineFibres& bspline, v1::LengthUnit unit, const std::string& path,
+                                  const TranslatedMesh* mesh, const TranslatedRegions& regions,
+                                  const AssetReader& assets, Problems& problems);
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_TRANSLATE_BSPLINE_FIBRES_H_
