@@ -12,6 +12,12 @@ namespace fascicle {
 using Tetrahedron = std::array<std::int32_t, 4>;  // node indices; det[X1-X0, X2-X0, X3-X0] > 0
 using Triangle = std::array<std::int32_t, 3>;     // node indices; counter-clockwise seen from outside
 
+// The middle of an edge that is not straight.
+struct CurvedEdge {
+  std::array<std::int32_t, 2> ends;  // node indices
+  Vec3 middle;                       // [m], as the nodes
+};
+
 // Tetrahedra with what their file says about them. Plain data: see mesh_checks.h for what makes one fit to simulate.
 struct TetMesh {
   std::vector<Vec3> nodes;  // [m] (readers: the file's own unit)
@@ -19,6 +25,7 @@ struct TetMesh {
   std::vector<std::int32_t> tetrahedron_tags;  // physical tag of each tetrahedron; empty when the file has none
   std::vector<Triangle> tagged_triangles;      // triangles listed in the file, in its own orientation
   std::vector<std::int32_t> triangle_tags;     // physical tag of each of them
+  std::vector<CurvedEdge> curved_edges;        // for quadratic elements; all other edges are straight
 };
 
 // det[X1-X0, X2-X0, X3-X0] / 6 [m^3].

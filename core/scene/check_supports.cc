@@ -54,6 +54,12 @@ void CheckSupports(const Scene& scene, Problems& problems) {
     for (const Load& load : body.loads) resultants.push_back(Resultant(body, load));
     const double mass = body.density * TotalVolume(body.mesh);
     for (int axis = 0; axis < 3; ++axis) {
+      if (!held[axis] && scene.method.stepping == Stepping::kQuasiStatic) {
+        problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
+                     std::string("nothing holds the body along ") + "xyz"[axis],
+                     "equilibrium needs a place to be: add a constraint, or use a stepping with inertia");
+        continue;
+      }
       if (held[axis] || !Pushes(scene, body, resultants, mass, axis)) continue;
       problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
                    std::string("nothing holds the body against its loads along ") + "xyz"[axis],

@@ -17,6 +17,9 @@ class Fingerprint {
     Put(scene.method.time_step.value_or(0.0));
     Put(scene.method.safety);
     Put(scene.method.solver_tolerance);
+    Put(static_cast<int>(scene.method.element));
+    Put(static_cast<int>(scene.method.volume));
+    Put(scene.method.newton_tolerance);
     Put(scene.bodies.size());
     for (const Body& body : scene.bodies) Put(body);
     Put(scene.output);
@@ -74,6 +77,11 @@ class Fingerprint {
     Put(body.name);
     PutItems(body.mesh.nodes);
     PutItems(body.mesh.tetrahedra);
+    Put(body.mesh.curved_edges.size());
+    for (const CurvedEdge& edge : body.mesh.curved_edges) {
+      PutItems(edge.ends);
+      PutItems(edge.middle);
+    }
     Put(body.density);
     Put(body.material);
     Put(body.more_materials.size());

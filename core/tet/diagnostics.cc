@@ -48,10 +48,11 @@ VolumeRatios VolumeRatiosOf(const TetModel& model, std::size_t body_index, const
   model.VisitElement([&]<class Element>(Element) {
     for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
       const auto values = ValuesOf<Element>(model, e, x);
-      rest += model.rest_volume()[e];
       for (int q = 0; q < Element::kPoints; ++q) {
         const double J = Determinant(GradientAt<Element>(model, e, values, q));
-        present += Element::kPointWeight * model.rest_volume()[e] * J;
+        const double volume = model.rest_volume()[Element::kPoints * e + q];
+        rest += volume;
+        present += volume * J;
         if ((e == body.tet_begin && q == 0) || !(J >= ratios.smallest)) ratios.smallest = J;
       }
     }

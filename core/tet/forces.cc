@@ -32,10 +32,10 @@ ForceReport GroupForces(const std::vector<Law>& laws, const TetModel& model, con
     for (std::size_t e = group.tet_begin + begin; e < group.tet_begin + end; ++e) {
       const Law& law = laws[model.law_of()[e]];
       const auto values = ValuesOf<Element>(model, e, x);
-      const double volume = Element::kPointWeight * model.rest_volume()[e];
       std::array<Vec3, Element::kNodes> forces;
       forces.fill(Vec3::Zero());
       for (int q = 0; q < Element::kPoints; ++q) {
+        const double volume = model.rest_volume()[Element::kPoints * e + q];
         const Mat3 F = GradientAt<Element>(model, e, values, q);
         Mat3 P = law.Stress(F, FibreAt<Element>(model, e, drive, q));
         const double J = Determinant(F);
@@ -50,7 +50,7 @@ ForceReport GroupForces(const std::vector<Law>& laws, const TetModel& model, con
           power += volume * viscous.power;
         }
         CornerValues corners;
-        SetCornerForces(P, model.Dm_inverse()[e], volume, corners);
+        SetCornerForces(P, model.Dm_inverse()[Element::kPoints * e + q], volume, corners);
         Element::AddCorners(corners, q, forces);
       }
       std::copy(forces.begin(), forces.end(), &workspace.element_forces[Element::kNodes * e]);
@@ -115,7 +115,7 @@ void UpdateCornerVolumes(const TetModel& model, const NodalVector& x, ThreadTeam
       std::array<double, 4> volumes = {};
       for (int q = 0; q < Element::kPoints; ++q) {
         const double J = Determinant(GradientAt<Element>(model, e, values, q));
-        const double volume = Element::kPointWeight * model.rest_volume()[e] * J;
+        const double volume = model.rest_volume()[Element::kPoints * e + q] * J;
         for (int c = 0; c < 4; ++c) volumes[c] += Element::Barycentric(q, c) * volume;
       }
       workspace.corner_volume[e] = volumes;
@@ -129,8 +129,9 @@ double PatchEnergyOf(const TetModel& model, const ForceWorkspace& workspace, std
   const VolumePatches& patches = model.patches();
   if (patches.empty() || patches.of_element[e][0] == VolumePatches::kNone) return 0;
   double energy = 0;
-  for (const std::int32_t n : patches.of_element[e]) {
-    energy += model.rest_volume()[e] / 4 * PatchEnergy{patches.modulus[n]}.Value(workspace.ratio[n]);
+  for (int c = 0; c < 4; ++c) {
+    const std::int32_t n = patches.of_element[e][c];
+    energy += model.CornerVolume<Element>(e, c) * PatchEnergy{patches.modulus[n]}.Value(workspace.ratio[n]);
   }
   return energy;
 }
@@ -164,8 +165,8 @@ void ViscousForce(const TetModel& model, const NodalVector& x, const NodalVector
             const ViscousStress viscous(F, GradientAt<Element>(model, e, velocities, q), body.damping_mu,
                                         body.damping_lambda);
             CornerValues corners;
-            SetCornerForces(F * viscous.S, model.Dm_inverse()[e], Element::kPointWeight * model.rest_volume()[e],
-                            corners);
+            SetCornerForces(F * viscous.S, model.Dm_inverse()[Element::kPoints * e + q],
+                            model.rest_volume()[Element::kPoints * e + q], corners);
             Element::AddCorners(corners, q, forces);
           }
         }
@@ -183,18 +184,14 @@ void ViscousDiagonal(const TetModel& model, const NodalVector& x, ThreadTeam& te
     for (const TetBody& body : model.bodies()) {
       ForElements(team, body, [&](std::size_t e) {
         const auto positions = ValuesOf<Element>(model, e, x);
-        Eigen::Matrix<double, 3, 4> g;
-        g.rightCols<3>() = model.Dm_inverse()[e].transpose();
-        g.col(0) = -g.rightCols<3>().rowwise().sum();
-        const double volume = Element::kPointWeight * model.rest_volume()[e];
         std::array<Vec3, Element::kNodes> sums;
         sums.fill(Vec3::Zero());
         for (int q = 0; q < Element::kPoints; ++q) {
           const Mat3 F = GradientAt<Element>(model, e, positions, q);
+          const auto gradients = ShapeGradients<Element>(model, e, q);
+          const double volume = model.rest_volume()[Element::kPoints * e + q];
           for (int a = 0; a < Element::kNodes; ++a) {
-            Vec3 gradient = Vec3::Zero();  // of the shape function of node a
-            for (int c = 0; c < 4; ++c) gradient += Element::Part(q, c, a) * g.col(c);
-            sums[a] += volume * CornerDiagonal(F, gradient, body.damping_mu, body.damping_lambda);
+            sums[a] += volume * CornerDiagonal(F, gradients.col(a), body.damping_mu, body.damping_lambda);
           }
         }
         std::copy(sums.begin(), sums.end(), &workspace.element_forces[Element::kNodes * e]);
@@ -221,7 +218,7 @@ double ElasticEnergy(const TetModel& model, std::size_t body, const FibreDrive& 
                 for (int q = 0; q < Element::kPoints; ++q) {
                   const Mat3 F = GradientAt<Element>(model, e, values, q);
                   const double density = laws[model.law_of()[e]].Energy(F, FibreAt<Element>(model, e, drive, q));
-                  energy += Element::kPointWeight * model.rest_volume()[e] * density;
+                  energy += model.rest_volume()[Element::kPoints * e + q] * density;
                 }
                 energy += PatchEnergyOf<Element>(model, workspace, e);
               }

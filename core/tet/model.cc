@@ -119,6 +119,10 @@ void TetModel::AddNodes(const Body& body, TetBody& entry) {
         edges[k] = place->second;
       }
     }
+    for (const CurvedEdge& edge : body.mesh.curved_edges) {
+      const std::int32_t i = first + edge.ends[0], j = first + edge.ends[1];
+      rest_positions_[middles_.at(std::minmax(i, j))] = edge.middle;
+    }
     entry.node_end = nodes();
   }
   mass_.resize(entry.node_end, 0.0);
@@ -146,20 +150,16 @@ void TetModel::AddElements(const Body& body, TetBody& entry) {
     for (int c = 0; c < 4; ++c) {
       shifted[c] = body.mesh.tetrahedra[t][c] + static_cast<std::int32_t>(entry.node_begin);
     }
-    const Mat3 Dm = EdgeMatrix(rest_positions_, shifted);
-    const double volume = Dm.determinant() / 6;
-    FASCICLE_CHECK(volume > 0, "meshes are checked before they are simulated");
     const std::size_t e = tetrahedra();
     tetrahedra_.push_back(shifted);
     source_tetrahedron_.push_back(t);
-    Dm_inverse_.push_back(Dm.inverse());
-    rest_volume_.push_back(volume);
     fibres_.push_back(body.fibres.empty() ? Vec3(Vec3::Zero()) : body.fibres[t]);
     const std::int32_t activation = body.activation_of.empty() ? 0 : body.activation_of[t];
     activation_of_.push_back(static_cast<std::int32_t>(entry.activation) + activation);
     activation_scale_.push_back(body.activation_scale.empty() ? 1 : body.activation_scale[t]);
     VisitElement([&]<class Element>(Element) {
       const auto element_nodes = NodesOf<Element>(e);
+      const double volume = AddPoints<Element>(e);
       for (int a = 0; a < Element::kNodes; ++a) {
         mass_[element_nodes[a]] += body.density * volume * Element::kMassShare[a];
       }
@@ -206,6 +206,24 @@ void TetModel::FillGroup(const Body& body, TetGroup& group) {
   AddPatches(group, given);
 }
 
+// Dm^-1 and V of the points of an element; the sum of V.
+template <class Element>
+double TetModel::AddPoints(std::size_t tet) {
+  const auto element_nodes = NodesOf<Element>(tet);
+  std::array<Vec3, Element::kNodes> X;
+  for (int a = 0; a < Element::kNodes; ++a) X[a] = rest_positions_[element_nodes[a]];
+  double sum = 0;
+  for (int q = 0; q < Element::kPoints; ++q) {
+    const Mat3 Dm = EdgeMatrix(Element::Corners(X, q));
+    const double volume = Element::kPointWeight * Dm.determinant() / 6;
+    FASCICLE_CHECK(volume > 0, "meshes are checked before they are simulated");
+    Dm_inverse_.push_back(Dm.inverse());
+    rest_volume_.push_back(volume);
+    sum += volume;
+  }
+  return sum;
+}
+
 void TetModel::AddPatches(const TetGroup& group, std::span<const double> given) {
   patches_.of_element.resize(group.tet_end,
                              {VolumePatches::kNone, VolumePatches::kNone, VolumePatches::kNone, VolumePatches::kNone});
@@ -223,8 +241,9 @@ void TetModel::AddPatches(const TetGroup& group, std::span<const double> given) 
       }
       const std::int32_t patch = place->second;
       patches_.of_element[e][c] = patch;
-      patches_.rest_volume[patch] += rest_volume_[e] / 4;
-      patches_.modulus[patch] += rest_volume_[e] / 4 * modulus;
+      const double volume = VisitElement([&]<class Element>(Element) { return CornerVolume<Element>(e, c); });
+      patches_.rest_volume[patch] += volume;
+      patches_.modulus[patch] += volume * modulus;
     }
   }
   for (std::size_t n = first; n < patches_.size(); ++n) patches_.modulus[n] /= patches_.rest_volume[n];

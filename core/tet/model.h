@@ -109,17 +109,27 @@ class TetModel {
   double ActivationOf(std::size_t tet, std::span<const double> activations) const {
     return activations[activation_of_[tet]] * activation_scale_[tet];
   }
-  const std::vector<Mat3>& Dm_inverse() const { return Dm_inverse_; }      // Dm^-1 [1/m]
-  const std::vector<double>& rest_volume() const { return rest_volume_; }  // V [m^3]
-  const std::vector<Vec3>& fibres() const { return fibres_; }              // a0; zero without fibres
-  const std::vector<double>& mass() const { return mass_; }                // lumped: see Element::kMassShare [kg]
+  // Of point q of an element, at points of an element * element + q: Dm^-1 [1/m], and its part V of the volume [m^3].
+  const std::vector<Mat3>& Dm_inverse() const { return Dm_inverse_; }
+  const std::vector<double>& rest_volume() const { return rest_volume_; }
+  // The integral of the barycentric coordinate L_c over an element at rest [m^3].
+  template <class Element>
+  double CornerVolume(std::size_t tet, int c) const {
+    double volume = 0;
+    for (int q = 0; q < Element::kPoints; ++q) {
+      volume += Element::Barycentric(q, c) * rest_volume_[Element::kPoints * tet + q];
+    }
+    return volume;
+  }
+  const std::vector<Vec3>& fibres() const { return fibres_; }  // a0; zero without fibres
+  const std::vector<double>& mass() const { return mass_; }    // lumped: see Element::kMassShare [kg]
   // 1/m [1/kg], and zero for components whose motion is prescribed.
   const NodalVector& inverse_mass() const { return inverse_mass_; }
   // Rayleigh damping of each node: mass_damping of its body [1/s].
   const std::vector<double>& mass_damping() const { return mass_damping_; }
 
   // Bm3 = -V Dm^-T, so that [f1 f2 f3] = P Bm3 [Teran 2003, 4.1].
-  Mat3 Bm3(std::size_t tet) const { return -rest_volume_[tet] * Dm_inverse_[tet].transpose(); }
+  Mat3 Bm3(std::size_t point) const { return -rest_volume_[point] * Dm_inverse_[point].transpose(); }
 
   // Where node n is one of an element: node_uses()[node_use_begin()[n] .. node_use_begin()[n + 1]), ascending.
   const std::vector<std::int32_t>& node_use_begin() const { return node_use_begin_; }
@@ -141,6 +151,8 @@ class TetModel {
   void AddNodes(const Body& body, TetBody& entry);
   void AddElements(const Body& body, TetBody& entry);
   void FillGroup(const Body& body, TetGroup& group);
+  template <class Element>
+  double AddPoints(std::size_t tet);
   void AddPatches(const TetGroup& group, std::span<const double> given);
   void SetSmoothing();
   std::vector<std::int32_t> NodesOfRegion(const Region& region, const TetBody& body) const;

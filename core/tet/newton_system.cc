@@ -24,7 +24,8 @@ double ForceFloor(const TetModel& model) {
     const Material& material = model.bodies()[group.body].source->material;
     const double modulus = std::visit([](const auto& law) { return law.ShearModulus() + law.BulkModulus(); }, material);
     for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
-      const double force = kSmallStrain * modulus * std::cbrt(model.rest_volume()[e] * model.rest_volume()[e]);
+      const double force =
+          kSmallStrain * modulus * std::pow(model.rest_volume()[e * model.points_per_element()], 2.0 / 3);
       squares += force * force;
     }
   }
@@ -160,17 +161,17 @@ NewtonSystem::Evaluation NewtonSystem::EvaluateElements(const IncrementalPotenti
             double energy = 0;
             for (std::size_t e = group.tet_begin + begin; e < group.tet_begin + end; ++e) {
               const auto values = ValuesOf<Element>(model_, e, x);
-              const double volume = Element::kPointWeight * model_.rest_volume()[e];
               std::array<Vec3, Element::kNodes> forces;
               forces.fill(Vec3::Zero());
               for (int q = 0; q < Element::kPoints; ++q) {
                 const Mat3 F = GradientAt<Element>(model_, e, values, q);
+                const double volume = model_.rest_volume()[Element::kPoints * e + q];
                 if (!(Determinant(F) > 0)) valid.store(false, std::memory_order_relaxed);
                 const PointPotential<Element, Law> point(potential, model_, body, laws[model_.law_of()[e]], e, q);
                 energy += volume * point.Energy(F);
                 const Mat3 P = point.Stress(F) + PatchPressure<Element>(model_.patches(), acting_, e, q) * Cofactor(F);
                 CornerValues corners;
-                SetCornerForces(P, model_.Dm_inverse()[e], volume, corners);
+                SetCornerForces(P, model_.Dm_inverse()[Element::kPoints * e + q], volume, corners);
                 Element::AddCorners(corners, q, forces);
               }
               std::copy(forces.begin(), forces.end(), &forces_.element_forces[Element::kNodes * e]);
@@ -231,7 +232,7 @@ void NewtonSystem::SetElementMatrices(const IncrementalPotential& potential, con
       Eigen::Matrix<double, kComponents, kComponents> A = Eigen::Matrix<double, kComponents, kComponents>::Zero();
       Eigen::Matrix<double, 4, kComponents> B = Eigen::Matrix<double, 4, kComponents>::Zero();
       for (int q = 0; q < Element::kPoints; ++q) {
-        const double volume = Element::kPointWeight * model_.rest_volume()[e];
+        const double volume = model_.rest_volume()[Element::kPoints * e + q];
         const Mat3 F = GradientAt<Element>(model_, e, values, q);
         Mat9 H = PointPotential<Element, Law>(potential, model_, body, law, e, q).Tangent(F);
         AddCofactorTangent(PatchPressure<Element>(model_.patches(), acting_, e, q), F, H);

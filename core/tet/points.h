@@ -18,7 +18,21 @@ std::array<Vec3, Element::kNodes> ValuesOf(const TetModel& model, std::size_t te
 // Gradient of values at point q by rest position: F of positions, Fdot of velocities.
 template <class Element>
 Mat3 GradientAt(const TetModel& model, std::size_t tet, const std::array<Vec3, Element::kNodes>& values, int q) {
-  return EdgeMatrix(Element::Corners(values, q)) * model.Dm_inverse()[tet];
+  return EdgeMatrix(Element::Corners(values, q)) * model.Dm_inverse()[Element::kPoints * tet + q];
+}
+
+// Rest gradients of an element's shape functions at point q, a column for each node [1/m].
+template <class Element>
+Eigen::Matrix<double, 3, Element::kNodes> ShapeGradients(const TetModel& model, std::size_t tet, int q) {
+  Eigen::Matrix<double, 3, 4> g;
+  g.rightCols<3>() = model.Dm_inverse()[Element::kPoints * tet + q].transpose();
+  g.col(0) = -g.rightCols<3>().rowwise().sum();
+  Eigen::Matrix<double, 3, Element::kNodes> gradients;
+  for (int a = 0; a < Element::kNodes; ++a) {
+    gradients.col(a).setZero();
+    for (int c = 0; c < 4; ++c) gradients.col(a) += Element::Part(q, c, a) * g.col(c);
+  }
+  return gradients;
 }
 
 // The pressure of the patches at point q [Pa].

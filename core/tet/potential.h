@@ -73,20 +73,6 @@ struct PointPotential {
   Mat3 previous_C_ = Mat3::Identity();
 };
 
-// Rest gradients of an element's shape functions at point q, a column for each node [1/m].
-template <class Element>
-Eigen::Matrix<double, 3, Element::kNodes> ShapeGradients(const TetModel& model, std::size_t tet, int q) {
-  Eigen::Matrix<double, 3, 4> g;
-  g.rightCols<3>() = model.Dm_inverse()[tet].transpose();
-  g.col(0) = -g.rightCols<3>().rowwise().sum();
-  Eigen::Matrix<double, 3, Element::kNodes> gradients;
-  for (int a = 0; a < Element::kNodes; ++a) {
-    gradients.col(a).setZero();
-    for (int c = 0; c < 4; ++c) gradients.col(a) += Element::Part(q, c, a) * g.col(c);
-  }
-  return gradients;
-}
-
 }  // namespace fascicle
 
 #endif  // FASCICLE_CORE_TET_POTENTIAL_H_

@@ -78,7 +78,7 @@ void TetStiffness::ApplyToPatches(const TetModel& model, const NodalVector& p, T
         const Mat3 dF = GradientAt<Element>(model, e, values, q);
         const double dJ = Contract(cofactors_[Element::kPoints * e + q], dF);
         for (int c = 0; c < 4; ++c) {
-          changes[c] += Element::kPointWeight * model.rest_volume()[e] * Element::Barycentric(q, c) * dJ;
+          changes[c] += model.rest_volume()[Element::kPoints * e + q] * Element::Barycentric(q, c) * dJ;
         }
       }
       workspace.corner_volume[e] = changes;
@@ -116,7 +116,7 @@ void TetStiffness::ApplyElements(const TetModel& model, const NodalVector& p, Th
           dP += PatchPressure<Element>(model.patches(), pressure_change_, e, q) * cofactors_[point];
         }
         CornerValues corners;
-        SetCornerForces(-dP, model.Dm_inverse()[e], Element::kPointWeight * model.rest_volume()[e], corners);
+        SetCornerForces(-dP, model.Dm_inverse()[point], model.rest_volume()[point], corners);
         Element::AddCorners(corners, q, forces);
       }
       std::copy(forces.begin(), forces.end(), &workspace.element_forces[Element::kNodes * e]);

@@ -38,6 +38,32 @@ bool AnyFibres(const v1::Scene& scene) {
                      [](const v1::Body& body) { return body.has_fibres(); });
 }
 
+Stepping ToStepping(v1::Stepping stepping) {
+  switch (stepping) {
+    case v1::STEPPING_MIXED:
+      return Stepping::kMixed;
+    case v1::STEPPING_BACKWARD_EULER:
+      return Stepping::kBackwardEuler;
+    case v1::STEPPING_NEWMARK:
+      return Stepping::kNewmark;
+    case v1::STEPPING_BDF2:
+      return Stepping::kBdf2;
+    case v1::STEPPING_QUASI_STATIC:
+      return Stepping::kQuasiStatic;
+    default:
+      return Stepping::kExplicit;
+  }
+}
+
+// Quadratic elements where steps are solved for, unless the scene says otherwise: there they are the more accurate ones
+// for the time they take.
+ElementOrder ToElement(v1::Element element, Stepping stepping) {
+  if (element == v1::ELEMENT_LINEAR) return ElementOrder::kLinear;
+  if (element == v1::ELEMENT_QUADRATIC) return ElementOrder::kQuadratic;
+  const bool is_explicit = stepping == Stepping::kExplicit || stepping == Stepping::kMixed;
+  return is_explicit ? ElementOrder::kLinear : ElementOrder::kQuadratic;
+}
+
 void CheckFrameCount(const v1::Scene& scene, Problems& problems) {
   const double duration = scene.duration(), interval = scene.output().frame_interval();
   // Wrong numbers are reported with the rules.
@@ -153,7 +179,10 @@ Output TranslateOutput(const v1::Scene& scene, const std::vector<Body>& bodies, 
 TetMethod TranslateMethod(const v1::Scene& scene) {
   TetMethod method;
   if (!scene.has_tet() || !ObeysRules(scene.tet())) return method;
-  if (scene.tet().stepping() == v1::STEPPING_MIXED) method.stepping = Stepping::kMixed;
+  method.stepping = ToStepping(scene.tet().stepping());
+  method.element = ToElement(scene.tet().element(), method.stepping);
+  if (scene.tet().volume() == v1::VOLUME_FORM_ELEMENT) method.volume = VolumeForm::kElement;
+  method.newton_tolerance = scene.tet().newton_tolerance();
   if (scene.tet().has_time_step()) method.time_step = scene.tet().time_step();
   method.safety = scene.tet().safety();
   method.solver_tolerance = scene.tet().solver_tolerance();

@@ -61,7 +61,7 @@ class ElementTest : public ::testing::TestWithParam<unsigned> {
 
   CornerValues Forces(const Mat3& P) const {
     CornerValues forces;
-    SetCornerValues(P, element_.Dm.inverse(), element_.V, forces);
+    SetCornerForces(P, element_.Dm.inverse(), element_.V, forces);
     return forces;
   }
 };
