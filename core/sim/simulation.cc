@@ -13,7 +13,7 @@ namespace fascicle {
 namespace {
 
 constexpr const char* kCheckpointKind = "fascicle checkpoint";
-constexpr std::uint32_t kCheckpointVersion = 1;
+constexpr std::uint32_t kCheckpointVersion = 2;
 
 struct ProblemText {
   const char* reason;
@@ -33,6 +33,11 @@ ProblemText TextOf(StepProblem problem) {
     case StepProblem::kNotConverged:
       return {"NOT_CONVERGED", "the linear solve of the damping did not reach its tolerance",
               "use a larger solver_tolerance or less damping"};
+    case StepProblem::kNoEquilibrium:
+      return {
+          "NOT_CONVERGED", "no equilibrium was found, also with the step cut to a few thousandths",
+          "the elements named are the furthest from it: see whether the body can hold this load there; load, move or "
+          "activate more slowly, or use a stepping with inertia (backward_euler), which follows a body that snaps"};
     case StepProblem::kUnstable:
       return {"STEP_TOO_SMALL", "the motion gains energy, also with the step cut to a thousandth",
               "leave time_step out, so that a stable step is found, or use a smaller safety"};

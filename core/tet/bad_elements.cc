@@ -50,6 +50,17 @@ BadElements FindBadElements(const TetModel& model, const FibreDrive& drive, cons
   return bad;
 }
 
+BadElements FindElementsAt(const TetModel& model, std::size_t node) {
+  BadElements around;
+  while (node >= model.bodies()[around.body].node_end) ++around.body;
+  for (std::int32_t k = model.node_use_begin()[node]; k < model.node_use_begin()[node + 1]; ++k) {
+    if (around.elements.size() == kMaxBadElements) break;
+    around.elements.push_back(model.source_tetrahedron()[model.node_uses()[k] / model.nodes_per_element()]);
+  }
+  std::sort(around.elements.begin(), around.elements.end());
+  return around;
+}
+
 BadElements FindThinnestElement(const TetModel& model, const NodalVector& x) {
   BadElements thinnest;
   double least = std::numeric_limits<double>::infinity();

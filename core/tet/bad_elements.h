@@ -18,6 +18,9 @@ struct BadElements {
 // Elements in which J <= 0 or the stress is not finite, in the first body that has any.
 BadElements FindBadElements(const TetModel& model, const FibreDrive& drive, const NodalVector& x);
 
+// The elements around a node.
+BadElements FindElementsAt(const TetModel& model, std::size_t node);
+
 // The element with the smallest height, which limits the stable step.
 BadElements FindThinnestElement(const TetModel& model, const NodalVector& x);
 

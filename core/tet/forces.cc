@@ -9,13 +9,6 @@
 namespace fascicle {
 namespace {
 
-// The least of all values in whatever order they come.
-void TakeLeast(std::atomic<double>& least, double value) {
-  double now = least.load(std::memory_order_relaxed);
-  while (value < now && !least.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
-  }
-}
-
 // Forces of the elements of one group; `v` may be null for no viscous stress.
 template <class Element, bool kViscous, class Law>
 ForceReport GroupForces(const std::vector<Law>& laws, const TetModel& model, const TetGroup& group,

@@ -11,7 +11,7 @@ namespace {
 // An easy step may be followed by one twice as long.
 constexpr int kEasyIterations = 10;
 // A run that needs steps shorter than that part of its duration goes nowhere.
-constexpr double kShortestStep = 0x1p-24;
+constexpr double kShortestStep = 0x1p-12;
 
 // How a scheme expresses the velocity and the force of inertia at the end of a step by the positions there:
 // v = rate (x - v_centre), M a = inertia M (x - a_centre).
@@ -71,7 +71,7 @@ StepProblem ProblemOf(const NewtonResult& result) {
     case NewtonResult::End::kInvalid:
       return StepProblem::kInvertedElement;
     default:
-      return StepProblem::kNotConverged;
+      return StepProblem::kNoEquilibrium;
   }
 }
 
@@ -126,6 +126,7 @@ StepReport TetSolver::StepImplicit(const TetState& now, double dt, TetState& nex
   StepReport report;
   report.iterations = result.iterations;
   report.problem = ProblemOf(result);
+  if (report.problem == StepProblem::kNoEquilibrium) report.bad = FindElementsAt(model_, result.node);
   next.iterations = now.iterations + result.iterations;
   if (report.problem != StepProblem::kNone) return report;
 

@@ -11,6 +11,12 @@ constexpr double kArmijo = 1e-4;
 constexpr double kShortestPart = 1.0 / 1024;
 // rho of the augmented Lagrangian as part of the patch's modulus, where the Lagrangian falls without it.
 constexpr double kLeastAugmentation = 0.01;
+// Untangling ends near rest once every J is above that, or else at rest.
+constexpr double kUntangled = 0.3;
+constexpr double kUntangledForce = 0.01;
+constexpr double kUntanglingTolerance = 1e-6;
+constexpr int kMaxUntangling = 200;
+constexpr double kUntanglingHold = 1e-3;
 
 }  // namespace
 
@@ -18,15 +24,19 @@ NewtonSolver::NewtonSolver(const TetModel& model, ThreadTeam& team) : model_(mod
 
 NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const NodalVector& target,
                                  const NewtonOptions& options, NodalVector& x, std::vector<double>& pressure) {
-  const VolumePatches& patches = model_.patches();
   NewtonResult result;
-  pressure.resize(patches.size());
+  bool untangled = false;
+  pressure.resize(model_.patches().size());
   for (;;) {
-    const bool prescribed_move = FindRemaining(target, x);
+    bool prescribed_move = FindRemaining(target, x);
     now_ = system_.Evaluate(potential, x, pressure, team_, force_);
     if (!now_.valid) {
-      result.end = NewtonResult::End::kInvalid;
-      return result;
+      if (untangled || !Untangle(target, x, result)) {
+        result.end = NewtonResult::End::kInvalid;
+        return result;
+      }
+      untangled = true;
+      continue;
     }
     const double norm = RelativeForce(result);
     if (!prescribed_move && norm <= options.tolerance && PressuresAgree(pressure, options.tolerance)) {
@@ -35,27 +45,76 @@ NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const No
     }
     if (result.iterations >= options.max_iterations) return result;
     ++result.iterations;
-    if (!TakeStep(potential, NewtonSystem::Tangent::kExact, prescribed_move, x, pressure) &&
-        !TakeStep(potential, NewtonSystem::Tangent::kProjected, prescribed_move, x, pressure)) {
-      return result;
+    double part = TakeStep(potential, NewtonSystem::Tangent::kExact, prescribed_move, x, pressure);
+    if (part == 0) part = TakeStep(potential, NewtonSystem::Tangent::kProjected, prescribed_move, x, pressure);
+    if (part == 1) PlacePrescribed(target, x);
+    if (part == 0) {
+      // A prescribed motion that no valid part of the linear answer follows may still have a place to go.
+      if (!prescribed_move || untangled || !Untangle(target, x, result)) return result;
+      untangled = true;
     }
   }
 }
 
-// One step with this tangent; false, and nothing has moved, when it has none of use.
-bool NewtonSolver::TakeStep(const IncrementalPotential& potential, NewtonSystem::Tangent tangent, bool prescribed_move,
-                            NodalVector& x, std::vector<double>& pressure) {
-  if (!system_.Factor(potential, x, pressure, tangent, team_)) return false;
+// Brings prescribed components to their place and all elements to a positive volume, with UntanglingLaw: projected
+// Newton, which lowers its energy at every step. False when some element stays inverted.
+bool NewtonSolver::Untangle(const NodalVector& target, NodalVector& x, NewtonResult& result) {
+  IncrementalPotential potential;
+  potential.untangling = true;
+  const NodalVector no_load(x.size(), Vec3::Zero());
+  potential.load = &no_load;
+  const std::vector<double> no_pressure(model_.patches().size(), 0.0);
+  // A gentle hold on where each iteration starts, for bodies that nothing else holds.
+  potential.inertia.assign(x.size(), 0.0);
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    potential.inertia[n] = kUntanglingHold * std::cbrt(model_.mass()[n] / model_.bodies()[0].source->density);
+  }
+  PlacePrescribed(target, x);
+  remaining_.assign(x.size(), Vec3::Zero());
+  for (int i = 0; i < kMaxUntangling; ++i) {
+    potential.inertia_centre = x;
+    const NewtonSystem::Evaluation now = system_.Evaluate(potential, x, no_pressure, team_, force_);
+    now_ = now;
+    if (RelativeForce(result) < (now.smallest_ratio >= kUntangled ? kUntangledForce : kUntanglingTolerance)) break;
+    ++result.iterations;
+    if (!system_.Factor(potential, x, no_pressure, NewtonSystem::Tangent::kProjected, team_)) return false;
+    system_.Solve(force_, remaining_, no_pressure, dx_, dp_);
+    double slope = 0;
+    for (std::size_t n = 0; n < x.size(); ++n) slope -= force_[n].dot(dx_[n]);
+    double part = 1;
+    for (; part >= kShortestPart; part /= 2) {
+      Move(x, part);
+      if (system_.Evaluate(potential, trial_, no_pressure, team_, trial_force_).energy <=
+          now.energy + kArmijo * part * slope) {
+        break;
+      }
+    }
+    if (part < kShortestPart) break;
+    std::swap(x, trial_);
+  }
+  return system_.Evaluate(potential, x, no_pressure, team_, force_).smallest_ratio > 0;
+}
+
+// The part of the step with this tangent that was taken; 0, and nothing has moved, when none is of use.
+double NewtonSolver::TakeStep(const IncrementalPotential& potential, NewtonSystem::Tangent tangent,
+                              bool prescribed_move, NodalVector& x, std::vector<double>& pressure) {
+  if (!system_.Factor(potential, x, pressure, tangent, team_)) return 0;
   system_.Solve(force_, remaining_, pressure, dx_, dp_);
   LookAhead(pressure);
   const double part = LineSearch(potential, x, prescribed_move);
   if (part == 0) {
     system_.Evaluate(potential, x, pressure, team_, force_);
-    return false;
+    return 0;
   }
-  for (std::size_t n = 0; n < x.size(); ++n) x[n] += part * dx_[n];
+  std::swap(x, trial_);
   for (std::size_t n = 0; n < pressure.size(); ++n) pressure[n] += part * dp_[n];
-  return true;
+  return part;
+}
+
+// trial = x + part dx.
+void NewtonSolver::Move(const NodalVector& x, double part) {
+  trial_.resize(x.size());
+  ForNodes(team_, x.size(), [&](std::size_t n) { trial_[n] = x[n] + part * dx_[n]; });
 }
 
 // p', theta' and the present theta of every patch.
@@ -105,8 +164,7 @@ double NewtonSolver::LineSearch(const IncrementalPotential& potential, const Nod
   }
   const double merit = now_.energy + PatchMerit(ratio_, augmentation);
   for (double part = 1; part >= kShortestPart; part /= 2) {
-    trial_.resize(x.size());
-    for (std::size_t n = 0; n < x.size(); ++n) trial_[n] = x[n] + part * dx_[n];
+    Move(x, part);
     const NewtonSystem::Evaluation trial = system_.Evaluate(potential, trial_, pressure_ahead_, team_, trial_force_);
     if (!trial.valid) continue;
     if (prescribed_move) return part;
@@ -130,6 +188,14 @@ bool NewtonSolver::FindRemaining(const NodalVector& target, const NodalVector& x
     }
   }
   return any;
+}
+
+void NewtonSolver::PlacePrescribed(const NodalVector& target, NodalVector& x) const {
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    for (int c = 0; c < 3; ++c) {
+      if (model_.inverse_mass()[n][c] == 0) x[n][c] = target[n][c];
+    }
+  }
 }
 
 // Norm of the force on unknown components over that of all element forces.

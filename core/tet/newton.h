@@ -28,7 +28,9 @@ struct NewtonResult {
 // theta' the volume ratio that goes with p' to first order: its slope along dx is -dx.A dx - sum rho V dtheta^2, so it
 // falls wherever A is positive definite [Nocedal & Wright 2006, 18.3]. The exact tangent comes first; where its
 // inertia is not that of a minimum, the projected one takes over for the iteration. Components that are prescribed move
-// with the first iterations, as the linear system says the rest of the body would follow. One thread at a time.
+// with the first iterations, as the linear system says the rest of the body would follow. A start with inverted
+// elements, or a prescribed motion that inverts some, is first brought in order with UntanglingLaw. One thread at a
+// time.
 class NewtonSolver {
  public:
   // Model and team must outlive the solver.
@@ -40,8 +42,11 @@ class NewtonSolver {
                      NodalVector& x, std::vector<double>& pressure);
 
  private:
-  bool TakeStep(const IncrementalPotential& potential, NewtonSystem::Tangent tangent, bool prescribed_move,
-                NodalVector& x, std::vector<double>& pressure);
+  double TakeStep(const IncrementalPotential& potential, NewtonSystem::Tangent tangent, bool prescribed_move,
+                  NodalVector& x, std::vector<double>& pressure);
+  bool Untangle(const NodalVector& target, NodalVector& x, NewtonResult& result);
+  void Move(const NodalVector& x, double part);
+  void PlacePrescribed(const NodalVector& target, NodalVector& x) const;
   void LookAhead(std::span<const double> pressure);
   double LineSearch(const IncrementalPotential& potential, const NodalVector& x, bool prescribed_move);
   double PatchMerit(std::span<const double> ratio, double augmentation) const;

@@ -126,10 +126,10 @@ NewtonSystem::Evaluation NewtonSystem::Evaluate(const IncrementalPotential& pote
                                                 NodalVector& force) {
   forces_.element_forces.resize(model_.nodes_per_element() * model_.tetrahedra());
   const bool patches_valid = UpdatePatches(model_, x, team, forces_);
-  Smooth(pressure);
+  Smooth(potential, pressure);
   Evaluation total =
       model_.VisitElement([&]<class Element>(Element) { return EvaluateElements<Element>(potential, x, team); });
-  total.valid &= patches_valid;
+  total.valid = potential.untangling || (total.smallest_ratio > 0 && patches_valid);
   GatherForces(model_, forces_.element_forces, team, force);
   const NodalVector& load = *potential.load;
   total.energy += SumOverNodes(team, model_.nodes(), [&](std::size_t n) {
@@ -151,7 +151,7 @@ template <class Element>
 NewtonSystem::Evaluation NewtonSystem::EvaluateElements(const IncrementalPotential& potential, const NodalVector& x,
                                                         ThreadTeam& team) {
   Evaluation total;
-  std::atomic<bool> valid = true;
+  std::atomic<double> smallest = 1;
   double squares = 0;
   for (const TetGroup& group : model_.groups()) {
     const TetBody& body = model_.bodies()[group.body];
@@ -166,7 +166,7 @@ NewtonSystem::Evaluation NewtonSystem::EvaluateElements(const IncrementalPotenti
               for (int q = 0; q < Element::kPoints; ++q) {
                 const Mat3 F = GradientAt<Element>(model_, e, values, q);
                 const double volume = model_.rest_volume()[Element::kPoints * e + q];
-                if (!(Determinant(F) > 0)) valid.store(false, std::memory_order_relaxed);
+                TakeLeast(smallest, Determinant(F));
                 const PointPotential<Element, Law> point(potential, model_, body, laws[model_.law_of()[e]], e, q);
                 energy += volume * point.Energy(F);
                 const Mat3 P = point.Stress(F) + PatchPressure<Element>(model_.patches(), acting_, e, q) * Cofactor(F);
@@ -190,17 +190,18 @@ NewtonSystem::Evaluation NewtonSystem::EvaluateElements(const IncrementalPotenti
         group.laws);
   }
   total.force_scale = std::sqrt(squares);
-  total.valid = valid.load();
+  total.smallest_ratio = smallest.load();
   return total;
 }
 
 bool NewtonSystem::Factor(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
                           Tangent tangent, ThreadTeam& team) {
   std::fill(values_.begin(), values_.end(), 0.0);
-  Smooth(pressure);
+  untangling_ = potential.untangling;
+  Smooth(potential, pressure);
   model_.VisitElement([&]<class Element>(Element) {
     SetElementMatrices<Element>(potential, x, tangent, team);
-    AddElementMatrices<Element>();
+    AddElementMatrices<Element>(potential.untangling);
   });
   if (!potential.inertia.empty()) {
     for (std::size_t n = 0; n < model_.nodes(); ++n) {
@@ -211,7 +212,8 @@ bool NewtonSystem::Factor(const IncrementalPotential& potential, const NodalVect
   }
   const VolumePatches& patches = model_.patches();
   for (std::size_t n = 0; n < patches.size(); ++n) {
-    compliance_[n] = patches.rest_volume[n] / PatchEnergy{patches.modulus[n]}.ConvexSlope(forces_.ratio[n]);
+    const double slope = PatchEnergy{patches.modulus[n]}.ConvexSlope(forces_.ratio[n]);
+    compliance_[n] = potential.untangling ? 1 : patches.rest_volume[n] / slope;
     values_[diagonal_[unknown_of_patch_[n]]] = -compliance_[n];
   }
   const DirectSolver::Factored factored = solver_.Factor(values_);
@@ -268,7 +270,7 @@ void NewtonSystem::SetElementMatrices(const IncrementalPotential& potential, con
 }
 
 template <class Element>
-void NewtonSystem::AddElementMatrices() {
+void NewtonSystem::AddElementMatrices(bool without_patches) {
   constexpr int kComponents = 3 * Element::kNodes;
   constexpr std::size_t kTriangle = EntriesOf(kComponents), kSize = kTriangle + 4 * kComponents;
   const std::int32_t* place = places_.data();
@@ -281,7 +283,9 @@ void NewtonSystem::AddElementMatrices() {
     for (std::size_t k = 0; k < kTriangle; ++k) add(A[k]);
     const double* const B = A + kTriangle;
     for (std::size_t k = share_begin_[e]; k < share_begin_[e + 1]; ++k) {
-      for (int j = 0; j < kComponents; ++j) add(VolumeChange<kComponents>(shares_[k], B, j));
+      for (int j = 0; j < kComponents; ++j) {
+        add(without_patches ? 0 : VolumeChange<kComponents>(shares_[k], B, j));
+      }
     }
   }
 }
@@ -296,7 +300,7 @@ void NewtonSystem::Solve(const NodalVector& force, const NodalVector& prescribed
   }
   for (std::size_t n = 0; n < patches.size(); ++n) {
     const double law = PatchEnergy{patches.modulus[n]}.Pressure(forces_.ratio[n]);
-    right_side_[unknown_of_patch_[n]] = compliance_[n] * (pressure[n] - law);
+    right_side_[unknown_of_patch_[n]] = untangling_ ? 0 : compliance_[n] * (pressure[n] - law);
   }
   model_.VisitElement([&]<class Element>(Element) { MovePrescribed<Element>(prescribed); });
   solver_.Solve(right_side_);
@@ -342,8 +346,10 @@ std::array<std::int32_t, 3 * Element::kNodes> NewtonSystem::UnknownsOf(std::size
   return unknowns;
 }
 
-void NewtonSystem::Smooth(std::span<const double> pressure) {
-  acting_.resize(pressure.size());
+// The pressures that act on elements.
+void NewtonSystem::Smooth(const IncrementalPotential& potential, std::span<const double> pressure) {
+  acting_.assign(pressure.size(), 0.0);
+  if (potential.untangling) return;
   model_.patches().Smooth(pressure, acting_);
 }
 

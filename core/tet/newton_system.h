@@ -23,9 +23,10 @@ class NewtonSystem {
 
   // Force f on all nodes (unknown and prescribed) and the merit function's parts at x with pressures p.
   struct Evaluation {
-    bool valid = false;      // J > 0 at all points, theta > 0, all finite
-    double energy = 0;       // Phi without patches [J]
-    double force_scale = 0;  // norm of all element forces [N]: what f is small against
+    double smallest_ratio = 1;  // least J of all points
+    bool valid = false;         // J > 0 at all points, theta > 0, all finite
+    double energy = 0;          // Phi without patches [J]
+    double force_scale = 0;     // norm of all element forces [N]: what f is small against
   };
   Evaluation Evaluate(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
                       ThreadTeam& team, NodalVector& force);
@@ -61,10 +62,10 @@ class NewtonSystem {
   void SetElementMatrices(const IncrementalPotential& potential, const NodalVector& x, Tangent tangent,
                           ThreadTeam& team);
   template <class Element>
-  void AddElementMatrices();
+  void AddElementMatrices(bool without_patches);
   template <class Element>
   void MovePrescribed(const NodalVector& prescribed);
-  void Smooth(std::span<const double> pressure);
+  void Smooth(const IncrementalPotential& potential, std::span<const double> pressure);
   // Change of V_n theta_n of a patch with component j of an element of volume derivatives B.
   template <int kComponents>
   static double VolumeChange(const PatchShare& share, const double* B, int j) {
@@ -89,6 +90,7 @@ class NewtonSystem {
   std::vector<std::int32_t> rows_, columns_;
   std::vector<double> values_;
   std::vector<double> element_matrices_;
+  bool untangling_ = false;         // the matrix last factored
   std::vector<double> acting_;      // W p of each patch [Pa]
   std::vector<double> compliance_;  // C of each patch
   std::vector<double> right_side_;

@@ -1,6 +1,9 @@
 #ifndef FASCICLE_CORE_TET_POINTS_H_
 #define FASCICLE_CORE_TET_POINTS_H_
 
+#include <atomic>
+#include <cmath>
+
 #include "core/tet/forces.h"
 
 // What loops over elements and their quadrature points share.
@@ -56,6 +59,13 @@ FibreState FibreAt(const TetModel& model, std::size_t tet, const FibreDrive& dri
     fibre.inverse_step = drive.inverse_step;
   }
   return fibre;
+}
+
+// The least of all values in whatever order they come; NaN counts as less than any.
+inline void TakeLeast(std::atomic<double>& least, double value) {
+  double now = least.load(std::memory_order_relaxed);
+  while (!(value >= now) && !std::isnan(now) && !least.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
+  }
 }
 
 // Elements that a thread takes at least at a time.

@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_TET_POTENTIAL_H_
 
 #include "core/tet/points.h"
+#include "core/tet/untangling_law.h"
 
 namespace fascicle {
 
@@ -20,6 +21,8 @@ struct IncrementalPotential {
   NodalVector inertia_centre;             // c [m]
   const NodalVector* previous = nullptr;  // positions a step ago, for W_v [m]
   double viscous_rate = 0;                // 1/dt [1/s]; 0 without W_v
+  // UntanglingLaw in place of W, U and W_v.
+  bool untangling = false;
 };
 
 // The stress and energy at one point under the potential, without those of patches.
@@ -27,7 +30,9 @@ template <class Element, class Law>
 struct PointPotential {
   PointPotential(const IncrementalPotential& potential, const TetModel& model, const TetBody& body, const Law& law,
                  std::size_t tet, int q)
-      : law_(law), fibre_(FibreAt<Element>(model, tet, potential.drive, q)) {
+      : law_(law), untangling_(potential.untangling) {
+    if (untangling_) return;
+    fibre_ = FibreAt<Element>(model, tet, potential.drive, q);
     if (potential.viscous_rate == 0 || !body.HasStrainDamping()) return;
     mu_ = body.damping_mu * potential.viscous_rate;
     lambda_ = body.damping_lambda * potential.viscous_rate;
@@ -36,6 +41,7 @@ struct PointPotential {
   }
 
   double Energy(const Mat3& F) const {
+    if (untangling_) return UntanglingLaw::Energy(F);
     double energy = law_.Energy(F, fibre_);
     if (IsViscous()) {
       const Mat3 dE = StrainChange(F);
@@ -45,12 +51,14 @@ struct PointPotential {
   }
 
   Mat3 Stress(const Mat3& F) const {
+    if (untangling_) return UntanglingLaw::Stress(F);
     Mat3 P = law_.Stress(F, fibre_);
     if (IsViscous()) P += F * SecondStress(StrainChange(F));
     return P;
   }
 
   Mat9 Tangent(const Mat3& F) const {
+    if (untangling_) return UntanglingLaw::Tangent(F);
     Mat9 tangent = law_.Tangent(F, fibre_);
     if (IsViscous()) {
       const Vec9 f = Flatten(F);
@@ -68,6 +76,7 @@ struct PointPotential {
   Mat3 SecondStress(const Mat3& dE) const { return 2 * mu_ * dE + lambda_ * dE.trace() * Mat3::Identity(); }
 
   const Law& law_;
+  bool untangling_;
   FibreState fibre_;
   double mu_ = 0, lambda_ = 0;
   Mat3 previous_C_ = Mat3::Identity();

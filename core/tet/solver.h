@@ -14,7 +14,15 @@
 namespace fascicle {
 
 // What can go wrong with a step. An element counts as inverted also when it loses much of its volume in a single step.
-enum class StepProblem { kNone, kInvertedElement, kNotFinite, kNotConverged, kUnstable, kStepTooSmall };
+enum class StepProblem {
+  kNone,
+  kInvertedElement,
+  kNotFinite,
+  kNotConverged,  // the linear solve of the damping
+  kUnstable,
+  kStepTooSmall,
+  kNoEquilibrium  // Newton's method of implicit and quasi-static steps
+};
 
 struct StepReport {
   StepProblem problem = StepProblem::kNone;
