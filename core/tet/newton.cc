@@ -18,6 +18,13 @@ constexpr double kUntanglingTolerance = 1e-6;
 constexpr int kMaxUntangling = 200;
 constexpr double kUntanglingHold = 1e-3;
 
+// Whether the corners of every element are the right way round, also where a quadratic element hides a fold from its
+// points.
+bool AllUpright(const TetModel& model, const NodalVector& x) {
+  return std::all_of(model.corners().begin(), model.corners().end(),
+                     [&](const Tetrahedron& tet) { return Determinant(EdgeMatrix(x, tet)) > 0; });
+}
+
 }  // namespace
 
 NewtonSolver::NewtonSolver(const TetModel& model, ThreadTeam& team) : model_(model), team_(team), system_(model) {}
@@ -25,39 +32,50 @@ NewtonSolver::NewtonSolver(const TetModel& model, ThreadTeam& team) : model_(mod
 NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const NodalVector& target,
                                  const NewtonOptions& options, NodalVector& x, std::vector<double>& pressure) {
   NewtonResult result;
-  bool untangled = false;
   pressure.resize(model_.patches().size());
-  for (;;) {
-    bool prescribed_move = FindRemaining(target, x);
+  Iterate(potential, target, options, x, pressure, result);
+  // A start that is tangled, or a motion that no valid part of the linear answer follows, may have a place to go all
+  // the same: from where it is in order, and if that is no good, from rest.
+  for (int attempt = 0; attempt < 2 && result.end == NewtonResult::End::kInvalid; ++attempt) {
+    if (attempt == 1) x = model_.rest_positions();
+    if (!Untangle(target, x, result)) continue;
+    pressure.assign(pressure.size(), 0.0);
+    Iterate(potential, target, options, x, pressure, result);
+    if (attempt == 0 && result.end != NewtonResult::End::kConverged) result.end = NewtonResult::End::kInvalid;
+  }
+  return result;
+}
+
+void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVector& target,
+                           const NewtonOptions& options, NodalVector& x, std::vector<double>& pressure,
+                           NewtonResult& result) {
+  result.end = NewtonResult::End::kNotConverged;
+  for (int iteration = 0;; ++iteration) {
+    const bool prescribed_move = FindRemaining(target, x);
     now_ = system_.Evaluate(potential, x, pressure, team_, force_);
     if (!now_.valid) {
-      if (untangled || !Untangle(target, x, result)) {
-        result.end = NewtonResult::End::kInvalid;
-        return result;
-      }
-      untangled = true;
-      continue;
+      result.end = NewtonResult::End::kInvalid;
+      return;
     }
     const double norm = RelativeForce(result);
     if (!prescribed_move && norm <= options.tolerance && PressuresAgree(pressure, options.tolerance)) {
       result.end = NewtonResult::End::kConverged;
-      return result;
+      return;
     }
-    if (result.iterations >= options.max_iterations) return result;
+    if (iteration == options.max_iterations) return;
     ++result.iterations;
     double part = TakeStep(potential, NewtonSystem::Tangent::kExact, prescribed_move, x, pressure);
     if (part == 0) part = TakeStep(potential, NewtonSystem::Tangent::kProjected, prescribed_move, x, pressure);
     if (part == 1) PlacePrescribed(target, x);
     if (part == 0) {
-      // A prescribed motion that no valid part of the linear answer follows may still have a place to go.
-      if (!prescribed_move || untangled || !Untangle(target, x, result)) return result;
-      untangled = true;
+      if (prescribed_move) result.end = NewtonResult::End::kInvalid;
+      return;
     }
   }
 }
 
-// Brings prescribed components to their place and all elements to a positive volume, with UntanglingLaw: projected
-// Newton, which lowers its energy at every step. False when some element stays inverted.
+// Brings prescribed components to their place and all elements to a positive volume by projected Newton on
+// UntanglingLaw, which lowers its energy at every step. False when some element stays inverted.
 bool NewtonSolver::Untangle(const NodalVector& target, NodalVector& x, NewtonResult& result) {
   IncrementalPotential potential;
   potential.untangling = true;
@@ -92,7 +110,7 @@ bool NewtonSolver::Untangle(const NodalVector& target, NodalVector& x, NewtonRes
     if (part < kShortestPart) break;
     std::swap(x, trial_);
   }
-  return system_.Evaluate(potential, x, no_pressure, team_, force_).smallest_ratio > 0;
+  return system_.Evaluate(potential, x, no_pressure, team_, force_).smallest_ratio > 0 && AllUpright(model_, x);
 }
 
 // The part of the step with this tangent that was taken; 0, and nothing has moved, when none is of use.

@@ -45,6 +45,8 @@ class NewtonSolver {
   double TakeStep(const IncrementalPotential& potential, NewtonSystem::Tangent tangent, bool prescribed_move,
                   NodalVector& x, std::vector<double>& pressure);
   bool Untangle(const NodalVector& target, NodalVector& x, NewtonResult& result);
+  void Iterate(const IncrementalPotential& potential, const NodalVector& target, const NewtonOptions& options,
+               NodalVector& x, std::vector<double>& pressure, NewtonResult& result);
   void Move(const NodalVector& x, double part);
   void PlacePrescribed(const NodalVector& target, NodalVector& x) const;
   void LookAhead(std::span<const double> pressure);

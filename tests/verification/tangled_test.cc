@@ -1,0 +1,71 @@
+// Starts whose mesh is tangled: inverted elements in a body that wants to be at rest.
+#include <gtest/gtest.h>
+
+#include "core/tet/diagnostics.h"
+#include "tet_scenes.h"
+
+namespace fascicle {
+namespace {
+
+using namespace fascicle::testing;
+
+constexpr double kSize = 0.01;
+constexpr int kDivisions = 3;
+
+// A block held at one end, its nodes moved at random by up to 0.8 of their distance along each axis.
+Scene TangledBlock(unsigned seed, ElementOrder element) {
+  Body body = BoxBody(Vec3::Constant(kSize), {kDivisions, kDivisions, kDivisions},
+                      MooneyRivlin(std::array{3e4, 1e4, 8e7}));
+  body.constraints = {Fix(kZ0)};
+  const NodalVector moved = Shaken(body.mesh.nodes, 0.8 * kSize / kDivisions, seed);
+  for (std::size_t n = 0; n < moved.size(); ++n) body.initial_displacement.push_back(moved[n] - body.mesh.nodes[n]);
+  Scene scene = OneBody(std::move(body));
+  scene.method.stepping = Stepping::kQuasiStatic;
+  scene.method.element = element;
+  scene.output.frame_interval = scene.duration;
+  return scene;
+}
+
+int InvertedElements(const TetModel& model, const NodalVector& x) {
+  int inverted = 0;
+  for (const Tetrahedron& tet : model.corners()) inverted += Determinant(EdgeMatrix(x, tet)) <= 0;
+  return inverted;
+}
+
+class TangledTest : public ::testing::TestWithParam<ElementOrder> {};
+
+TEST_P(TangledTest, FiftyStartsRecoverToRest) {
+  int recovered = 0, least_inverted = 1 << 20, most_iterations = 0;
+  std::int64_t iterations = 0;
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    const Scene scene = TangledBlock(seed, GetParam());
+    const TetModel model(scene);
+    ThreadTeam team(1);
+    TetSolver solver(model, team);
+    TetState state = solver.InitialState();
+    least_inverted = std::min(least_inverted, InvertedElements(model, state.positions));
+    const StepReport report = solver.Advance(state, scene.duration);
+    iterations += state.iterations;
+    most_iterations = std::max(most_iterations, static_cast<int>(state.iterations));
+    const bool at_rest = report.problem == StepProblem::kNone &&
+                         LargestDifference(state.positions, model.rest_positions()) < 1e-6 * kSize;
+    EXPECT_TRUE(at_rest) << "seed " << seed << ", problem " << static_cast<int>(report.problem) << ", "
+                         << state.iterations << " iterations, off by "
+                         << LargestDifference(state.positions, model.rest_positions()) / kSize << ", least J "
+                         << state.smallest_ratio << ", inverted " << InvertedElements(model, state.positions);
+    recovered += at_rest;
+  }
+  std::printf("tangled starts (%d nodes an element): %d of 50 recover; at least %d of 162 elements inverted; Newton "
+              "iterations %.1f on average, at most %d\n",
+              GetParam() == ElementOrder::kLinear ? 4 : 10, recovered, least_inverted,
+              static_cast<double>(iterations) / 50, most_iterations);
+  EXPECT_GE(least_inverted, 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Elements, TangledTest, ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic),
+                         [](const auto& element) {
+                           return element.param == ElementOrder::kLinear ? "Linear" : "Quadratic";
+                         });
+
+}  // namespace
+}  // namespace fascicle
