@@ -1,11 +1,8 @@
 // Problem a of the FEBio reference results: a neo-Hookean cantilever under a dead end load.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <nlohmann/json.hpp>
-
 #include "core/tet/diagnostics.h"
+#include "reference_file.h"
 #include "tet_scenes.h"
 
 namespace fascicle {
@@ -13,18 +10,13 @@ namespace {
 
 using namespace fascicle::testing;
 
-std::string ReferenceFolder() {
-  const char* folder = std::getenv("FASCICLE_REFERENCE");
-  return folder != nullptr ? folder : FASCICLE_ROOT "/../shared/reference";
-}
-
 // 20 x 2 x 2 hexahedra of six tetrahedra; E = 1000 MPa, nu = 0.3, 1 N downwards on the free end. Brought to rest by
 // mass damping: the lowest bending mode, omega = 3.516 sqrt(E/rho) h / (sqrt(12) L^2) = 1e4 1/s, is damped by 0.4 of
 // critical. The density does not matter at rest.
 TEST(FebioTest, CantileverNodeByNode) {
-  std::ifstream file(ReferenceFolder() + "/febio/a_cantilever_neohookean.json");
-  if (!file) GTEST_SKIP() << "no reference results in " << ReferenceFolder() << " (set FASCICLE_REFERENCE)";
-  const nlohmann::json field = nlohmann::json::parse(file).at("full_fields_coarsest_mesh").at("tet4");
+  const auto results = ReadReference("a_cantilever_neohookean");
+  if (!results) GTEST_SKIP() << NoReference();
+  const nlohmann::json& field = results->at("full_fields_coarsest_mesh").at("tet4");
   ASSERT_EQ(field.at("run"), "a_tet4_20");
 
   Body body = BoxBody(Vec3(0.01, 0.001, 0.001), {20, 2, 2}, NeoHookean(std::array{1e9, 0.3}));

@@ -1,0 +1,118 @@
+// Quasi-static states of large deformation against closed forms.
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <set>
+
+#include "core/materials/uniaxial_curve.h"
+#include "reference_problems.h"
+#include "static_run.h"
+
+namespace fascicle {
+namespace {
+
+using namespace fascicle::testing;
+
+const Muscle kMuscle(std::array{500.0, 500.0, 1e6, 3e5, 1.2, 0.05, 6.6, 1.4});
+
+// Where a fibre that pulls against nothing but its own body comes to rest.
+UniaxialPoint FreeContraction(const Material& law, double activation) {
+  double low = 0.3, high = 1;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (UniaxialTension(law, activation, middle).nominal_stress < 0 ? low : high) = middle;
+  }
+  return UniaxialTension(law, activation, low);
+}
+
+TEST(ContractionTest, MuscleWithAFreeEnd) {
+  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
+    Body body = BoxBody(Vec3(0.01, 0.01, 0.04), {2, 2, 4}, kMuscle);
+    body.fibres = ConstantFibres(body.mesh, Vec3::UnitZ());
+    body.constraints = {Fix(kX0, {true, false, false}), Fix(kY0, {false, true, false}), Fix(kZ0, {false, false, true})};
+    body.activation = Ramp(0.5);
+    SteppedRun run(StaticScene(body, element));
+    ASSERT_TRUE(run.To(1));
+    const UniaxialPoint exact = FreeContraction(kMuscle, 0.5);
+    std::printf("stretch %.5f, J %.6f; %lld iterations\n", exact.stretch, exact.volume_ratio,
+                static_cast<long long>(run.state.iterations));
+    EXPECT_LT(exact.stretch, 0.8);
+    for (std::size_t n = 0; n < run.model.nodes(); ++n) {
+      const Vec3& X = run.model.rest_positions()[n];
+      const Vec3 x(exact.lateral_stretch * X[0], exact.lateral_stretch * X[1], exact.stretch * X[2]);
+      EXPECT_LT((run.state.positions[n] - x).norm(), 1e-6 * 0.04);
+    }
+  }
+}
+
+// Held at three points only, it contracts along its fibres, 30 degrees off its axis: x = R U X, U known, R any
+// rotation.
+TEST(ContractionTest, BarWithFibresAcross) {
+  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
+    const Vec3 fibre(0.5, 0, std::sqrt(0.75));
+    Body body = BoxBody(Vec3(0.01, 0.01, 0.04), {2, 2, 4}, kMuscle);
+    body.fibres = ConstantFibres(body.mesh, fibre);
+    body.regions.push_back({"origin", {0}, {}, {}});
+    body.regions.push_back({"along_x", {2}, {}, {}});
+    body.regions.push_back({"along_y", {6}, {}, {}});
+    body.constraints = {{6, {true, true, true}, {}}, {7, {false, true, true}, {}}, {8, {false, false, true}, {}}};
+    body.activation = Ramp(0.5);
+    SteppedRun run(StaticScene(body, element));
+    ASSERT_TRUE(run.To(1));
+    const UniaxialPoint exact = FreeContraction(kMuscle, 0.5);
+    const Mat3 U =
+        exact.lateral_stretch * Mat3::Identity() + (exact.stretch - exact.lateral_stretch) * fibre * fibre.transpose();
+    const NodalVector& X = run.model.rest_positions();
+    const NodalVector& x = run.state.positions;
+    for (std::size_t n = 1; n < X.size(); ++n) {
+      for (const std::size_t m : {std::size_t{0}, std::size_t{2}, std::size_t{6}, n - 1}) {
+        EXPECT_NEAR((x[n] - x[m]).norm(), (U * (X[n] - X[m])).norm(), 1e-6 * 0.04);
+      }
+    }
+  }
+}
+
+// A round rod, its surface curved, twisted with its length held [Rivlin 1948]: the torque and the axial force of a
+// Mooney-Rivlin law without compressibility, which K/mu = 1000 comes near to.
+TEST(TorsionTest, RoundRod) {
+  const double radius = 0.005, length = 0.02, angle = std::numbers::pi / 2, c1 = 0.03e6, c2 = 0.01e6;
+  TetMesh mesh = MakeFusiform(
+      {.length = length, .belly_radius = radius, .end_radius = radius, .divisions_across = 4, .divisions_along = 8});
+  std::set<std::array<std::int32_t, 2>> edges;
+  for (const Triangle& t : BoundaryTriangles(mesh)) {
+    for (int c = 0; c < 3; ++c) {
+      const auto [i, j] = std::minmax(t[c], t[(c + 1) % 3]);
+      const auto is_outside = [&](std::int32_t n) { return mesh.nodes[n].head<2>().norm() > (1 - 1e-9) * radius; };
+      if (!is_outside(i) || !is_outside(j) || !edges.insert({i, j}).second) continue;
+      Vec3 middle = 0.5 * (mesh.nodes[i] + mesh.nodes[j]);
+      middle.head<2>() *= radius / middle.head<2>().norm();
+      mesh.curved_edges.push_back({{i, j}, middle});
+    }
+  }
+  Body body = MakeBody("rod", std::move(mesh), NearlyIncompressible());
+  Constraint turn = Fix(kZ1);
+  turn.motion.rotation = Rotation{Vec3::Zero(), Vec3::UnitZ(), Ramp(angle)};
+  body.constraints = {Fix(kZ0), turn};
+  Scene scene = StaticScene(std::move(body), ElementOrder::kQuadratic);
+  scene.method.time_step = 0.25;
+  SteppedRun run(scene);
+  ASSERT_TRUE(run.To(1));
+  NodalVector force;
+  ForceWorkspace workspace;
+  ElasticForce(run.model, std::array{0.0}, run.state.positions, run.team, workspace, force);
+  double torque = 0, axial = 0;
+  for (const std::int32_t n : run.model.supports()[1].nodes) {
+    torque -= run.state.positions[n].cross(force[n])[2];
+    axial -= force[n][2];
+  }
+  const double twist = angle / length, fourth = std::pow(radius, 4);
+  const double exact_torque = std::numbers::pi * twist * fourth * (c1 + c2);
+  const double exact_axial = -0.5 * std::numbers::pi * twist * twist * fourth * (c1 + 2 * c2);
+  std::printf("torque %.5g N m, exact %.5g; axial force %.5g N, exact %.5g; %lld iterations\n", torque, exact_torque,
+              axial, exact_axial, static_cast<long long>(run.state.iterations));
+  EXPECT_NEAR(torque, exact_torque, 0.01 * exact_torque);
+  EXPECT_NEAR(axial, exact_axial, 0.02 * std::abs(exact_axial));
+}
+
+}  // namespace
+}  // namespace fascicle

@@ -1,0 +1,30 @@
+#ifndef FASCICLE_TESTS_VERIFICATION_REFERENCE_FILE_H_
+#define FASCICLE_TESTS_VERIFICATION_REFERENCE_FILE_H_
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+namespace fascicle::testing {
+
+inline std::string ReferenceFolder() {
+  const char* folder = std::getenv("FASCICLE_REFERENCE");
+  return folder != nullptr ? folder : FASCICLE_ROOT "/../shared/reference";
+}
+
+// One of the FEBio reference results; none when it is not there.
+inline std::optional<nlohmann::json> ReadReference(const std::string& name) {
+  std::ifstream file(ReferenceFolder() + "/febio/" + name + ".json");
+  if (!file) return std::nullopt;
+  return nlohmann::json::parse(file);
+}
+
+inline std::string NoReference() {
+  return "no reference results in " + ReferenceFolder() + " (set FASCICLE_REFERENCE)";
+}
+
+}  // namespace fascicle::testing
+
+#endif  // FASCICLE_TESTS_VERIFICATION_REFERENCE_FILE_H_
