@@ -217,6 +217,20 @@ TEST(CheckSceneTest, BodyThatWouldFlyAway) {
   EXPECT_THAT(ProblemOf(scene).message, HasSubstr("along x"));
 }
 
+// Equilibrium alone says nothing about where an unheld body is, loaded or not.
+TEST(CheckSceneTest, EquilibriumNeedsSupportsAlongEveryAxis) {
+  Scene scene = GoodScene();
+  scene.method.stepping = Stepping::kQuasiStatic;
+  Problems held;
+  CheckScene(scene, held);
+  EXPECT_TRUE(held.empty()) << held.ToString();
+  scene.bodies[0].constraints[0].axes = {true, false, true};
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("along y"));
+  scene.method.stepping = Stepping::kBackwardEuler;
+  CheckScene(scene, held);
+  EXPECT_TRUE(held.empty()) << held.ToString();
+}
+
 TEST(CheckSceneTest, Output) {
   Scene scene = GoodScene();
   scene.output.frame_interval = 1e-6;

@@ -98,6 +98,36 @@ TEST(TranslateScene, CarriesEverythingElse) {
   EXPECT_EQ(std::get<NodalForce>(body.loads[1].kind).total, Vec3(4, 5, 6));
 }
 
+TEST(TranslateScene, SteppingChoosesTheElementUnlessTheSceneDoes) {
+  v1::Scene wire = BoxScene();
+  const auto method = [&] {
+    const auto scene = Translate(wire);
+    EXPECT_NE(scene, nullptr);
+    return scene ? scene->method : TetMethod{};
+  };
+  EXPECT_EQ(method().element, ElementOrder::kLinear);
+  EXPECT_EQ(method().volume, VolumeForm::kNodal);
+  EXPECT_EQ(method().newton_tolerance, 1e-8);
+  const std::pair<v1::Stepping, Stepping> solved[] = {{v1::STEPPING_BACKWARD_EULER, Stepping::kBackwardEuler},
+                                                      {v1::STEPPING_NEWMARK, Stepping::kNewmark},
+                                                      {v1::STEPPING_BDF2, Stepping::kBdf2},
+                                                      {v1::STEPPING_QUASI_STATIC, Stepping::kQuasiStatic}};
+  for (const auto& [said, meant] : solved) {
+    wire.mutable_tet()->set_stepping(said);
+    EXPECT_EQ(method().stepping, meant);
+    EXPECT_EQ(method().element, ElementOrder::kQuadratic);
+  }
+  wire.mutable_tet()->set_element(v1::ELEMENT_LINEAR);
+  wire.mutable_tet()->set_volume(v1::VOLUME_FORM_ELEMENT);
+  wire.mutable_tet()->set_newton_tolerance(1e-6);
+  EXPECT_EQ(method().element, ElementOrder::kLinear);
+  EXPECT_EQ(method().volume, VolumeForm::kElement);
+  EXPECT_EQ(method().newton_tolerance, 1e-6);
+  wire.mutable_tet()->set_stepping(v1::STEPPING_EXPLICIT);
+  wire.mutable_tet()->set_element(v1::ELEMENT_QUADRATIC);
+  EXPECT_EQ(method().element, ElementOrder::kQuadratic);
+}
+
 TEST(TranslateScene, MakesEveryLawWithItsParameters) {
   for (const LawInfo& law : Laws()) {
     v1::Scene wire = BoxScene();
