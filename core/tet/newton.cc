@@ -9,6 +9,8 @@ namespace {
 // Sufficient decrease [Nocedal & Wright 2006, 3.1].
 constexpr double kArmijo = 1e-4;
 constexpr double kShortestPart = 1.0 / 1024;
+// Least part of a projection that is worth another factorization.
+constexpr double kLeastProjection = 1.0 / 16;
 // rho of the augmented Lagrangian as part of the patch's modulus, where the Lagrangian falls without it.
 constexpr double kLeastAugmentation = 0.01;
 // Untangling ends near rest once every J is above that, or else at rest.
@@ -50,6 +52,7 @@ void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVec
                            const NewtonOptions& options, NodalVector& x, std::vector<double>& pressure,
                            NewtonResult& result) {
   result.end = NewtonResult::End::kNotConverged;
+  double projection = 0;
   for (int iteration = 0;; ++iteration) {
     const bool prescribed_move = FindRemaining(target, x);
     now_ = system_.Evaluate(potential, x, pressure, team_, force_);
@@ -64,8 +67,13 @@ void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVec
     }
     if (iteration == options.max_iterations) return;
     ++result.iterations;
-    double part = TakeStep(potential, NewtonSystem::Tangent::kExact, prescribed_move, x, pressure);
-    if (part == 0) part = TakeStep(potential, NewtonSystem::Tangent::kProjected, prescribed_move, x, pressure);
+    double part = 0;
+    for (;;) {
+      part = TakeStep(potential, projection, prescribed_move, x, pressure);
+      if (part > 0 || projection == 1) break;
+      projection = std::min(1.0, std::max(kLeastProjection, 4 * projection));
+    }
+    projection = projection > kLeastProjection ? projection / 4 : 0;
     if (part == 1) PlacePrescribed(target, x);
     if (part == 0) {
       if (prescribed_move) result.end = NewtonResult::End::kInvalid;
@@ -95,7 +103,7 @@ bool NewtonSolver::Untangle(const NodalVector& target, NodalVector& x, NewtonRes
     now_ = now;
     if (RelativeForce(result) < (now.smallest_ratio >= kUntangled ? kUntangledForce : kUntanglingTolerance)) break;
     ++result.iterations;
-    if (!system_.Factor(potential, x, no_pressure, NewtonSystem::Tangent::kProjected, team_)) return false;
+    if (!system_.Factor(potential, x, no_pressure, 1, team_)) return false;
     system_.Solve(force_, remaining_, no_pressure, dx_, dp_);
     double slope = 0;
     for (std::size_t n = 0; n < x.size(); ++n) slope -= force_[n].dot(dx_[n]);
@@ -113,10 +121,10 @@ bool NewtonSolver::Untangle(const NodalVector& target, NodalVector& x, NewtonRes
   return system_.Evaluate(potential, x, no_pressure, team_, force_).smallest_ratio > 0 && AllUpright(model_, x);
 }
 
-// The part of the step with this tangent that was taken; 0, and nothing has moved, when none is of use.
-double NewtonSolver::TakeStep(const IncrementalPotential& potential, NewtonSystem::Tangent tangent,
-                              bool prescribed_move, NodalVector& x, std::vector<double>& pressure) {
-  if (!system_.Factor(potential, x, pressure, tangent, team_)) return 0;
+// The part of the step with tangents projected so that was taken; 0, and nothing has moved, when none is of use.
+double NewtonSolver::TakeStep(const IncrementalPotential& potential, double projection, bool prescribed_move,
+                              NodalVector& x, std::vector<double>& pressure) {
+  if (!system_.Factor(potential, x, pressure, projection, team_)) return 0;
   system_.Solve(force_, remaining_, pressure, dx_, dp_);
   LookAhead(pressure);
   const double part = LineSearch(potential, x, prescribed_move);

@@ -27,10 +27,10 @@ struct NewtonResult {
 //   L(x) = Phi without patches + sum V_n [p'_n theta_n + rho_n/2 (theta_n - theta'_n)^2],   p' = p + dp,
 // theta' the volume ratio that goes with p' to first order: its slope along dx is -dx.A dx - sum rho V dtheta^2, so it
 // falls wherever A is positive definite [Nocedal & Wright 2006, 18.3]. The exact tangent comes first; where its
-// inertia is not that of a minimum, the projected one takes over for the iteration. Components that are prescribed move
-// with the first iterations, as the linear system says the rest of the body would follow. A start with inverted
-// elements, or a prescribed motion that inverts some, is first brought in order with UntanglingLaw. One thread at a
-// time.
+// inertia is not that of a minimum, it is moved towards the projected one, no further than it takes: that one alone is
+// far stiffer, and creeps. Components that are prescribed move with the first iterations, as the linear system says the
+// rest of the body would follow. A start with inverted elements, or a prescribed motion that inverts some, is first
+// brought in order with UntanglingLaw. One thread at a time.
 class NewtonSolver {
  public:
   // Model and team must outlive the solver.
@@ -42,8 +42,8 @@ class NewtonSolver {
                      NodalVector& x, std::vector<double>& pressure);
 
  private:
-  double TakeStep(const IncrementalPotential& potential, NewtonSystem::Tangent tangent, bool prescribed_move,
-                  NodalVector& x, std::vector<double>& pressure);
+  double TakeStep(const IncrementalPotential& potential, double projection, bool prescribed_move, NodalVector& x,
+                  std::vector<double>& pressure);
   bool Untangle(const NodalVector& target, NodalVector& x, NewtonResult& result);
   void Iterate(const IncrementalPotential& potential, const NodalVector& target, const NewtonOptions& options,
                NodalVector& x, std::vector<double>& pressure, NewtonResult& result);

@@ -195,12 +195,12 @@ NewtonSystem::Evaluation NewtonSystem::EvaluateElements(const IncrementalPotenti
 }
 
 bool NewtonSystem::Factor(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
-                          Tangent tangent, ThreadTeam& team) {
+                          double projection, ThreadTeam& team) {
   std::fill(values_.begin(), values_.end(), 0.0);
   untangling_ = potential.untangling;
   Smooth(potential, pressure);
   model_.VisitElement([&]<class Element>(Element) {
-    SetElementMatrices<Element>(potential, x, tangent, team);
+    SetElementMatrices<Element>(potential, x, projection, team);
     AddElementMatrices<Element>(potential.untangling);
   });
   if (!potential.inertia.empty()) {
@@ -222,7 +222,7 @@ bool NewtonSystem::Factor(const IncrementalPotential& potential, const NodalVect
 
 // Of every element: the lower triangle of A, then the derivatives of the integrals of L_c J, a row for each corner.
 template <class Element>
-void NewtonSystem::SetElementMatrices(const IncrementalPotential& potential, const NodalVector& x, Tangent tangent,
+void NewtonSystem::SetElementMatrices(const IncrementalPotential& potential, const NodalVector& x, double projection,
                                       ThreadTeam& team) {
   constexpr int kComponents = 3 * Element::kNodes;
   constexpr std::size_t kSize = EntriesOf(kComponents) + 4 * kComponents;
@@ -238,7 +238,7 @@ void NewtonSystem::SetElementMatrices(const IncrementalPotential& potential, con
         const Mat3 F = GradientAt<Element>(model_, e, values, q);
         Mat9 H = PointPotential<Element, Law>(potential, model_, body, law, e, q).Tangent(F);
         AddCofactorTangent(PatchPressure<Element>(model_.patches(), acting_, e, q), F, H);
-        if (tangent == Tangent::kProjected) H = NearestPositive(H);
+        if (projection > 0) H += projection * (NearestPositive(H) - H);
         const auto G = ShapeGradients<Element>(model_, e, q);
         const Mat3 cofactor = Cofactor(F);
         for (int b = 0; b < Element::kNodes; ++b) {

@@ -12,8 +12,8 @@ namespace fascicle {
 //   [ A   B^T ] [dx]   [ f                      ]
 //   [ B   -C  ] [dp] = [ C (p - U'(theta))      ],    B = V_n dtheta_n/dx,   C = V_n / U''(theta_n)
 //
-// f the force -dPhi/dx with p in place of U'(theta), A its derivative -df/dx, or that with the tangent of every point
-// projected to positive semidefinite. Eliminating dp gives Newton's equation of Phi, but p is free to differ from
+// f the force -dPhi/dx with p in place of U'(theta), A its derivative -df/dx, or that with the tangents of the points
+// moved towards positive semidefinite ones. Eliminating dp gives Newton's equation of Phi, but p is free to differ from
 // U'(theta) on the way, which spares the stiff volume energy's detours. Prescribed components are eliminated. All
 // bits are the same for any number of threads.
 class NewtonSystem {
@@ -33,11 +33,11 @@ class NewtonSystem {
   // theta of each patch at the x of the last Evaluate.
   const std::vector<double>& ratios() const { return forces_.ratio; }
 
-  enum class Tangent { kExact, kProjected };
-  // Assembles and factors at x and p, theta from the last Evaluate at that x. False when the matrix can't be factored
-  // or its inertia is not that of a minimum.
+  // Assembles and factors at x and p, theta from the last Evaluate at that x. `projection` in [0, 1] is the part of
+  // every point's tangent that its projection to a positive semidefinite one replaces: 0 for the exact tangent. False
+  // when the matrix can't be factored or its inertia is not that of a minimum.
   bool Factor(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
-              Tangent tangent, ThreadTeam& team);
+              double projection, ThreadTeam& team);
 
   // Solves for the step: `force` as from Evaluate; `prescribed` the change of prescribed components, which dx takes
   // over.
@@ -59,7 +59,7 @@ class NewtonSystem {
   template <class Element>
   Evaluation EvaluateElements(const IncrementalPotential& potential, const NodalVector& x, ThreadTeam& team);
   template <class Element>
-  void SetElementMatrices(const IncrementalPotential& potential, const NodalVector& x, Tangent tangent,
+  void SetElementMatrices(const IncrementalPotential& potential, const NodalVector& x, double projection,
                           ThreadTeam& team);
   template <class Element>
   void AddElementMatrices(bool without_patches);
