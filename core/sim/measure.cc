@@ -68,7 +68,7 @@ std::vector<SeriesInfo> SeriesOf(const TetModel& model) {
       {"energy/external_work", "J", "work that loads and gravity have done so far"},
       {"energy/dissipated", "J", "energy that damping has taken so far"},
       {"solver/step", "s", "length of the last time step"},
-      {"solver/iterations", "1", "iterations of linear solves since the frame before"},
+      {"solver/iterations", "1", "iterations of linear solves, or of Newton's method, since the frame before"},
   };
   const std::vector<RegionReaction> reactions = RegionReactions(model);
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {

@@ -49,10 +49,10 @@ VolumeRatios VolumeRatiosOf(const TetModel& model, std::size_t body_index, const
     for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
       const auto values = ValuesOf<Element>(model, e, x);
       for (int q = 0; q < Element::kPoints; ++q) {
-        const double J = Determinant(GradientAt<Element>(model, e, values, q));
-        const double volume = model.rest_volume()[Element::kPoints * e + q];
-        rest += volume;
-        present += volume * J;
+        const double volume = Element::kPointWeight * Determinant(EdgeMatrix(Element::Corners(values, q))) / 6;
+        const double J = volume / model.rest_volume()[Element::kPoints * e + q];
+        rest += model.rest_volume()[Element::kPoints * e + q];
+        present += volume;
         if ((e == body.tet_begin && q == 0) || !(J >= ratios.smallest)) ratios.smallest = J;
       }
     }

@@ -189,17 +189,33 @@ double NewtonSolver::LineSearch(const IncrementalPotential& potential, const Nod
     if (!(slope <= 0)) return 0;
   }
   const double merit = now_.energy + PatchMerit(ratio_, augmentation);
+  double step_length = 0;
+  for (const Vec3& d : dx_) step_length = std::max(step_length, d.norm());
   for (double part = 1; part >= kShortestPart; part /= 2) {
     Move(x, part);
     const NewtonSystem::Evaluation trial = system_.Evaluate(potential, trial_, pressure_ahead_, team_, trial_force_);
     if (!trial.valid) continue;
     if (prescribed_move) return part;
     const double trial_merit = trial.energy + PatchMerit(system_.ratios(), augmentation);
-    // Below rounding nothing can be told from a difference of energies.
-    const double rounding = 1e-13 * (std::abs(now_.energy) + std::abs(merit));
-    if (trial_merit <= merit + kArmijo * part * slope + rounding) return part;
+    if (trial_merit <= merit + kArmijo * part * slope) return part;
+    // Where rounding hides the difference of the energies, which may be sums of much larger parts, their slopes tell
+    // [Hager & Zhang 2005, 4.1].
+    const double rounding = 1e-13 * (std::abs(now_.energy) + std::abs(merit)) + 1e-8 * now_.force_scale * step_length;
+    if (trial_merit <= merit + rounding && SlopeAt(augmentation) <= (2 * kArmijo - 1) * slope) return part;
   }
   return 0;
+}
+
+// Slope of the augmented Lagrangian along dx at the trial positions.
+double NewtonSolver::SlopeAt(double augmentation) const {
+  const VolumePatches& patches = model_.patches();
+  double slope = 0;
+  for (std::size_t n = 0; n < dx_.size(); ++n) slope -= trial_force_[n].dot(dx_[n]);
+  for (std::size_t n = 0; n < patches.size(); ++n) {
+    slope += augmentation * patches.rest_volume[n] * patches.modulus[n] * (system_.ratios()[n] - ratio_ahead_[n]) *
+             (ratio_ahead_[n] - ratio_[n]);
+  }
+  return slope;
 }
 
 // What is left of the way to the prescribed components; whether there is any.
@@ -234,7 +250,7 @@ double NewtonSolver::RelativeForce(NewtonResult& result) const {
     largest = free.norm();
     result.node = n;
   }
-  result.residual = std::sqrt(squares) / now_.force_scale;
+  result.residual = std::max(0.0, std::sqrt(squares) - now_.rounding) / now_.force_scale;
   return result.residual;
 }
 

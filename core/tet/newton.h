@@ -52,6 +52,7 @@ class NewtonSolver {
   void LookAhead(std::span<const double> pressure);
   double LineSearch(const IncrementalPotential& potential, const NodalVector& x, bool prescribed_move);
   double PatchMerit(std::span<const double> ratio, double augmentation) const;
+  double SlopeAt(double augmentation) const;
   bool FindRemaining(const NodalVector& target, const NodalVector& x);
   double RelativeForce(NewtonResult& result) const;
   bool PressuresAgree(std::span<const double> pressure, double tolerance) const;

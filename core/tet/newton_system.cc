@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "core/base/check.h"
@@ -143,7 +144,13 @@ NewtonSystem::Evaluation NewtonSystem::Evaluate(const IncrementalPotential& pote
     return energy;
   });
   total.valid &= std::isfinite(total.energy);
-  total.force_scale = std::hypot(total.force_scale, force_floor_);
+  const double loads = SumOverNodes(team, model_.nodes(), [&](std::size_t n) { return load[n].squaredNorm(); });
+  total.force_scale = std::hypot(total.force_scale, force_floor_, std::sqrt(loads));
+  if (!potential.inertia.empty()) {
+    const double squares =
+        SumOverNodes(team, model_.nodes(), [&](std::size_t n) { return (potential.inertia[n] * x[n]).squaredNorm(); });
+    total.rounding = 4 * std::numeric_limits<double>::epsilon() * std::sqrt(squares);
+  }
   return total;
 }
 

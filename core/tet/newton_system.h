@@ -24,9 +24,10 @@ class NewtonSystem {
   // Force f on all nodes (unknown and prescribed) and the merit function's parts at x with pressures p.
   struct Evaluation {
     double smallest_ratio = 1;  // least J of all points
+    double rounding = 0;        // of the force of inertia, a small difference of positions times a large number [N]
     bool valid = false;         // J > 0 at all points, theta > 0, all finite
     double energy = 0;          // Phi without patches [J]
-    double force_scale = 0;     // norm of all element forces [N]: what f is small against
+    double force_scale = 0;     // norm of all element forces and loads [N]: what f is small against
   };
   Evaluation Evaluate(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
                       ThreadTeam& team, NodalVector& force);

@@ -44,10 +44,22 @@ TetState TetSolver::InitialState() {
   }
   PrescribePositions(model_, controls_next_, state.positions);
   PrescribeVelocities(model_, controls_next_, state.velocities);
-  UpdateForce(method_.stepping == Stepping::kExplicit && model_.has_strain_damping() ? &state.velocities : nullptr,
-              FibreDrive{controls_next_.activation}, state);
+  const ForceReport forces =
+      UpdateForce(method_.stepping == Stepping::kExplicit && model_.has_strain_damping() ? &state.velocities : nullptr,
+                  FibreDrive{controls_next_.activation}, state);
+  if (method_.stepping == Stepping::kNewmark && forces.valid) SetFirstAcceleration(state);
   state.stable.activation.assign(model_.activations().size(), 0.0);
   return state;
+}
+
+// a = M^-1 (f + loads) - a_m v: without it the first step of a body that is let go would be of first order.
+void TetSolver::SetFirstAcceleration(TetState& state) {
+  ExternalForce(model_, controls_next_, team_, external_next_);
+  for (std::size_t n = 0; n < model_.nodes(); ++n) {
+    const Vec3 damping = model_.mass_damping()[n] * state.velocities[n];
+    state.accelerations[n] =
+        model_.inverse_mass()[n].cwiseProduct(state.force[n] + external_next_[n] - model_.mass()[n] * damping);
+  }
 }
 
 StepReport TetSolver::Advance(TetState& state, double end) {

@@ -71,6 +71,7 @@ class TetSolver {
   StepReport AdvanceExplicit(TetState& state, double end);
   StepReport AdvanceImplicit(TetState& state, double end);
   bool IsImplicit() const { return method_.stepping != Stepping::kExplicit && method_.stepping != Stepping::kMixed; }
+  void SetFirstAcceleration(TetState& state);
   double SmallestRatio(const NodalVector& x) const;
   FibreDrive DriveOf(const TetState& now, double dt) const;
 

@@ -39,7 +39,7 @@ struct TetState {
   StableStep stable;
   std::int32_t cuts = 0;        // the step is halved so many times
   std::int64_t last_cut = 0;    // step at which `cuts` last changed
-  std::int64_t iterations = 0;  // of linear solves so far
+  std::int64_t iterations = 0;  // of linear solves, or of Newton's method, so far
 
   void Save(ArchiveWriter& archive) const;
   // Sets failed() of the archive when sizes differ from the present ones.
