@@ -113,11 +113,18 @@ TEST(DigestTest, ChangesWithAnyPart) {
   EXPECT_TRUE(changed([](Frame& f) { f.series.back() += 1e-12; }));
 }
 
+#ifdef FASCICLE_SANITIZED
+INSTANTIATE_TEST_SUITE_P(Steppings, DeterminismTest,
+                         ::testing::Combine(::testing::Values(Stepping::kExplicit, Stepping::kMixed,
+                                                              Stepping::kQuasiStatic),
+                                            ::testing::Values(ElementOrder::kLinear)));
+#else
 INSTANTIATE_TEST_SUITE_P(Steppings, DeterminismTest,
                          ::testing::Combine(::testing::Values(Stepping::kExplicit, Stepping::kMixed,
                                                               Stepping::kBackwardEuler, Stepping::kNewmark,
                                                               Stepping::kBdf2, Stepping::kQuasiStatic),
                                             ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic)));
+#endif
 
 }  // namespace
 }  // namespace fascicle
