@@ -96,8 +96,8 @@ TEST_F(ExampleTest, FusiformQuasiStatic) {
   const json summary = RunExample("fusiform_quasi_static");
   const double force = Final(summary, "muscle/reaction/insertion/z");
   EXPECT_NEAR(Final(summary, "muscle/reaction/origin/z"), -force, 1e-6 * force);
-  // Peak stress times the area of the ends, 0.3 MPa pi 36 mm^2 = 34 N, bounds it from below, and times that of the belly,
-  // 185 N, from above.
+  // Peak stress times the area of the ends, 0.3 MPa pi 36 mm^2 = 34 N, bounds it from below, and times that of the
+  // belly, 185 N, from above.
   EXPECT_GT(force, 34);
   EXPECT_LT(force, 185);
   EXPECT_NEAR(Final(summary, "muscle/volume_ratio"), 1, 0.01);

@@ -14,8 +14,8 @@ constexpr int kDivisions = 3;
 
 // A block held at one end, its nodes moved at random by up to 0.8 of their distance along each axis.
 Scene TangledBlock(unsigned seed, ElementOrder element) {
-  Body body = BoxBody(Vec3::Constant(kSize), {kDivisions, kDivisions, kDivisions},
-                      MooneyRivlin(std::array{3e4, 1e4, 8e7}));
+  Body body =
+      BoxBody(Vec3::Constant(kSize), {kDivisions, kDivisions, kDivisions}, MooneyRivlin(std::array{3e4, 1e4, 8e7}));
   body.constraints = {Fix(kZ0)};
   const NodalVector moved = Shaken(body.mesh.nodes, 0.8 * kSize / kDivisions, seed);
   for (std::size_t n = 0; n < moved.size(); ++n) body.initial_displacement.push_back(moved[n] - body.mesh.nodes[n]);
@@ -55,10 +55,11 @@ TEST_P(TangledTest, FiftyStartsRecoverToRest) {
                          << state.smallest_ratio << ", inverted " << InvertedElements(model, state.positions);
     recovered += at_rest;
   }
-  std::printf("tangled starts (%d nodes an element): %d of 50 recover; at least %d of 162 elements inverted; Newton "
-              "iterations %.1f on average, at most %d\n",
-              GetParam() == ElementOrder::kLinear ? 4 : 10, recovered, least_inverted,
-              static_cast<double>(iterations) / 50, most_iterations);
+  std::printf(
+      "tangled starts (%d nodes an element): %d of 50 recover; at least %d of 162 elements inverted; Newton "
+      "iterations %.1f on average, at most %d\n",
+      GetParam() == ElementOrder::kLinear ? 4 : 10, recovered, least_inverted, static_cast<double>(iterations) / 50,
+      most_iterations);
   EXPECT_GE(least_inverted, 10);
 }
 
