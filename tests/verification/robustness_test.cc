@@ -55,10 +55,12 @@ TEST_P(RobustnessTest, Twist) {
   EXPECT_EQ(run.state.step, 10);
 }
 
-// Further on, the sides of the nearly incompressible cube fold over the edges of its ends.
+// Quadratic elements do not get the nearly incompressible cube further, where its sides fold over the edges of its
+// ends.
 TEST_P(RobustnessTest, CompressedCubes) {
   for (const auto& [name, law, height] :
-       {std::tuple<const char*, Material, double>{"Mooney-Rivlin", NearlyIncompressible(), 0.45},
+       {std::tuple<const char*, Material, double>{"Mooney-Rivlin", NearlyIncompressible(),
+                                                  GetParam() == ElementOrder::kLinear ? 0.3 : 0.45},
         {"neo-Hookean", NeoHookean(std::array{1e5, 0.3}), 0.3}}) {
     SteppedRun run(SceneOf(ClampedCube(4, law, Ramp(0.01 * (height - 1)))));
     Finish(run, std::string("a ") + name + " cube compressed to " + std::to_string(height) + " of its height");
