@@ -116,7 +116,7 @@ void UpdateCornerVolumes(const TetModel& model, const NodalVector& x, ThreadTeam
   });
 }
 
-// Energy of the patches' share in elements [begin, end): each patch's energy density, taken at the elements' corners.
+// An element's share of the patches' energy [J]: the energy density of each, times the volume at its corner.
 template <class Element>
 double PatchEnergyOf(const TetModel& model, const ForceWorkspace& workspace, std::size_t e) {
   const VolumePatches& patches = model.patches();

@@ -79,7 +79,7 @@ class TetModel {
   NodalVector InitialPositions() const;
   const std::vector<Tetrahedron>& corners() const { return tetrahedra_; }
   ElementOrder order() const { return scene_->method.element; }
-  // Nodes of one element; calls visitor(LinearElement{}) or visitor(QuadraticElement{}).
+  // Calls visitor(LinearElement{}) or visitor(QuadraticElement{}).
   template <class Visitor>
   decltype(auto) VisitElement(const Visitor& visitor) const {
     return order() == ElementOrder::kLinear ? visitor(LinearElement{}) : visitor(QuadraticElement{});

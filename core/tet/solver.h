@@ -46,12 +46,10 @@ class TetSolver {
 
   // Makes one step towards `end` [s], which it never passes and hits exactly. A step that inverts or crushes an
   // element, gives values that are not finite or gains energy from instability is made again with half the length, up
-  // to kMaxCuts times. On a problem the state keeps its time and motion.
+  // to kMaxCuts times. Implicit and quasi-static steps go as far as Newton's method converges: from all the way at
+  // first, halved when it does not and doubled when it was easy. On a problem the state keeps its time and motion.
   StepReport Advance(TetState& state, double end);
 
-  // Implicit and quasi-static steps go as far as Newton's method converges: from a whole frame interval at first,
-  // halved when it does not and doubled when it was easy.
-  //
   // One attempt to step from `now` to `next_time`, without cutting; fills all of `next` but what Advance looks after.
   StepReport Step(const TetState& now, double next_time, TetState& next);
 
