@@ -1,6 +1,9 @@
 #include <iostream>
 #include <memory>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include "client/cli/command.h"
 #include "client/cli/progress_bar.h"
 #include "client/cli/summary.h"

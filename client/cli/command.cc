@@ -3,6 +3,9 @@
 #include <cstdio>
 #include <iostream>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include "client/lib/scene_file.h"
 
 namespace fascicle::client {
@@ -92,9 +95,19 @@ Client Connect(const Context& context) {
   return Client(context.server.empty() ? kDefaultServer : context.server);
 }
 
-ScenePackage LoadSceneOrFail(const std::string& path) {
+void AddSceneArgument(CLI::App& command, SceneArgument& scene) {
+  command.add_option("SCENE", scene.path, "The scene file (JSON, see `fascicle schema`)")->required();
+  command
+      .add_option("--set", scene.settings,
+                  "Change the scene: a field's path, =, and its value; may be repeated. 'bodies[0].density=1000'")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+}
+
+ScenePackage LoadSceneOrFail(const SceneArgument& scene) {
+  const std::string& path = scene.path;
   Problems problems;
-  std::optional<ScenePackage> package = LoadScene(path, problems);
+  std::optional<ScenePackage> package = LoadScene(path, problems, scene.settings);
   if (!package) {
     // What concerns the file as a whole is told with its name.
     Error error{Error::Kind::kInvalid, "the scene " + path + " is not valid", "INVALID_SCENE", {}};

@@ -5,11 +5,15 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include <CLI/App.hpp>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "client/lib/client.h"
+
+namespace CLI {
+class App;
+}
 
 namespace fascicle::client {
 
@@ -57,8 +61,17 @@ void PrintJson(const Json& value);
 // A connection to the server of `--server`, by default this machine's.
 Client Connect(const Context& context);
 
+// A scene file as the command line names it.
+struct SceneArgument {
+  std::string path;
+  std::vector<std::string> settings;
+};
+
+// SCENE and --set of a sub-command. `scene` must outlive parsing.
+void AddSceneArgument(CLI::App& command, SceneArgument& scene);
+
 // Loads a scene and the files that it names; CommandError with all problems.
-ScenePackage LoadSceneOrFail(const std::string& path);
+ScenePackage LoadSceneOrFail(const SceneArgument& scene);
 
 // "jobs/ID" for "ID" or "jobs/ID".
 std::string JobName(const std::string& given);

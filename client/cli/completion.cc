@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <CLI/App.hpp>
+
 #include "client/cli/command.h"
 
 namespace fascicle::client {

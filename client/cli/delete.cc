@@ -2,6 +2,9 @@
 #include <memory>
 #include <vector>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include "client/cli/command.h"
 
 namespace fascicle::client {

@@ -4,6 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include "client/cli/builtin_examples.h"
 #include "client/cli/command.h"
 #include "client/lib/replace_file.h"

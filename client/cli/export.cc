@@ -3,6 +3,9 @@
 #include <optional>
 #include <set>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include "client/cli/command.h"
 #include "client/cli/follow.h"
 #include "client/export/csv.h"

@@ -3,6 +3,9 @@
 #include <memory>
 #include <vector>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include "client/cli/command.h"
 #include "client/cli/progress_bar.h"
 #include "client/cli/summary.h"

@@ -1,5 +1,8 @@
 #include <unistd.h>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include <cmath>
 #include <cstdio>
 #include <iostream>

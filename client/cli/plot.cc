@@ -1,8 +1,12 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <memory>
 
 #include "client/cli/command.h"
@@ -17,12 +21,15 @@ constexpr const char* kExamples =
     R"(  fascicle plot 3f2a                                         every series that is not zero, in the terminal
   fascicle plot 3f2a --series '*/reaction/*' --series 'energy/*'
   fascicle plot 3f2a --series '*volume_ratio' --out volume.png
+  fascicle plot 3f2a 77c1 --series '*/reaction/end/z' --x probe/end/z --from 1 --out force_length.png
   fascicle plot 3f2a --series 'probe/*' --json              times and values, one object for each series
 )";
 
 struct Options {
-  std::string job;
+  std::vector<std::string> jobs;
   std::vector<std::string> series;
+  std::string x;
+  double from = 0;  // [s]
   std::string out;
 };
 
@@ -31,17 +38,70 @@ int Columns() {
   return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
+const SeriesTable::Column& ColumnOf(const SeriesTable& table, const std::string& name) {
+  std::string known;
+  for (const SeriesTable::Column& column : table.columns()) {
+    if (column.name == name) return column;
+    known += "\n  " + column.name;
+  }
+  throw CommandError::Invalid("no series is called " + name + "; there are:" + known);
+}
+
+// Puts a series in place of time, and leaves out what was before `from`.
+void SetAbscissa(const SeriesTable& table, const Options& options, std::vector<PlotPanel>& panels) {
+  const SeriesTable::Column* const x = options.x.empty() ? nullptr : &ColumnOf(table, options.x);
+  const std::vector<double>& times = table.times();
+  const auto first = std::lower_bound(times.begin(), times.end(), options.from) - times.begin();
+  for (PlotPanel& panel : panels) {
+    if (x != nullptr) panel.x_label = x->name + (x->unit == "1" ? "" : " [" + x->unit + "]");
+    for (PlotLine& line : panel.lines) {
+      if (x != nullptr) line.x = x->values;
+      line.x.erase(line.x.begin(), line.x.begin() + first);
+      line.y.erase(line.y.begin(), line.y.begin() + first);
+    }
+  }
+}
+
+// Adds a job's lines to the panels of other jobs with the same axes.
+void Merge(const v1::Job& job, std::vector<PlotPanel> own, std::vector<PlotPanel>& panels) {
+  for (PlotPanel& panel : own) {
+    for (PlotLine& line : panel.lines) line.name = job.scene_name() + ": " + line.name;
+    const auto same = std::find_if(panels.begin(), panels.end(), [&](const PlotPanel& other) {
+      return other.title == panel.title && other.y_label == panel.y_label;
+    });
+    if (same == panels.end()) {
+      panels.push_back(std::move(panel));
+    } else {
+      std::move(panel.lines.begin(), panel.lines.end(), std::back_inserter(same->lines));
+    }
+  }
+}
+
+std::vector<PlotPanel> PanelsOfJobs(Client& client, const Options& options) {
+  std::vector<PlotPanel> panels;
+  for (const std::string& name : options.jobs) {
+    const Followed job =
+        ReadStored(client, JobName(name), 0, [](const v1::Geometry&, const v1::Frame&) { return true; });
+    std::vector<PlotPanel> own = PanelsOf(job.table, options.series);
+    SetAbscissa(job.table, options, own);
+    if (options.jobs.size() == 1) return own;
+    Merge(job.job, std::move(own), panels);
+  }
+  return panels;
+}
+
 int Plot(const Options& options, const Context& context) {
   Client client = Connect(context);
-  const Followed followed =
-      ReadStored(client, JobName(options.job), 0, [](const v1::Geometry&, const v1::Frame&) { return true; });
-  const std::vector<PlotPanel> panels = PanelsOf(followed.table, options.series);
+  const std::vector<PlotPanel> panels = PanelsOfJobs(client, options);
   if (panels.empty()) throw CommandError::Invalid("all series stay zero; choose some with --series");
   if (!options.out.empty()) WritePlot(panels, options.out);
   if (context.json) {
     for (const PlotPanel& panel : panels) {
       for (const PlotLine& line : panel.lines) {
-        PrintJson({{"series", line.name}, {"axis", panel.y_label}, {"time", line.x}, {"values", line.y}});
+        PrintJson({{"series", line.name},
+                   {"axis", panel.y_label},
+                   {options.x.empty() ? "time" : "x", line.x},
+                   {"values", line.y}});
       }
     }
     return kDone;
@@ -55,10 +115,15 @@ int Plot(const Options& options, const Context& context) {
 }  // namespace
 
 void AddPlot(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "plot", "Plot series of a job over time", kExamples);
+  CLI::App* command = AddCommand(app, "plot", "Plot series of jobs over time, or over each other", kExamples);
   const auto options = std::make_shared<Options>();
-  command->add_option("JOB", options->job, "The job")->required();
-  command->add_option("--series", options->series, "Series by name, with * and ?; may be repeated")->type_name("GLOB");
+  command->add_option("JOB", options->jobs, "The job; several are drawn together")->required();
+  command->add_option("--series", options->series, "Series by name, with * and ?; may be repeated")
+      ->type_name("GLOB")
+      ->allow_extra_args(false);
+  command->add_option("--x", options->x, "The series that goes along x, in place of time")->type_name("SERIES");
+  command->add_option("--from", options->from, "Leave out what was before this time [s]")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--out", options->out, "Also draw a picture")->type_name("FILE.png");
   command->callback([options, &context] { context.action = [options, &context] { return Plot(*options, context); }; });
 }

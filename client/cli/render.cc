@@ -4,6 +4,9 @@
 #include <memory>
 #include <optional>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include "client/cli/command.h"
 #include "client/cli/follow.h"
 #include "client/cli/outputs.h"

@@ -1,11 +1,15 @@
 #include <unistd.h>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include "client/cli/command.h"
+#include "client/cli/digests.h"
 #include "client/cli/follow.h"
 #include "client/cli/interrupts.h"
 #include "client/cli/outputs.h"
@@ -23,16 +27,18 @@ namespace fs = std::filesystem;
 constexpr const char* kExamples = R"(  fascicle run scene.json                         simulate and print what came out
   fascicle run scene.json --out out               and keep series.csv, series.png, frames.pvd and last.png in out/
   fascicle run scene.json --threads 2 --data db   on two threads; the server's database stays in db/
+  fascicle run scene.json --set 'bodies[0].activation.values=[0, 0.5]'
   fascicle run scene.json --json | jq .series     for programs
 
 Ctrl-C cancels the job (exit code 4); what was computed until then is kept.
 )";
 
 struct Options {
-  std::string scene;
+  SceneArgument scene;
   std::string out;
   std::string data;
   int threads = 1;
+  bool digests = false;
 };
 
 // A folder that is removed in the end.
@@ -58,7 +64,7 @@ class TemporaryFolder {
 void WriteResults(const Followed& followed, const fs::path& folder) {
   if (followed.table.size() == 0) return;
   ReplaceFile(folder / "series.csv", CsvOf(followed.table));
-  ReplaceFile(folder / "summary.json", SummaryJson(followed.job, followed.table).dump(2) + "\n");
+  ReplaceFile(folder / "summary.json", SummaryJson(followed).dump(2) + "\n");
   const std::vector<PlotPanel> panels = PanelsOf(followed.table, {});
   if (!panels.empty() && followed.table.size() > 1) WritePlot(panels, folder / "series.png");
   DrawPicture(followed.geometry, *followed.last_frame, DefaultPicture(followed.job, *followed.last_frame),
@@ -81,17 +87,19 @@ int Run(const Options& options, const Context& context) {
   const v1::Job job = Take(client.Submit(package, options.threads));
   const std::stop_callback cancel(interrupted.get_token(), [&] { (void)client.CancelJob(job.name()); });
   std::optional<VtkSeriesWriter> frames;
-  const auto keep = [&](const v1::Geometry& geometry, const v1::Frame& frame) {
+  const auto on_frame = [&](const v1::Geometry& geometry, const v1::Frame& frame) {
+    if (options.digests) PrintDigest(frame, context.json);
+    if (options.out.empty()) return;
     if (!frames) frames.emplace(geometry, options.out);
     frames->Add(frame);
   };
-  const Followed followed = Follow(client, job.name(), 0, options.out.empty() ? FrameHook() : keep, {});
+  const Followed followed = Follow(client, job.name(), 0, on_frame, {});
   server->Stop();
   if (frames) frames->Finish();
   if (context.json) {
-    PrintJson(SummaryJson(followed.job, followed.table));
+    PrintJson(SummaryJson(followed));
   } else {
-    PrintSummary(followed.job, followed.table);
+    PrintSummary(followed);
   }
   if (!options.out.empty()) {
     WriteResults(followed, options.out);
@@ -105,12 +113,13 @@ int Run(const Options& options, const Context& context) {
 void AddRun(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "run", "Simulate a scene here: no server is needed", kExamples);
   const auto options = std::make_shared<Options>();
-  command->add_option("SCENE", options->scene, "The scene file (JSON, see `fascicle schema`)")->required();
+  AddSceneArgument(*command, options->scene);
   command->add_option("--out", options->out, "Folder for results: series.csv, frames.pvd, pictures, summary.json")
       ->type_name("DIR");
   command->add_option("--data", options->data, "Keep the server's database in this folder")->type_name("DIR");
   command->add_option("--threads", options->threads, "Threads that step the scene; results do not depend on it")
       ->check(CLI::Range(1, 256));
+  command->add_flag("--digests", options->digests, "Print a line with the digest of each frame");
   command->callback([options, &context] { context.action = [options, &context] { return Run(*options, context); }; });
 }
 

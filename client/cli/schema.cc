@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include <google/protobuf/descriptor.h>
 
 #include "client/cli/command.h"

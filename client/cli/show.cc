@@ -2,6 +2,9 @@
 #include <iostream>
 #include <memory>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include <google/protobuf/util/json_util.h>
 
 #include "client/cli/command.h"

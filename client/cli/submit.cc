@@ -1,6 +1,9 @@
 #include <iostream>
 #include <memory>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include "client/cli/command.h"
 #include "client/cli/summary.h"
 
@@ -10,11 +13,12 @@ namespace {
 constexpr const char* kExamples =
     R"text(  fascicle --server lab:7300 submit scene.json             prints the job's name
   fascicle submit scene.json --threads 4                   with FASCICLE_SERVER set
+  fascicle submit scene.json --set duration=2 --set 'name=twice as long'
   fascicle watch "$(fascicle submit scene.json)"           submit, then follow
 )text";
 
 struct Options {
-  std::string scene;
+  SceneArgument scene;
   int threads = 0;
 };
 
@@ -35,7 +39,7 @@ int Submit(const Options& options, const Context& context) {
 void AddSubmit(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "submit", "Send a scene to a server and return at once", kExamples);
   const auto options = std::make_shared<Options>();
-  command->add_option("SCENE", options->scene, "The scene file")->required();
+  AddSceneArgument(*command, options->scene);
   command->add_option("--threads", options->threads, "Threads that step the scene; the server's default when 0")
       ->check(CLI::Range(0, 256));
   command->callback(

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include <nlohmann/json.hpp>
+
 #include <google/protobuf/util/time_util.h>
 
 #include "client/cli/progress_bar.h"
@@ -62,7 +64,9 @@ Json JobJson(const v1::Job& job) {
   return json;
 }
 
-Json SummaryJson(const v1::Job& job, const SeriesTable& table) {
+Json SummaryJson(const Followed& followed) {
+  const v1::Job& job = followed.job;
+  const SeriesTable& table = followed.table;
   Json json = {{"job", job.name()}, {"state", StateName(job.state())}, {"frames", job.frame_count()}};
   if (table.size() > 0) {
     json["time"] = table.times().back();
@@ -77,6 +81,9 @@ Json SummaryJson(const v1::Job& job, const SeriesTable& table) {
     series[column.name] = {{"unit", column.unit}, {"final", e.final}, {"min", e.lowest}, {"max", e.highest}};
   }
   json["series"] = std::move(series);
+  for (const v1::BodyGeometry& body : followed.geometry.bodies()) {
+    for (const std::string& note : body.notes()) json["notes"].push_back(note);
+  }
   if (job.has_failure()) json["failure"] = FailureJson(job.failure());
   return json;
 }
@@ -93,7 +100,9 @@ void PrintFailure(const v1::Failure& failure) {
   if (!failure.advice().empty()) std::printf("  try: %s\n", failure.advice().c_str());
 }
 
-void PrintSummary(const v1::Job& job, const SeriesTable& table) {
+void PrintSummary(const Followed& followed) {
+  const v1::Job& job = followed.job;
+  const SeriesTable& table = followed.table;
   std::printf("%s  %s  %lld frames", job.name().c_str(), StateName(job.state()).c_str(),
               static_cast<long long>(job.frame_count()));
   if (table.size() > 0) {
@@ -103,6 +112,9 @@ void PrintSummary(const v1::Job& job, const SeriesTable& table) {
   if (std::isfinite(wall)) std::printf(", took %.3g s", wall);
   std::printf("\n");
   if (job.has_failure()) PrintFailure(job.failure());
+  for (const v1::BodyGeometry& body : followed.geometry.bodies()) {
+    for (const std::string& note : body.notes()) std::printf("note  %s\n", note.c_str());
+  }
   if (table.size() == 0) return;
   if (table.frames().front() != 0) {
     std::printf("values of frames %lld to %lld\n", static_cast<long long>(table.frames().front()),

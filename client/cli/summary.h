@@ -2,15 +2,15 @@
 #define FASCICLE_CLIENT_CLI_SUMMARY_H_
 
 #include "client/cli/command.h"
-#include "client/lib/series_table.h"
+#include "client/cli/follow.h"
 #include "fascicle/v1/job.pb.h"
 
 namespace fascicle::client {
 
-// What a job came to: state, frames, and final, lowest and highest value of every series in `table`.
-Json SummaryJson(const v1::Job& job, const SeriesTable& table);
+// What a job came to: state, frames, and final, lowest and highest value of every series in its table, notes on bodies.
+Json SummaryJson(const Followed& followed);
 // The same as a table on stdout; the failure, if any, with its advice.
-void PrintSummary(const v1::Job& job, const SeriesTable& table);
+void PrintSummary(const Followed& followed);
 
 // 0, 1 or 4, by the job's final state; 0 while it goes on.
 int ExitCodeOf(const v1::Job& job);

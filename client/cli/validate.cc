@@ -1,6 +1,9 @@
 #include <iostream>
 #include <memory>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include "client/cli/command.h"
 #include "server/embedded_server.h"
 
@@ -12,7 +15,7 @@ constexpr const char* kExamples =
   fascicle validate scene.json --json     the same as one object
 )";
 
-int Validate(const std::string& scene, const Context& context) {
+int Validate(const SceneArgument& scene, const Context& context) {
   const ScenePackage package = LoadSceneOrFail(scene);
   // The server knows all rules; without one, one is started here.
   std::unique_ptr<server::EmbeddedServer> own;
@@ -20,9 +23,9 @@ int Validate(const std::string& scene, const Context& context) {
   Client client(own ? own->address() : context.server);
   Check(client.Validate(package, 0));
   if (context.json) {
-    PrintJson({{"scene", scene}, {"valid", true}});
+    PrintJson({{"scene", scene.path}, {"valid", true}});
   } else {
-    std::cout << scene << ": valid\n";
+    std::cout << scene.path << ": valid\n";
   }
   return kDone;
 }
@@ -31,8 +34,8 @@ int Validate(const std::string& scene, const Context& context) {
 
 void AddValidate(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "validate", "Check a scene and its files without running it", kExamples);
-  const auto scene = std::make_shared<std::string>();
-  command->add_option("SCENE", *scene, "The scene file")->required();
+  const auto scene = std::make_shared<SceneArgument>();
+  AddSceneArgument(*command, *scene);
   command->callback([scene, &context] { context.action = [scene, &context] { return Validate(*scene, context); }; });
 }
 

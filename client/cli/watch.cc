@@ -1,8 +1,11 @@
-#include <cstdio>
 #include <iostream>
 #include <memory>
 
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
 #include "client/cli/command.h"
+#include "client/cli/digests.h"
 #include "client/cli/follow.h"
 #include "client/cli/interrupts.h"
 #include "client/cli/summary.h"
@@ -24,27 +27,6 @@ struct Options {
   bool digests = false;
 };
 
-std::string HexOf(const std::string& bytes) {
-  std::string text;
-  for (const unsigned char byte : bytes) {
-    char digits[3];
-    std::snprintf(digits, sizeof digits, "%02x", byte);
-    text += digits;
-  }
-  return text;
-}
-
-void PrintDigest(const v1::Frame& frame, bool json) {
-  if (json) {
-    PrintJson(
-        {{"frame", frame.index()}, {"time", frame.time()}, {"step", frame.step()}, {"digest", HexOf(frame.digest())}});
-  } else {
-    std::printf("frame %lld  t = %.9g s  %s\n", static_cast<long long>(frame.index()), frame.time(),
-                HexOf(frame.digest()).c_str());
-    std::fflush(stdout);  // a reader at the other end of a pipe follows too
-  }
-}
-
 int Watch(const Options& options, const Context& context) {
   std::stop_source interrupted;
   const Interrupts interrupts([&] { interrupted.request_stop(); });
@@ -55,9 +37,9 @@ int Watch(const Options& options, const Context& context) {
   }
   const Followed followed = Follow(client, JobName(options.job), options.from, on_frame, interrupted.get_token());
   if (context.json) {
-    PrintJson(SummaryJson(followed.job, followed.table));
+    PrintJson(SummaryJson(followed));
   } else {
-    PrintSummary(followed.job, followed.table);
+    PrintSummary(followed);
   }
   if (followed.stopped) {
     std::cerr << "fascicle: left " << followed.job.name() << "; it goes on. To stop it: fascicle cancel "

@@ -14,6 +14,7 @@
 #include <google/protobuf/message.h>
 
 #include "client/lib/scene_json.h"
+#include "client/lib/scene_settings.h"
 #include "core/base/digest.h"
 #include "proto/rules/field_rules.h"
 
@@ -157,9 +158,11 @@ class AssetReader {
 };
 
 // The scene as far as it could be read; nothing after a syntax error.
-std::optional<v1::Scene> ReadScene(const std::string& text, Problems& problems) {
-  const nlohmann::json value = ParseJson(text, problems);
+std::optional<v1::Scene> ReadScene(const std::string& text, const std::vector<std::string>& settings,
+                                   Problems& problems) {
+  nlohmann::json value = ParseJson(text, problems);
   if (value.is_discarded()) return std::nullopt;
+  ApplySettings(settings, value, problems);
   v1::Scene scene;
   ReadMessage(value, scene, "", problems);
   return scene;
@@ -181,12 +184,13 @@ void CheckRest(const v1::Scene& scene, Problems& problems) {
 
 std::optional<v1::Scene> ParseScene(const std::string& json, Problems& problems) {
   Problems own;
-  std::optional<v1::Scene> scene = ReadScene(json, own);
+  std::optional<v1::Scene> scene = ReadScene(json, {}, own);
   problems.Append("", own);
   return own.empty() ? scene : std::nullopt;
 }
 
-std::optional<ScenePackage> LoadScene(const std::string& path, Problems& problems) {
+std::optional<ScenePackage> LoadScene(const std::string& path, Problems& problems,
+                                      const std::vector<std::string>& settings) {
   std::error_code error;
   const fs::path file = fs::canonical(path, error);
   if (error) {
@@ -209,7 +213,7 @@ std::optional<ScenePackage> LoadScene(const std::string& path, Problems& problem
   // Problems of the scene and of its files are told together.
   Problems own;
   ScenePackage package;
-  if (std::optional<v1::Scene> scene = ReadScene(*text, own)) {
+  if (std::optional<v1::Scene> scene = ReadScene(*text, settings, own)) {
     package.scene = std::move(*scene);
     NameElementFiles(package.scene);
     std::vector<NamedFile> files;

@@ -10,8 +10,8 @@ namespace fascicle {
 namespace {
 
 // Gmsh's element types.
-constexpr std::int64_t kTriangle3 = 2, kTetrahedron4 = 4;
-bool IsHigherTetrahedron(std::int64_t type) { return type == 11 || (type >= 29 && type <= 31); }
+constexpr std::int64_t kTriangle3 = 2, kTetrahedron4 = 4, kTriangle6 = 9, kTetrahedron10 = 11;
+bool IsHigherTetrahedron(std::int64_t type) { return type >= 29 && type <= 31; }
 
 // Physical tags of version 4's entities, by dimension and tag.
 using EntityTags = std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t>;
@@ -43,16 +43,21 @@ void ReadNodes2(TextScanner& in, RawMesh& raw) {
 }
 
 void AddElement(TextScanner& in, std::int64_t type, std::int64_t tag, RawMesh& raw) {
-  if (type == kTetrahedron4) {
+  if (type == kTetrahedron4 || type == kTetrahedron10) {
     auto& nodes = raw.tetrahedra.emplace_back();
     for (std::int64_t& node : nodes) node = in.Int("a node number");
     raw.tetrahedron_tags.push_back(tag);
-  } else if (type == kTriangle3) {
+    if (type == kTetrahedron4) return;
+    auto& middles = raw.middles.emplace_back();
+    for (std::int64_t& node : middles) node = in.Int("a node number");
+    std::swap(middles[4], middles[5]);  // Gmsh has the edge from 2 to 3 before that from 1 to 3
+  } else if (type == kTriangle3 || type == kTriangle6) {
     auto& nodes = raw.triangles.emplace_back();
     for (std::int64_t& node : nodes) node = in.Int("a node number");
+    for (int middle = 0; type == kTriangle6 && middle < 3; ++middle) in.Int("a node number");
     raw.triangle_tags.push_back(tag);
   } else {
-    ++(IsHigherTetrahedron(type) ? raw.second_order : raw.others);
+    ++(IsHigherTetrahedron(type) ? raw.higher_order : raw.others);
     in.Line();
   }
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <set>
@@ -264,6 +265,69 @@ double SmallestDihedralAngle(const TetMesh& mesh) {
   return smallest;
 }
 
+// Corners whose plain tetrahedron has the Jacobian of a ten-node element where the barycentric coordinates are L.
+std::array<Vec3, 4> CornersAt(const std::array<Vec3, 10>& x, const std::array<double, 4>& L) {
+  std::array<Vec3, 4> corners;
+  for (int c = 0; c < 4; ++c) corners[c] = (4 * L[c] - 1) * x[c];
+  for (int k = 0; k < 6; ++k) {
+    const auto [i, j] = kTetEdges[k];
+    corners[i] += 4 * L[j] * x[4 + k];
+    corners[j] += 4 * L[i] * x[4 + k];
+  }
+  return corners;
+}
+
+// Whether a ten-node element has a positive Jacobian in its corners and at the quadrature points of degree two.
+bool IsUpright(const std::array<Vec3, 10>& x) {
+  const double near = (5 + 3 * std::sqrt(5.0)) / 20, far = (5 - std::sqrt(5.0)) / 20;
+  for (const auto& [at, rest] : {std::pair(1.0, 0.0), std::pair(near, far)}) {
+    for (int c = 0; c < 4; ++c) {
+      std::array<double, 4> L;
+      L.fill(rest);
+      L[c] = at;
+      const auto y = CornersAt(x, L);
+      if (!((y[1] - y[0]).cross(y[2] - y[0]).dot(y[3] - y[0]) > 0)) return false;
+    }
+  }
+  return true;
+}
+
+// Curved edges are edges of the mesh, each named once, with a finite middle, and leave every tetrahedron upright.
+void CheckCurvedEdges(const TetMesh& mesh, Problems& problems) {
+  if (mesh.curved_edges.empty()) return;
+  std::map<std::array<std::int32_t, 2>, Vec3> middles;
+  Findings wrong, folded;
+  for (std::size_t k = 0; k < mesh.curved_edges.size(); ++k) {
+    const CurvedEdge& edge = mesh.curved_edges[k];
+    const auto [i, j] = std::minmax(edge.ends[0], edge.ends[1]);
+    if (!edge.middle.allFinite() || !middles.try_emplace({i, j}, edge.middle).second) wrong.Add(k);
+  }
+  std::set<std::array<std::int32_t, 2>> met;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    std::array<Vec3, 10> x;
+    bool is_curved = false;
+    for (int c = 0; c < 4; ++c) x[c] = mesh.nodes[mesh.tetrahedra[t][c]];
+    for (int k = 0; k < 6; ++k) {
+      const auto [i, j] = std::minmax(mesh.tetrahedra[t][kTetEdges[k][0]], mesh.tetrahedra[t][kTetEdges[k][1]]);
+      const auto found = middles.find({i, j});
+      x[4 + k] = found != middles.end() ? found->second : Vec3(0.5 * (mesh.nodes[i] + mesh.nodes[j]));
+      if (found == middles.end()) continue;
+      is_curved = true;
+      met.insert({i, j});
+    }
+    if (is_curved && SignedVolume(mesh, t) > 0 && !IsUpright(x)) folded.Add(t);
+  }
+  for (std::size_t k = 0; k < mesh.curved_edges.size(); ++k) {
+    const auto [i, j] = std::minmax(mesh.curved_edges[k].ends[0], mesh.curved_edges[k].ends[1]);
+    if (met.count({i, j}) == 0) wrong.Add(k);
+  }
+  wrong.Report("curved edge is none of the mesh, is given twice or has no finite middle",
+               "curved edges are none of the mesh, are given twice or have no finite middle", "mesh the body again",
+               problems);
+  folded.Report("tetrahedron is folded by its curved edges", "tetrahedra are folded by their curved edges",
+                "mesh the body again, with optimization of high-order elements switched on", problems);
+}
+
 }  // namespace
 
 MeshReport CheckMesh(const TetMesh& mesh, Problems& problems) {
@@ -279,6 +343,7 @@ MeshReport CheckMesh(const TetMesh& mesh, Problems& problems) {
   CheckVolumes(mesh, problems);
   CheckDuplicates(mesh, problems);
   CheckUnusedNodes(mesh, problems);
+  CheckCurvedEdges(mesh, problems);
   report.components = CheckComponents(mesh, problems);
   report.volume = TotalVolume(mesh);
   report.smallest_dihedral_angle = SmallestDihedralAngle(mesh);

@@ -20,10 +20,10 @@ struct MeshReport {
 
 // Checks a mesh in metres: no tetrahedra, indices out of range, non-finite coordinates, inverted, degenerate (smallest
 // height under 1e-6 of the longest edge) and duplicate tetrahedra, faces of more than two tetrahedra, nodes of no
-// tetrahedron, coincident nodes (closer than 1e-10 of the diagonal; from 2e-9 on they are told apart), more than one
-// component, a size that no muscle has (over 10 m or under 0.1 mm: names the likely unit). Adds every problem it finds,
-// a line for each kind with count and first examples, counted from 0. Paths are left empty.
-// When an index is out of range only the box of the report is measured.
+// tetrahedron, curved edges that the mesh does not have or that fold a tetrahedron, coincident nodes (closer than 1e-10
+// of the diagonal; from 2e-9 on they are told apart), more than one component, a size that no muscle has (over 10 m or
+// under 0.1 mm: names the likely unit). Adds every problem it finds, a line for each kind with count and first
+// examples, counted from 0. Paths are left empty. When an index is out of range only the box of the report is measured.
 // O(n log n) in time and O(n) in memory for any mesh.
 MeshReport CheckMesh(const TetMesh& mesh, Problems& problems);
 

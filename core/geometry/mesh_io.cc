@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -107,12 +108,74 @@ std::vector<std::int32_t> NarrowTags(const std::vector<std::int64_t>& tags, Prob
 
 void ReportNothingToRead(const RawMesh& raw, Problems& problems) {
   std::string left_out;
-  if (raw.second_order > 0) left_out = std::to_string(raw.second_order) + " of second order";
+  if (raw.higher_order > 0) left_out = std::to_string(raw.higher_order) + " of higher order";
   const std::size_t rest = raw.others + raw.triangles.size();
   if (rest > 0) left_out += (left_out.empty() ? "" : " and ") + std::to_string(rest) + " cells of other kinds";
-  problems.Add("", "the file has no tetrahedra of four nodes" + (left_out.empty() ? "" : ", but " + left_out),
-               raw.second_order > 0 ? "write the mesh with element order 1"
+  problems.Add("", "the file has no tetrahedra of four or ten nodes" + (left_out.empty() ? "" : ", but " + left_out),
+               raw.higher_order > 0 ? "write the mesh with element order 1, or 2 in the formats of Gmsh and VTK"
                                     : "fill the surface with tetrahedra, and write the volume elements");
+}
+
+// Turns the nodes in the middles of edges into curved edges, or drops them where they are straight up to round-off, and
+// numbers the other nodes anew.
+void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, TetMesh& mesh, Problems& problems) {
+  constexpr double kStraight = 1e-9;
+  std::vector<char> is_middle(mesh.nodes.size());
+  std::map<std::array<std::int32_t, 2>, std::int32_t> edges;
+  std::size_t torn = 0;
+  for (std::size_t t = 0; t < middles.size(); ++t) {
+    for (int k = 0; k < 6; ++k) {
+      const auto [i, j] = std::minmax(mesh.tetrahedra[t][kTetEdges[k][0]], mesh.tetrahedra[t][kTetEdges[k][1]]);
+      is_middle[middles[t][k]] = 1;
+      if (edges.try_emplace({i, j}, middles[t][k]).first->second != middles[t][k]) ++torn;
+    }
+  }
+  if (torn > 0) {
+    problems.Add("",
+                 std::to_string(torn) + " edges have another node in their middle than in a neighbouring tetrahedron",
+                 "the body would fall apart there: mesh it again");
+    return;
+  }
+  for (std::size_t t = 0; t < middles.size(); ++t) {
+    for (const std::int32_t corner : mesh.tetrahedra[t]) {
+      if (!is_middle[corner]) continue;
+      problems.Add("",
+                   "node " + std::to_string(corner) +
+                       " (counted from 0) is a corner of one tetrahedron and in the "
+                       "middle of another's edge",
+                   "mesh the body again, with one element order");
+      return;
+    }
+  }
+  for (const auto& [ends, middle] : edges) {
+    const Vec3 &a = mesh.nodes[ends[0]], &b = mesh.nodes[ends[1]], &m = mesh.nodes[middle];
+    if (!((m - 0.5 * (a + b)).norm() <= kStraight * (b - a).norm())) mesh.curved_edges.push_back({ends, m});
+  }
+  std::vector<std::int32_t> number(mesh.nodes.size(), -1);
+  std::int32_t count = 0;
+  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+    if (is_middle[n]) continue;
+    mesh.nodes[count] = mesh.nodes[n];
+    number[n] = count++;
+  }
+  mesh.nodes.resize(count);
+  const auto renumber = [&](auto& cells) {
+    for (auto& cell : cells) {
+      for (std::int32_t& n : cell) n = number[n];
+    }
+  };
+  renumber(mesh.tetrahedra);
+  for (CurvedEdge& edge : mesh.curved_edges) {
+    for (std::int32_t& n : edge.ends) n = number[n];
+  }
+  // A triangle on middles of edges is no side of a tetrahedron.
+  for (const Triangle& triangle : mesh.tagged_triangles) {
+    if (std::none_of(triangle.begin(), triangle.end(), [&](std::int32_t n) { return number[n] < 0; })) continue;
+    problems.Add("", "a triangle has a node in the middle of a tetrahedron's edge",
+                 "write both with one element order");
+    return;
+  }
+  renumber(mesh.tagged_triangles);
 }
 
 std::optional<TetMesh> Finish(RawMesh raw, Problems& problems) {
@@ -133,8 +196,16 @@ std::optional<TetMesh> Finish(RawMesh raw, Problems& problems) {
   mesh.tetrahedron_tags = NarrowTags(raw.tetrahedron_tags, problems);
   mesh.triangle_tags = NarrowTags(raw.triangle_tags, problems);
   if (mesh.triangle_tags.empty()) mesh.tagged_triangles.clear();
+  std::vector<std::array<std::int32_t, 6>> middles;
+  if (!raw.middles.empty() && raw.middles.size() != raw.tetrahedra.size()) {
+    problems.Add("", "the file mixes tetrahedra of four and of ten nodes", "write the mesh with one element order");
+  } else {
+    FindNodes(finder, raw.middles, middles, "tetrahedra", problems);
+  }
   if (problems.count() > before) return std::nullopt;
   mesh.nodes = std::move(raw.nodes);
+  if (!middles.empty()) TakeMiddles(middles, mesh, problems);
+  if (problems.count() > before) return std::nullopt;
   return mesh;
 }
 

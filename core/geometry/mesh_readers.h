@@ -19,10 +19,13 @@ struct RawMesh {
   std::int64_t first_node = 0;
   std::vector<Vec3> nodes;
   std::vector<std::array<std::int64_t, 4>> tetrahedra;
+  // Of tetrahedra of ten nodes: those in the middle of the edges, in the order of kTetEdges. One for each tetrahedron,
+  // or none at all.
+  std::vector<std::array<std::int64_t, 6>> middles;
   std::vector<std::int64_t> tetrahedron_tags;  // as many as tetrahedra, 0 where there is none
   std::vector<std::array<std::int64_t, 3>> triangles;
   std::vector<std::int64_t> triangle_tags;  // as many as triangles
-  std::size_t second_order = 0;             // tetrahedra with nodes on their edges, left out
+  std::size_t higher_order = 0;             // tetrahedra of more than ten nodes, left out
   std::size_t others = 0;                   // cells of other kinds, left out
 };
 

@@ -3,9 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "core/geometry/faces.h"
+#include "core/geometry/triangle_distance.h"
 
 namespace fascicle {
 namespace {
@@ -113,8 +115,29 @@ struct Select {
       AddNodes(triangle, region);
     }
     SortNodes(region);
+    if (selector.depth > 0 && !region.triangles.empty()) SelectLayer(selector.depth);
+  }
+
+  // The tetrahedra with their centroid within a distance of the region's triangles.
+  void SelectLayer(double depth) const {
+    const TriangleDistance distance(mesh.nodes, region.triangles);
+    const double reach = depth + kRoundOff * Diagonal(mesh);
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+      const auto& [a, b, c, d] = mesh.tetrahedra[t];
+      const Vec3 centroid = 0.25 * (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c] + mesh.nodes[d]);
+      if (distance.IsWithin(centroid, reach)) region.tetrahedra.push_back(static_cast<std::int32_t>(t));
+    }
   }
 };
+
+template <class Items>
+Items Common(Items first, Items second) {
+  std::sort(first.begin(), first.end());
+  std::sort(second.begin(), second.end());
+  Items common;
+  std::set_intersection(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(common));
+  return common;
+}
 
 }  // namespace
 
@@ -124,6 +147,11 @@ Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, s
   region.name = std::move(name);
   std::visit(Select{mesh, surface, region}, selector);
   return region;
+}
+
+Region Intersection(const Region& first, const Region& second) {
+  return {first.name, Common(first.nodes, second.nodes), Common(first.triangles, second.triangles),
+          Common(first.tetrahedra, second.tetrahedra)};
 }
 
 }  // namespace fascicle

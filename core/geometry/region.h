@@ -26,8 +26,9 @@ struct SphereSelector {
 };
 struct SideSelector {
   Vec3 direction;
-  double max_angle = 0;
-};  // [rad]
+  double max_angle = 0;  // [rad]
+  double depth = 0;      // [m]
+};
 using Selector = std::variant<TagSelector, PlaneSelector, BoxSelector, SphereSelector, SideSelector>;
 
 // A named part of a mesh.
@@ -35,7 +36,8 @@ struct Region {
   std::string name;
   std::vector<std::int32_t> nodes;       // ascending, no duplicates
   std::vector<Triangle> triangles;       // of the surface: outward, all nodes in `nodes` (side, tag: the selected ones)
-  std::vector<std::int32_t> tetrahedra;  // ascending; tag: those with it; plane, box, sphere: whose centroid is inside
+  std::vector<std::int32_t> tetrahedra;  // ascending; tag: those with it; plane, box, sphere: whose centroid is inside;
+                                         // side: whose centroid is no further than its depth from a triangle
 };
 
 // Selects what a selector names; may be empty. Tag: the triangles with the tag, and if there are none the tetrahedra
@@ -44,6 +46,9 @@ struct Region {
 // of the angle: 1e-9 rad. `surface` must be BoundaryTriangles(mesh).
 Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name,
                     const Selector& selector);
+
+// What lies in both regions, under the name of the first.
+Region Intersection(const Region& first, const Region& second);
 
 }  // namespace fascicle
 

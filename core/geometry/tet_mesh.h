@@ -12,6 +12,9 @@ namespace fascicle {
 using Tetrahedron = std::array<std::int32_t, 4>;  // node indices; det[X1-X0, X2-X0, X3-X0] > 0
 using Triangle = std::array<std::int32_t, 3>;     // node indices; counter-clockwise seen from outside
 
+// The corners at the ends of each edge of a tetrahedron.
+inline constexpr std::array<std::array<int, 2>, 6> kTetEdges = {{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
+
 // The middle of an edge that is not straight.
 struct CurvedEdge {
   std::array<std::int32_t, 2> ends;  // node indices

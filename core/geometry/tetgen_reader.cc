@@ -40,7 +40,7 @@ void ReadElements(TextScanner& in, RawMesh& raw) {
   const std::int64_t attributes = Width(in, "the number of attributes");
   if (in.failed()) return;
   if (corners == 10) {
-    raw.second_order = count;
+    raw.higher_order = count;
     return;
   }
   if (corners != 4) return in.Fail("tetrahedra of " + std::to_string(corners) + " nodes");
@@ -81,7 +81,7 @@ RawMesh ReadTetgen(std::string_view node_bytes, std::string_view element_bytes, 
   Problems in_elements;
   TextScanner elements(element_bytes, in_elements, '#');
   ReadElements(elements, raw);
-  if (raw.second_order == 0) ExpectEnd(elements);
+  if (raw.higher_order == 0) ExpectEnd(elements);
   for (const Problem& problem : in_elements.kept()) problems.Add("", ".ele file, " + problem.message, problem.hint);
   return raw;
 }

@@ -7,11 +7,16 @@ namespace fascicle {
 namespace {
 
 // VTK's cell types.
-constexpr std::int64_t kTriangle = 5, kTetrahedron = 10, kQuadraticTetrahedron = 24, kLagrangeTetrahedron = 71;
+constexpr std::int64_t kTriangle = 5, kTetrahedron = 10, kQuadraticTriangle = 22, kQuadraticTetrahedron = 24,
+                       kLagrangeTetrahedron = 71;
 
 // Nodes of the linear cell types 0 to 14; 0 where any number will do.
 constexpr std::int64_t kNodes[] = {0, 1, 0, 2, 0, 3, 0, 0, 4, 4, 4, 8, 8, 6, 5};
-std::int64_t NodesOf(std::int64_t type) { return type >= 0 && type < std::ssize(kNodes) ? kNodes[type] : 0; }
+std::int64_t NodesOf(std::int64_t type) {
+  if (type == kQuadraticTriangle) return 6;
+  if (type == kQuadraticTetrahedron) return 10;
+  return type >= 0 && type < std::ssize(kNodes) ? kNodes[type] : 0;
+}
 
 template <std::size_t N>
 void AddCell(const std::int64_t* nodes, std::int64_t first_node, std::vector<std::array<std::int64_t, N>>& cells) {
@@ -47,8 +52,9 @@ std::string AddCells(const VtkCells& cells, std::int64_t node_count, std::int64_
     if (NodesOf(type) != 0 && size != NodesOf(type)) {
       return name() + " of type " + std::to_string(type) + " has " + std::to_string(size) + " nodes";
     }
-    if (type != kTetrahedron && type != kTriangle) {
-      ++(type == kQuadraticTetrahedron || type == kLagrangeTetrahedron ? raw.second_order : raw.others);
+    const bool is_tetrahedron = type == kTetrahedron || type == kQuadraticTetrahedron;
+    if (!is_tetrahedron && type != kTriangle && type != kQuadraticTriangle) {
+      ++(type == kLagrangeTetrahedron ? raw.higher_order : raw.others);
       continue;
     }
     const auto outside = std::find_if(nodes, nodes + size, [&](std::int64_t n) { return n < 0 || n >= node_count; });
@@ -57,8 +63,9 @@ std::string AddCells(const VtkCells& cells, std::int64_t node_count, std::int64_
              " (counted from 0)";
     }
     const std::int64_t tag = cells.tags.empty() ? 0 : cells.tags[c];
-    if (type == kTetrahedron) {
+    if (is_tetrahedron) {
       AddCell(nodes, first_node, raw.tetrahedra);
+      if (type == kQuadraticTetrahedron) AddCell(nodes + 4, first_node, raw.middles);
       raw.tetrahedron_tags.push_back(tag);
     } else {
       AddCell(nodes, first_node, raw.triangles);

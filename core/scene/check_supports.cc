@@ -44,6 +44,12 @@ bool Pushes(const Scene& scene, const Body& body, const std::vector<Vec3>& resul
   });
 }
 
+// Whether some floor pushes along an axis: what falls on it comes to rest, or bounces.
+bool HasFloorAcross(const Scene& scene, int axis) {
+  return std::any_of(scene.floors.begin(), scene.floors.end(),
+                     [axis](const Floor& floor) { return std::abs(floor.normal[axis]) > 0.01; });
+}
+
 }  // namespace
 
 void CheckSupports(const Scene& scene, Problems& problems) {
@@ -60,7 +66,7 @@ void CheckSupports(const Scene& scene, Problems& problems) {
                      "equilibrium needs a place to be: add a constraint, or use a stepping with inertia");
         continue;
       }
-      if (held[axis] || !Pushes(scene, body, resultants, mass, axis)) continue;
+      if (held[axis] || HasFloorAcross(scene, axis) || !Pushes(scene, body, resultants, mass, axis)) continue;
       problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
                    std::string("nothing holds the body against its loads along ") + "xyz"[axis],
                    "it would fly away: add a constraint, or take out the load or gravity");

@@ -27,8 +27,10 @@ void CheckCurves(const Scene& scene, Problems& problems);
 void CheckConstraints(const Scene& scene, Problems& problems);
 // Loads on regions that exist, have nodes, and have surface where the load needs one.
 void CheckLoads(const Scene& scene, Problems& problems);
-// A load or gravity that nothing holds against: the body would fly away.
+// A load or gravity that nothing, not even a floor, holds against: the body would fly away.
 void CheckSupports(const Scene& scene, Problems& problems);
+// Floors with a name of their own and a unit normal, that no body starts in.
+void CheckFloors(const Scene& scene, Problems& problems);
 // Probes that follow a node that exists; the number of frames; duration.
 void CheckOutput(const Scene& scene, Problems& problems);
 

@@ -78,11 +78,20 @@ struct Body {
   // Displacement of each node from rest at time 0 [m]; none when empty. May tangle the mesh.
   std::vector<Vec3> initial_displacement;
   Damping damping;
+  // What the user should know of how the body came about; does not change results.
+  std::vector<std::string> notes;
 };
 
 struct Gravity {
   Vec3 acceleration = Vec3::Zero();  // [m/s^2]
   Curve scale = Curve::Constant(1);
+};
+
+// A rigid half-space that bodies can't enter: all x with (x - point) . normal < 0.
+struct Floor {
+  std::string name;
+  Vec3 point = Vec3::Zero();    // [m]
+  Vec3 normal = Vec3::UnitZ();  // unit, out of the floor
 };
 
 enum class Stepping { kExplicit, kMixed, kBackwardEuler, kNewmark, kBdf2, kQuasiStatic };
@@ -131,13 +140,15 @@ struct Scene {
   std::string name;
   std::vector<Body> bodies;
   Gravity gravity;
+  std::vector<Floor> floors;
   TetMethod method;
   double duration = 0;  // [s]
   Output output;
 };
 
 // Checks what concerns more than one field: constraints that contradict each other in a node, loads on regions without
-// surface, fibres missing for a law that needs them, activation outside [0, 1], bodies without mass, frame counts,
+// surface, fibres missing for a law that needs them, activation outside [0, 1], bodies without mass, bodies that start
+// in a floor, frame counts,
 // a whole body free to fly away under load (not a problem when gravity or loads are absent). One check per file in this
 // room.
 void CheckScene(const Scene& scene, Problems& problems);

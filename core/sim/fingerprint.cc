@@ -13,6 +13,12 @@ class Fingerprint {
     Put(scene.duration);
     PutItems(scene.gravity.acceleration);
     Put(scene.gravity.scale);
+    Put(scene.floors.size());
+    for (const Floor& floor : scene.floors) {
+      Put(floor.name);
+      PutItems(floor.point);
+      PutItems(floor.normal);
+    }
     Put(static_cast<int>(scene.method.stepping));
     Put(scene.method.time_step.value_or(0.0));
     Put(scene.method.safety);

@@ -4,6 +4,7 @@
 
 #include "core/tet/diagnostics.h"
 #include "core/tet/fields.h"
+#include "core/tet/floor_contact.h"
 
 namespace fascicle {
 namespace {
@@ -70,6 +71,15 @@ std::vector<SeriesInfo> SeriesOf(const TetModel& model) {
       {"solver/step", "s", "length of the last time step"},
       {"solver/iterations", "1", "iterations of linear solves, or of Newton's method, since the frame before"},
   };
+  if (!model.scene().floors.empty()) {
+    series.push_back({"energy/contact", "J", "energy stored where bodies press on floors"});
+  }
+  for (const Floor& floor : model.scene().floors) {
+    for (const char* axis : kAxes) {
+      series.push_back(
+          {"floor/" + floor.name + "/" + axis, "N", "force of the floor on all bodies along " + std::string(axis)});
+    }
+  }
   const std::vector<RegionReaction> reactions = RegionReactions(model);
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const Body& body = *model.bodies()[b].source;
@@ -107,6 +117,10 @@ std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, 
                                 state.dissipated,
                                 state.time_step,
                                 static_cast<double>(state.iterations - iterations_before)};
+  if (!model.scene().floors.empty()) values.push_back(FloorEnergy(model, state.positions));
+  for (const Vec3& force : FloorForces(model, state.positions)) {
+    values.insert(values.end(), force.begin(), force.end());
+  }
   const std::vector<RegionReaction> reactions = RegionReactions(model);
   const std::vector<Vec3> forces = Reactions(model, state, team);
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/tet/floor_contact.h"
 #include "core/tet/points.h"
 
 namespace fascicle {
@@ -26,6 +27,7 @@ struct NodalForces {
     ElasticForce(model, drive, state.positions, team, workspace, elastic);
     ViscousForce(model, state.positions, state.velocities, team, workspace, viscous);
     ExternalForce(model, controls, team, external);
+    AddFloorForce(model, state.positions, external);
   }
 };
 

@@ -19,9 +19,9 @@ struct VolumeRatios {
 };
 VolumeRatios VolumeRatiosOf(const TetModel& model, std::size_t body, const NodalVector& x);
 
-// Force of each support on its body [N]: m a - (elastic + viscous + mass damping + external force) over the components
-// that the support prescribes, a the prescribed acceleration. Where two supports share a component, it counts for the
-// first.
+// Force of each support on its body [N]: m a - (elastic + viscous + mass damping + external force, floors' among it)
+// over the components that the support prescribes, a the prescribed acceleration. Where two supports share a component,
+// it counts for the first.
 std::vector<Vec3> Reactions(const TetModel& model, const TetState& state, ThreadTeam& team);
 
 // Largest speed of a node [m/s].

@@ -40,11 +40,8 @@ struct LinearElement {
   static constexpr double Part(int /*q*/, int c, int a) { return c == a ? 1 : 0; }
 };
 
-// The edges of a tetrahedron, in the order of the quadratic element's nodes 4 to 9.
-inline constexpr std::array<std::array<int, 2>, 6> kTetEdges = {{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
-
-// Ten nodes: the corners and the middles of the edges; straight rest edges, linear strain, four-point quadrature of
-// degree two [Zienkiewicz, Taylor & Zhu 2013, 5.11].
+// Ten nodes: the corners and the middles of the edges in the order of kTetEdges; straight rest edges, linear strain,
+// four-point quadrature of degree two [Zienkiewicz, Taylor & Zhu 2013, 5.11].
 struct QuadraticElement {
   static constexpr int kNodes = 10;
   static constexpr int kPoints = 4;

@@ -65,6 +65,7 @@ TetModel::TetModel(const Scene& scene) : scene_(&scene) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     AddLoads(*bodies_[b].source, bodies_[b]);
     AddSupports(*bodies_[b].source, static_cast<std::int32_t>(b));
+    if (!scene.floors.empty()) AddContactNodes(bodies_[b]);
   }
   std::vector<std::int32_t> element_nodes;
   VisitElement([&]<class Element>(Element) {
@@ -350,6 +351,27 @@ void TetModel::AddSupports(const Body& source, std::int32_t body_index) {
       }
       support.owned.push_back(owned);
     }
+  }
+}
+
+void TetModel::AddContactNodes(const TetBody& body) {
+  const auto first = static_cast<std::int32_t>(body.node_begin);
+  std::map<std::int32_t, double> areas;
+  for (const Triangle& t : BoundaryTriangles(body.source->mesh)) {
+    const Triangle n = {first + t[0], first + t[1], first + t[2]};
+    const Vec3& X0 = rest_positions_[n[0]];
+    const double area = 0.5 * (rest_positions_[n[1]] - X0).cross(rest_positions_[n[2]] - X0).norm();
+    // The shares of quadratic triangles that integrate exactly leave corners without area: those could be pushed in.
+    const double corner = order() == ElementOrder::kLinear ? 1. / 3 : 1. / 12;
+    for (int c = 0; c < 3; ++c) {
+      areas[n[c]] += corner * area;
+      if (order() == ElementOrder::kQuadratic) areas[middles_.at(std::minmax(n[c], n[(c + 1) % 3]))] += area / 4;
+    }
+  }
+  const double modulus =
+      std::visit([](const auto& law) { return law.BulkModulus() + 4 * law.ShearModulus() / 3; }, body.source->material);
+  for (const auto& [node, area] : areas) {
+    contact_nodes_.push_back({node, modulus * area * area * body.source->density / mass_[node]});
   }
 }
 

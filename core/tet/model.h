@@ -61,6 +61,12 @@ struct Support {
   std::vector<std::array<bool, 3>> owned;
 };
 
+// A node of the surface, and how hard floors push it back [N/m].
+struct ContactNode {
+  std::int32_t node = 0;
+  double stiffness = 0;
+};
+
 // A scene made ready for stepping: nodes and elements of all bodies in common arrays, and what does not change. Indices
 // count through all bodies. The elements of a body are sorted by the kind of their law, else in the mesh's order.
 // Immutable; may be shared between threads.
@@ -137,6 +143,10 @@ class TetModel {
 
   const std::vector<NodalLoad>& loads() const { return loads_; }
   const std::vector<Support>& supports() const { return supports_; }
+  // What floors may touch, ascending in node; empty without floors. A node's stiffness is that of the layer of elements
+  // above it: M A / h, with M the longitudinal modulus of its body's material, A the node's share of the surface and h
+  // = mass / (density A). So contact is no harder to step than the elements are, and the depth falls with their size.
+  const std::vector<ContactNode>& contact_nodes() const { return contact_nodes_; }
   bool has_gravity() const { return scene_->gravity.acceleration != Vec3::Zero(); }
   bool has_damping() const { return has_mass_damping_ || has_strain_damping_; }
   bool has_mass_damping() const { return has_mass_damping_; }
@@ -159,6 +169,7 @@ class TetModel {
   std::map<std::int32_t, Vec3> TractionForces(const Region& region, const TetBody& body, const Vec3& traction) const;
   void AddLoads(const Body& source, const TetBody& body);
   void AddSupports(const Body& source, std::int32_t body_index);
+  void AddContactNodes(const TetBody& body);
   void FindCurvesEnd();
 
   const Scene* scene_;
@@ -185,6 +196,7 @@ class TetModel {
   std::vector<ElementNodeIndex> node_uses_;
   std::vector<NodalLoad> loads_;
   std::vector<Support> supports_;
+  std::vector<ContactNode> contact_nodes_;
   bool has_mass_damping_ = false;
   bool has_strain_damping_ = false;
   bool depends_on_rate_ = false;

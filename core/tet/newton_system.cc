@@ -8,6 +8,7 @@
 
 #include "core/base/check.h"
 #include "core/materials/spd.h"
+#include "core/tet/floor_contact.h"
 
 namespace fascicle {
 namespace {
@@ -100,6 +101,14 @@ void NewtonSystem::FindPattern() {
     }
     share_begin_.push_back(shares_.size());
   }
+  node_blocks_begin_ = at;
+  if (!model_.contact_nodes().empty()) {
+    for (const auto& unknowns : unknown_of_node_) {
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j <= i; ++j) use(unknowns[i], unknowns[j]);
+      }
+    }
+  }
   places_.assign(at, kNone);
   constexpr std::size_t kDiagonal = static_cast<std::size_t>(-1);
   for (std::int32_t k = 0; k < unknowns_; ++k) {
@@ -143,6 +152,10 @@ NewtonSystem::Evaluation NewtonSystem::Evaluate(const IncrementalPotential& pote
     }
     return energy;
   });
+  if (!potential.untangling) {
+    AddFloorForce(model_, x, force);
+    total.energy += FloorEnergy(model_, x);
+  }
   total.valid &= std::isfinite(total.energy);
   const double loads = SumOverNodes(team, model_.nodes(), [&](std::size_t n) { return load[n].squaredNorm(); });
   total.force_scale = std::hypot(total.force_scale, force_floor_, std::sqrt(loads));
@@ -217,6 +230,7 @@ bool NewtonSystem::Factor(const IncrementalPotential& potential, const NodalVect
       }
     }
   }
+  if (!potential.untangling) AddFloorMatrices(x);
   const VolumePatches& patches = model_.patches();
   for (std::size_t n = 0; n < patches.size(); ++n) {
     const double slope = PatchEnergy{patches.modulus[n]}.ConvexSlope(forces_.ratio[n]);
@@ -274,6 +288,17 @@ void NewtonSystem::SetElementMatrices(const IncrementalPotential& potential, con
       }
     });
   }
+}
+
+void NewtonSystem::AddFloorMatrices(const NodalVector& x) {
+  ForFloorStiffness(model_, x, [&](std::size_t n, const Mat3& stiffness) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        const std::int32_t place = places_[node_blocks_begin_ + 6 * n + EntriesOf(i) + j];
+        if (place != kNone) values_[place] += stiffness(i, j);
+      }
+    }
+  });
 }
 
 template <class Element>

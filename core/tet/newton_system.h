@@ -67,6 +67,7 @@ class NewtonSystem {
   template <class Element>
   void MovePrescribed(const NodalVector& prescribed);
   void Smooth(const IncrementalPotential& potential, std::span<const double> pressure);
+  void AddFloorMatrices(const NodalVector& x);
   // Change of V_n theta_n of a patch with component j of an element of volume derivatives B.
   template <int kComponents>
   static double VolumeChange(const PatchShare& share, const double* B, int j) {
@@ -85,8 +86,9 @@ class NewtonSystem {
   std::vector<PatchShare> shares_;  // of element e: [share_begin_[e], share_begin_[e + 1])
   std::vector<std::size_t> share_begin_;
   // Where each entry of each element goes among the values, -1: nowhere. Lower triangle of A, then a row for each
-  // share.
+  // share. With floors, from node_blocks_begin_ on, the lower triangle of each node's own block.
   std::vector<std::int32_t> places_;
+  std::size_t node_blocks_begin_ = 0;
   std::vector<std::int32_t> diagonal_;  // place of each unknown's diagonal entry
   std::vector<std::int32_t> rows_, columns_;
   std::vector<double> values_;

@@ -8,12 +8,12 @@ namespace fascicle {
 
 // The function of the positions x at the end of a step whose stationary point the step looks for:
 //
-//   Phi(x) = sum V W(F) + sum V_n U(theta_n) + 1/2 sum m (x - c)^2 + W_v(x) - f . x
+//   Phi(x) = sum V W(F) + sum V_n U(theta_n) + 1/2 sum m (x - c)^2 + W_v(x) + W_c(x) - f . x
 //
 // elastic and active energy of points and patches; inertia and mass damping, with coefficient m and centre c of each
 // node; the viscous increment W_v = dt (mu' |dE|^2 + lambda'/2 tr(dE)^2) / dt^2 with dE the change of Green strain in
-// the step, whose derivative is the viscous stress of ViscousStress at the mean rate of the step; dead loads f.
-// Quasi-static steps have neither m nor W_v.
+// the step, whose derivative is the viscous stress of ViscousStress at the mean rate of the step; W_c the energy of
+// floors (FloorEnergy); dead loads f. Quasi-static steps have neither m nor W_v.
 struct IncrementalPotential {
   FibreDrive drive;
   const NodalVector* load = nullptr;      // f [N]

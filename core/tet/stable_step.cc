@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/tet/floor_contact.h"
 #include "core/tet/points.h"
 
 namespace fascicle {
@@ -63,6 +64,7 @@ void TetStiffness::Apply(const TetModel& model, const NodalVector& p, ThreadTeam
     ApplyElements<Element>(model, p, team, workspace);
   });
   GatherForces(model, workspace.element_forces, team, product);
+  AddFloorStiffness(model, p, product);
 }
 
 template <class Element>

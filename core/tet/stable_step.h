@@ -10,7 +10,7 @@
 
 namespace fascicle {
 
-// The stiffness K = -df/dx of all elements and patches at one state, kept as the tangents dP/dF of the laws.
+// The stiffness K = -df/dx of all elements, patches and floors at one state, kept as the tangents dP/dF of the laws.
 class TetStiffness {
  public:
   // Tangents at positions x [m]. O(elements); allocates in the first call only.

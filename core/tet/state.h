@@ -24,7 +24,8 @@ struct TetState {
   std::int64_t step = 0;
   NodalVector positions;   // x [m]
   NodalVector velocities;  // v [m/s]
-  // Internal force at `positions` [N]: elastic; explicit stepping: with the viscous force of the half step before.
+  // Force at `positions` [N]: elastic, and of floors; explicit stepping: with the viscous force of the half step
+  // before.
   NodalVector force;
   // Of implicit and quasi-static steps: accelerations [m/s^2] (kNewmark), positions and velocities a step ago (kBdf2),
   // the pressure of each patch [Pa], and the length of step to try next [s], 0 when all is to be tried.

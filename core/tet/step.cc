@@ -1,4 +1,5 @@
 // One step of each stepping: TetSolver::Step and what it is made of.
+#include "core/tet/floor_contact.h"
 #include "core/tet/solver.h"
 
 namespace fascicle {
@@ -112,6 +113,7 @@ ForceReport TetSolver::UpdateForce(const NodalVector* viscous_velocity, const Fi
       viscous_velocity == nullptr
           ? ElasticForce(model_, drive, next.positions, team_, forces_, next.force)
           : ElasticAndViscousForce(model_, drive, next.positions, *viscous_velocity, team_, forces_, next.force);
+  AddFloorForce(model_, next.positions, next.force);
   next.smallest_ratio = report.smallest_ratio;
   return report;
 }

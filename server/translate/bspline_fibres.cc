@@ -67,11 +67,25 @@ std::optional<BsplineSolid> FitSolid(const v1::FittedSolid& fitted, const std::s
   return std::move(fit->solid);
 }
 
+void AddNotes(const BsplineFibreField& field, const std::string& path, std::vector<std::string>& notes) {
+  const std::string of = " of " + std::to_string(field.fibres.size()) + " tetrahedra ";
+  if (field.outside > 0) {
+    char farthest[32];
+    std::snprintf(farthest, sizeof(farthest), "%.2g mm", 1e3 * field.farthest);
+    notes.push_back(path + ": " + std::to_string(field.outside) + of + "have their centroid outside of the solid, by " +
+                    farthest + " at most; they have the fibre of its nearest point");
+  }
+  if (field.folded > 0) {
+    notes.push_back(path + ": at the centroids of " + std::to_string(field.folded) + of +
+                    "the solid is turned inside out, and its fibres cross");
+  }
+}
+
 }  // namespace
 
 FibreField TranslateBsplineFibres(const v1::BsplineFibres& bspline, v1::LengthUnit unit, const std::string& path,
                                   const TranslatedMesh* mesh, const TranslatedRegions& regions,
-                                  const AssetReader& assets, Problems& problems) {
+                                  const AssetReader& assets, std::vector<std::string>& notes, Problems& problems) {
   std::optional<BsplineSolid> solid;
   if (bspline.has_file()) {
     solid = ReadSolid(bspline.file(), MetresIn(unit), JoinPath(path, "file"), assets, problems);
@@ -83,6 +97,7 @@ FibreField TranslateBsplineFibres(const v1::BsplineFibres& bspline, v1::LengthUn
   Problems own;
   BsplineFibreField field = BsplineFibres(mesh->mesh, BsplineLocator(std::move(*solid)), team, own);
   problems.Append(path, own);
+  AddNotes(field, path, notes);
   return std::move(field.fibres);
 }
 

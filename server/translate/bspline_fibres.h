@@ -2,6 +2,7 @@
 #define FASCICLE_SERVER_TRANSLATE_BSPLINE_FIBRES_H_
 
 #include <string>
+#include <vector>
 
 #include "core/base/problems.h"
 #include "core/muscle/fibre_field.h"
@@ -13,10 +14,11 @@
 namespace fascicle::server {
 
 // Fibres along a B-spline solid from a file, in the body's `unit`, or fitted to the mesh. `mesh` may be nullptr: then
-// only what does not depend on it is checked. Empty where something is wrong.
+// only what does not depend on it is checked. Empty where something is wrong. `notes` tells where the solid misses the
+// mesh.
 FibreField TranslateBsplineFibres(const v1::BsplineFibres& bspline, v1::LengthUnit unit, const std::string& path,
                                   const TranslatedMesh* mesh, const TranslatedRegions& regions,
-                                  const AssetReader& assets, Problems& problems);
+                                  const AssetReader& assets, std::vector<std::string>& notes, Problems& problems);
 
 }  // namespace fascicle::server
 

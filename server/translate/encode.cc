@@ -29,6 +29,7 @@ v1::Geometry EncodeGeometry(const Scene& scene, const std::vector<SeriesInfo>& s
     encoded.set_positions(Bytes(body.mesh.nodes));
     encoded.set_tetrahedra(Bytes(body.mesh.tetrahedra));
     encoded.set_fibres(Bytes(body.fibres));
+    for (const std::string& note : body.notes) encoded.add_notes(note);
     for (const Region& region : body.regions) {
       v1::RegionGeometry& nodes = *encoded.add_regions();
       nodes.set_name(region.name);

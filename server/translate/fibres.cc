@@ -24,7 +24,7 @@ FibreField TranslateHarmonic(const v1::HarmonicFibres& harmonic, const std::stri
 
 FibreField TranslateSource(const v1::Fibres& fibres, v1::LengthUnit unit, const std::string& path,
                            const TranslatedMesh* mesh, const TranslatedRegions& regions, const AssetReader& assets,
-                           Problems& problems) {
+                           std::vector<std::string>& notes, Problems& problems) {
   if (fibres.has_constant()) {
     Problems own;
     const Vec3 direction = ToDirection(fibres.constant().direction(), JoinPath(path, "constant.direction"), own);
@@ -35,7 +35,8 @@ FibreField TranslateSource(const v1::Fibres& fibres, v1::LengthUnit unit, const 
     return TranslateHarmonic(fibres.harmonic(), JoinPath(path, "harmonic"), mesh, regions, problems);
   }
   if (fibres.has_bspline()) {
-    return TranslateBsplineFibres(fibres.bspline(), unit, JoinPath(path, "bspline"), mesh, regions, assets, problems);
+    return TranslateBsplineFibres(fibres.bspline(), unit, JoinPath(path, "bspline"), mesh, regions, assets, notes,
+                                  problems);
   }
   if (!fibres.has_file()) return {};
   const std::string file_path = JoinPath(path, "file");
@@ -72,11 +73,12 @@ void TranslatePennation(const v1::Pennation& wire, double unit, const std::strin
 }  // namespace
 
 FibreField TranslateFibres(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
-                           const TranslatedRegions& regions, const AssetReader& assets, Problems& problems) {
+                           const TranslatedRegions& regions, const AssetReader& assets, std::vector<std::string>& notes,
+                           Problems& problems) {
   const std::string path = JoinPath(body_path, "fibres");
   FibreField fibres;
   if (body.has_fibres()) {
-    fibres = TranslateSource(body.fibres(), body.unit(), path, mesh, regions, assets, problems);
+    fibres = TranslateSource(body.fibres(), body.unit(), path, mesh, regions, assets, notes, problems);
     if (body.fibres().has_pennation()) {
       TranslatePennation(body.fibres().pennation(), MetresIn(body.unit()), JoinPath(path, "pennation"), mesh, fibres,
                          problems);

@@ -86,6 +86,7 @@ std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, const std::str
     }
     result.mesh = std::move(*read);
     for (Vec3& x : result.mesh.nodes) x *= metres;
+    for (CurvedEdge& edge : result.mesh.curved_edges) edge.middle *= metres;
     OrientConsistently(result.mesh);
   } else {
     CheckElements(body.mesh(), path, problems);

@@ -42,7 +42,7 @@ std::optional<Selector> TranslateSelector(const v1::Region& region, double metre
       break;
     case v1::Region::kSide:
       selector = SideSelector{ToDirection(region.side().direction(), JoinPath(path, "side.direction"), own),
-                              region.side().max_angle()};
+                              region.side().max_angle(), region.side().depth() * metres};
       break;
     case v1::Region::SELECTOR_NOT_SET:
       break;
@@ -88,12 +88,30 @@ void AddEmptyRegion(const v1::Body& body, const v1::Region& region, const TetMes
     problems.Add(JoinPath(path, "physical_tag"),
                  "nothing in the mesh has the tag " + std::to_string(region.physical_tag()),
                  TagHint(mesh, body.mesh().has_file()));
+  } else if (region.within_size() > 0) {
+    problems.Add(JoinPath(path, "within"), "no node of the region lies in all of these regions too",
+                 ExtentHint(mesh, MetresIn(body.unit())));
   } else {
     const char* kind = region.has_plane()    ? "plane"
                        : region.has_box()    ? "box"
                        : region.has_sphere() ? "sphere"
                                              : "side";
     problems.Add(JoinPath(path, kind), "selects no node of the body", ExtentHint(mesh, MetresIn(body.unit())));
+  }
+}
+
+// Leaves of the last region what lies in the regions named as well.
+void Restrict(const v1::Region& region, const std::string& path, TranslatedRegions& result, Problems& problems) {
+  const std::size_t own = result.regions.size() - 1;
+  for (int k = 0; k < region.within_size(); ++k) {
+    const std::string at = JoinPath(path, IndexPath("within", static_cast<std::size_t>(k)));
+    const auto other = result.names.Find(region.within(k), at, problems);
+    if (!other) continue;
+    if (*other == own) {
+      problems.Add(at, "is the region itself", "name regions that stand before it");
+      continue;
+    }
+    result.regions[own] = Intersection(result.regions[own], result.regions[*other]);
   }
 }
 
@@ -110,8 +128,13 @@ TranslatedRegions TranslateRegions(const v1::Body& body, const std::string& body
     result.names.Add(region.name(), JoinPath(path, "name"), problems);
     result.regions.push_back({region.name(), {}, {}, {}});
     const auto selector = TranslateSelector(region, MetresIn(body.unit()), path, problems);
-    if (mesh == nullptr || !selector) continue;
-    result.regions.back() = SelectRegion(*mesh, surface, region.name(), *selector);
+    if (mesh != nullptr && selector) {
+      result.regions.back() = SelectRegion(*mesh, surface, region.name(), *selector);
+    }
+    Problems within;
+    Restrict(region, path, result, within);
+    problems.Append("", within);
+    if (mesh == nullptr || !selector || !within.empty()) continue;
     if (result.regions.back().nodes.empty()) AddEmptyRegion(body, region, *mesh, path, problems);
   }
   return result;

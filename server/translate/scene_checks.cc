@@ -27,6 +27,7 @@ void CheckEachBody(Scene scene, const std::vector<bool>& complete, Problems& pro
     if (!complete[i]) continue;
     Scene alone;
     alone.gravity = scene.gravity;
+    alone.floors = scene.floors;
     alone.duration = alone.output.frame_interval = 1;  // what is wrong with them has been said
     alone.bodies.push_back(std::move(scene.bodies[i]));
     Problems own;

@@ -17,6 +17,7 @@ std::vector<Constraint> TranslateConstraints(const v1::Body& body, const std::st
 std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_path, const Names& regions,
                                  Problems& problems);
 Gravity TranslateGravity(const v1::Scene& scene, Problems& problems);
+std::vector<Floor> TranslateFloors(const v1::Scene& scene, Problems& problems);
 
 }  // namespace fascicle::server
 

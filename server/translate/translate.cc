@@ -61,7 +61,7 @@ TranslatedBody TranslateBody(const v1::Body& wire, const std::string& path, doub
   problems.Append("", structure);
 
   const TetMesh* tetrahedra = mesh ? &mesh->mesh : nullptr;
-  body.fibres = TranslateFibres(wire, path, mesh ? &*mesh : nullptr, regions, assets, problems);
+  body.fibres = TranslateFibres(wire, path, mesh ? &*mesh : nullptr, regions, assets, body.notes, problems);
   TranslateMaterialParts(wire, path, tetrahedra, regions, assets, body, problems);
   TranslateActivations(wire, path, duration, tetrahedra, regions, assets, body, problems);
   TranslateInitialDisplacement(wire, path, tetrahedra, assets, body, problems);
@@ -104,6 +104,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   result->duration = filled.duration();
   result->method = TranslateMethod(filled);
   result->gravity = TranslateGravity(filled, found);
+  result->floors = TranslateFloors(filled, found);
 
   Names names("body");
   std::vector<bool> complete;
@@ -113,6 +114,10 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     names.Add(filled.bodies(i).name(), JoinPath(path, "name"), found);
     TranslatedBody body = TranslateBody(filled.bodies(i), path, filled.duration(), assets, budget, found);
     complete.push_back(body.complete);
+    if (!body.body.mesh.curved_edges.empty() && result->method.element == ElementOrder::kLinear) {
+      body.body.notes.push_back(JoinPath(path, "mesh") +
+                                ": linear elements leave out that edges of the mesh are curved");
+    }
     result->bodies.push_back(std::move(body.body));
   }
   result->output = TranslateOutput(filled, result->bodies, names, limits.max_frame_bytes, found);

@@ -157,6 +157,27 @@ TEST_F(CliTest, RunWithoutDataLeavesNothing) {
   EXPECT_TRUE(fs::is_empty(Temporary()));
 }
 
+TEST_F(CliTest, SettingsChangeTheScene) {
+  const std::string scene = Scene("scene.json", SceneText(2, 5));
+  const auto set = [&](const std::string& setting) { return Fascicle({"validate", scene, "--set", setting}); };
+  const Finished shorter =
+      Fascicle({"run", scene, "--json", "--set", "duration=0.0005", "--set",
+                "bodies[0].material={\"linear_elastic\": {\"young_modulus\": 1e4}}", "--set", "name=half as long"});
+  EXPECT_EQ(shorter.exit_code, 0) << shorter.err;
+  EXPECT_EQ(json::parse(shorter.out)["frames"], 2);
+  EXPECT_EQ(set("bodies[0].density=900").exit_code, 0) << "adds what is not there";
+  // What is wrong is told under the path that was set.
+  const Finished negative = set("bodies[0].density=-1");
+  EXPECT_EQ(negative.exit_code, 2);
+  EXPECT_THAT(negative.err, HasSubstr("bodies[0].density: "));
+  for (const std::string setting :
+       {"bodies[7].density=1", "bodies.density=1", "bodies[0].[1]=2", "duration", "=1", "bodies[x]=1", "..=1"}) {
+    const Finished finished = set(setting);
+    EXPECT_EQ(finished.exit_code, 2) << setting;
+    EXPECT_THAT(finished.err, HasSubstr("--set")) << setting;
+  }
+}
+
 TEST_F(CliTest, AFailedJobSaysWhy) {
   std::string text = SceneText(10, 100);
   const std::string floor = R"({"region": "floor"}])";  // and a lid that is pushed through it
@@ -316,6 +337,17 @@ TEST_F(ServerTest, AJobsWholeLife) {
   EXPECT_EQ(series[0]["values"].size(), 6u);
   EXPECT_THAT(Call({"plot", job, "--series", "energy/kinetic"}).out, HasSubstr("energy/kinetic"));
   EXPECT_EQ(Call({"plot", job, "--series", "none*"}).exit_code, 2);
+  // Series over each other, of two jobs in one picture, from a time on.
+  const std::string other = Submit(5, 20);
+  EXPECT_EQ(Call({"watch", other, "--json"}).exit_code, 0);
+  const std::vector<json> lines = Lines(Call({"plot", job, other, "--series", "energy/kinetic", "--x", "energy/elastic",
+                                              "--from", "0.003", "--out", folder_ / "xy.png", "--json"})
+                                            .out);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0]["values"].size(), 4u);
+  EXPECT_EQ(lines[0]["x"], lines[1]["x"]);
+  EXPECT_GT(fs::file_size(folder_ / "xy.png"), 2000u);
+  EXPECT_EQ(Call({"plot", job, "--x", "none"}).exit_code, 2);
 
   EXPECT_EQ(Call({"delete", job}).exit_code, 0);
   EXPECT_EQ(Call({"show", job}).exit_code, 2) << "it is gone";

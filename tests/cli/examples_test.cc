@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -59,14 +60,15 @@ TEST_F(ExampleTest, NoneIsForgotten) {
   std::set<std::string> names;
   std::istringstream list(RunProgram({FASCICLE_PROGRAM, "examples", "--json"}).out);
   for (std::string line; std::getline(list, line);) names.insert(json::parse(line)["example"]);
-  // The last two need real anatomy and are run in tests/verification; the isometric spindle takes the demonstration's
+  // The last four need real anatomy and are run in tests/verification; the isometric spindle takes the demonstration's
   // time.
-  EXPECT_THAT(names, ::testing::UnorderedElementsAre(
-                         "bar_of_two_materials", "bar_tension", "bar_twist", "cantilever_gravity", "fusiform_bipennate",
-                         "fusiform_bspline", "fusiform_quasi_static", "rubber_bending", "graded_bar", "let_go",
-                         "mesh_file", "muscle_lifts", "partial_recruitment", "rubber_stretch", "sphere_hanging",
-                         "tendon_pull", "torus_ringing", "twitch", "two_compartments", "fusiform_isometric",
-                         "biceps_isometric", "biceps_femoris_isometric"));
+  EXPECT_THAT(names,
+              ::testing::UnorderedElementsAre(
+                  "bar_of_two_materials", "bar_tension", "bar_twist", "cantilever_gravity", "fusiform_bipennate",
+                  "fusiform_bspline", "fusiform_quasi_static", "rubber_bending", "graded_bar", "let_go", "mesh_file",
+                  "muscle_lifts", "partial_recruitment", "rubber_stretch", "sphere_hanging", "tendon_pull",
+                  "torus_bounce", "torus_ringing", "twitch", "two_compartments", "fusiform_isometric",
+                  "biceps_isometric", "biceps_femoris_isometric", "biceps_tendon", "triceps_tendon"));
 }
 
 TEST_F(ExampleTest, BarTension) {
@@ -189,6 +191,38 @@ TEST_F(ExampleTest, TorusRinging) {
   }
   EXPECT_GT(lowest, 0);
   EXPECT_LT(highest / lowest, 1.01);
+}
+
+TEST_F(ExampleTest, TorusBounce) {
+  const json summary = RunExample("torus_bounce", {"--out", folder_ / "out"});
+  std::istringstream csv(ReadText(folder_ / "out/series.csv"));
+  std::string line;
+  std::getline(csv, line);
+  const auto column = [header = line](const std::string& name) {
+    const std::size_t at = header.find(name);
+    EXPECT_NE(at, std::string::npos) << name;
+    return std::count(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(at), ',');
+  };
+  const auto elastic = column("energy/elastic"), kinetic = column("energy/kinetic"),
+             work = column("energy/external_work"), contact = column("energy/contact"), push = column("floor/ground/y"),
+             top = column("probe/top/y");
+  const double fall = 0.05, weight = 1000 * 2 * M_PI * M_PI * 0.025 * 1e-4 * 9.81;
+  double most_work = 0, after_bounce = 0, impulse = 0, touching = 0;
+  while (std::getline(csv, line)) {
+    std::vector<double> values;
+    std::istringstream in(line);
+    for (std::string value; std::getline(in, value, ',');) values.push_back(std::stod(value));
+    const double time = values[1];
+    // It falls freely before it touches the floor.
+    if (time < 0.1) EXPECT_NEAR(values[top], -0.5 * 9.81 * time * time, 1e-6);
+    most_work = std::max(most_work, values[work]);
+    EXPECT_NEAR(values[elastic] + values[kinetic] + values[contact] - values[work], 0, 0.01 * weight * fall) << time;
+    if (time > 0.2) after_bounce = std::max(after_bounce, most_work - values[work]);
+    if (time > 0.1) impulse += values[push], touching += 1;
+  }
+  EXPECT_GT(most_work, 1.1 * weight * fall) << "it flattens";
+  EXPECT_GT(after_bounce, 0.4 * weight * fall) << "it comes up again";
+  EXPECT_NEAR(impulse / touching, weight, 0.3 * weight);
 }
 
 TEST_F(ExampleTest, Twitch) {

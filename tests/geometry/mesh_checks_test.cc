@@ -205,5 +205,22 @@ TEST(OrientConsistentlyTest, TurnsAllOrNone) {
   EXPECT_FALSE(OrientConsistently(empty));
 }
 
+TEST(CheckMeshTest, CurvedEdges) {
+  TetMesh mesh = MakeBox({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
+  const Tetrahedron& tet = mesh.tetrahedra[0];
+  const Vec3 middle = 0.5 * (mesh.nodes[tet[0]] + mesh.nodes[tet[1]]);
+  const auto check = [&](const std::vector<CurvedEdge>& edges) {
+    mesh.curved_edges = edges;
+    Problems problems;
+    CheckMesh(mesh, problems);
+    return problems.ToString();
+  };
+  EXPECT_EQ(check({{{tet[0], tet[1]}, middle + Vec3(0.02, 0.03, 0.05)}}), "");
+  EXPECT_THAT(check({{{tet[0], tet[1]}, middle + Vec3(0.5, 0.6, 0.7)}}), ::testing::HasSubstr("folded"));
+  EXPECT_THAT(check({{{tet[0], tet[0]}, middle}}), ::testing::HasSubstr("none of the mesh"));
+  EXPECT_THAT(check({{{tet[0], tet[1]}, middle}, {{tet[1], tet[0]}, middle}}), ::testing::HasSubstr("twice"));
+  EXPECT_THAT(check({{{tet[0], tet[1]}, Vec3(NAN, 0, 0)}}), ::testing::HasSubstr("no finite middle"));
+}
+
 }  // namespace
 }  // namespace fascicle

@@ -137,6 +137,43 @@ TEST(MeshIoTest, VtuPiecesFollowEachOther) {
   EXPECT_EQ(mesh->tagged_triangles[1], (Triangle{5, 7, 8}));
 }
 
+// Two tetrahedra of ten nodes, one of whose common edges and one outer edge are curved; Gmsh has the middles of the
+// last two edges the other way round than VTK.
+TEST(MeshIoTest, TenNodesBecomeCurvedEdges) {
+  const char* const nodes =
+      "1 0 0 0\n2 2 0 0\n3 0 2 0\n4 0 0 2\n5 2 2 2\n"
+      // middles of 12, 23, 13, 14, 24, 34, and of 25, 35, 45
+      "6 1 0 0\n7 1 1 0.25\n8 0 1 0\n9 0 0 1\n10 1 0 1\n11 0 1 1\n12 2 1 1\n13 1 2 1\n14 1 1 2.5\n";
+  const std::string gmsh = std::string("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n14\n") + nodes +
+                           "$EndNodes\n$Elements\n3\n1 9 2 7 1 1 3 4 8 11 9\n"
+                           "2 11 2 10 1 1 2 3 4 6 7 8 9 11 10\n3 11 2 20 1 2 3 4 5 7 11 10 12 14 13\n$EndElements\n";
+  std::string points;
+  for (std::istringstream in(nodes); in;) {
+    std::string number, x, y, z;
+    if (in >> number >> x >> y >> z) points += x + " " + y + " " + z + "\n";
+  }
+  const std::string vtk = "# vtk DataFile Version 3.0\nm\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 14 double\n" +
+                          points +
+                          "CELLS 3 29\n6 0 2 3 7 10 8\n10 0 1 2 3 5 6 7 8 9 10\n10 1 2 3 4 6 10 9 11 12 13\n"
+                          "CELL_TYPES 3\n22\n24\n24\nCELL_DATA 3\nSCALARS tag int 1\nLOOKUP_TABLE default\n7\n10\n20\n";
+  for (const auto& [name, text] : {std::pair<std::string, std::string>{"m.msh", gmsh}, {"m.vtk", vtk}}) {
+    const auto mesh = Read(name, text);
+    ASSERT_TRUE(mesh) << name;
+    EXPECT_EQ(mesh->nodes.size(), 5u);
+    EXPECT_EQ(mesh->tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
+    EXPECT_EQ(mesh->tetrahedron_tags, (std::vector<std::int32_t>{10, 20}));
+    EXPECT_EQ(mesh->tagged_triangles, (std::vector<Triangle>{{0, 2, 3}}));
+    ASSERT_EQ(mesh->curved_edges.size(), 2u) << name;
+    EXPECT_EQ(mesh->curved_edges[0].ends, (std::array<std::int32_t, 2>{1, 2}));
+    EXPECT_EQ(mesh->curved_edges[0].middle, Vec3(1, 1, 0.25));
+    EXPECT_EQ(mesh->curved_edges[1].ends, (std::array<std::int32_t, 2>{3, 4}));
+    EXPECT_EQ(mesh->curved_edges[1].middle, Vec3(1, 1, 2.5));
+    Problems problems;
+    CheckMesh(*mesh, problems);
+    EXPECT_TRUE(problems.empty()) << problems.ToString();
+  }
+}
+
 // Not-a-numbers are for CheckMesh to report, together with everything else.
 TEST(MeshIoTest, PassesOnNumbersThatAreNotFinite) {
   const auto mesh = Read("m.msh", Replaced(kGmsh2, "5 1 1 1\n$End", "5 nan -inf 1\n$End"));

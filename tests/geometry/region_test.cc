@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/geometry/shapes.h"
+#include "core/geometry/triangle_distance.h"
 #include "mesh_samples.h"
 
 namespace fascicle {
@@ -53,6 +54,36 @@ TEST_F(RegionTest, PlaneTakesNodesOnAndBeyondIt) {
   // 0.3 = 3 * 0.1 only up to round-off.
   EXPECT_EQ(Select(PlaneSelector{{3 * 0.1, 0, 0}, {-1, 0, 0}}).nodes.size(), 100u);
   EXPECT_TRUE(Select(PlaneSelector{{0.91, 0, 0}, {1, 0, 0}}).nodes.empty());
+}
+
+// The tetrahedra under the side x = 0.9, to a depth: those with their centroid in that layer of the box.
+TEST_F(RegionTest, SideWithDepthTakesALayer) {
+  for (const double depth : {0.1, 0.2, 0.55}) {
+    const Region layer = Select(SideSelector{{1, 0, 0}, 0.1, depth});
+    EXPECT_EQ(layer.nodes.size(), 25u) << "the nodes stay those of the side";
+    EXPECT_EQ(layer.tetrahedra, Select(PlaneSelector{{0.9 - depth, 0, 0}, {1, 0, 0}}).tetrahedra) << depth;
+  }
+  EXPECT_TRUE(Select(SideSelector{{1, 0, 0}, 0.1, 0}).tetrahedra.empty());
+}
+
+TEST_F(RegionTest, IntersectionIsWhatLiesInBoth) {
+  const Region side = Select(SideSelector{{1, 0, 0}, 0.1, 0.1});
+  const Region both = Intersection(side, Select(BoxSelector{{0, 0.2, 0}, {1, 0.4, 0.4}}));
+  ExpectSortedAndComplete(both);
+  EXPECT_EQ(both.name, "part");
+  EXPECT_EQ(both.nodes.size(), 15u);
+  EXPECT_NEAR(Area(mesh_, both), 0.08, 1e-15);
+  EXPECT_EQ(both.tetrahedra.size(), side.tetrahedra.size() / 2);
+  EXPECT_TRUE(Intersection(side, Select(PlaneSelector{{0.1, 0, 0}, {-1, 0, 0}})).nodes.empty());
+}
+
+TEST(TriangleDistanceTest, IsThatToTheNearestPoint) {
+  const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
+  EXPECT_DOUBLE_EQ(SquaredDistance({0.2, 0.2, 0.5}, a, b, c), 0.25);                                 // above the inside
+  EXPECT_DOUBLE_EQ(SquaredDistance({0.5, -2, 0}, a, b, c), 4);                                       // an edge
+  EXPECT_DOUBLE_EQ(SquaredDistance({1, 1, 0}, a, b, c), 0.5);                                        // the slanted one
+  EXPECT_DOUBLE_EQ(SquaredDistance({-3, -4, 0}, a, b, c), 25);                                       // a corner
+  EXPECT_DOUBLE_EQ(SquaredDistance({0.5, 0.5, 1}, {0.5, 0.5, 0}, {0.5, 0.5, 0}, {0.5, 0.5, 0}), 1);  // of no area
 }
 
 // 9 x 4 x 4 hexahedra of six tetrahedra each: those of whole layers, for no centroid lies on a node's plane.

@@ -350,6 +350,50 @@ TEST(TranslateScene, PartsOfABodyTakeTheirActivations) {
   EXPECT_LT((box.initial_displacement[7] - Vec3(0.07, 0, -0.005)).norm(), 1e-17);
 }
 
+// An aponeurosis: the layer under one side of the upper part.
+TEST(TranslateScene, RegionsWithinOthers) {
+  v1::Scene wire = BoxScene();
+  google::protobuf::TextFormat::MergeFromString(
+      R"(regions { name: "upper" plane { point: [0, 0, 2] normal: [0, 0, 1] } }
+         regions { name: "layer" side { direction: [1, 0, 0] depth: 0.5 } within: "upper" })",
+      wire.mutable_bodies(0));
+  const auto scene = Translate(wire);
+  ASSERT_NE(scene, nullptr);
+  const std::vector<Region>& regions = scene->bodies[0].regions;
+  const Region& upper = regions[regions.size() - 2];
+  const Region& layer = regions.back();
+  EXPECT_FALSE(layer.tetrahedra.empty());
+  EXPECT_LT(layer.tetrahedra.size(), upper.tetrahedra.size());
+  EXPECT_TRUE(std::includes(upper.tetrahedra.begin(), upper.tetrahedra.end(), layer.tetrahedra.begin(),
+                            layer.tetrahedra.end()));
+
+  wire.mutable_bodies(0)->mutable_regions(wire.bodies(0).regions_size() - 1)->set_within(0, "layer");
+  Problems problems;
+  EXPECT_EQ(TranslateScene(wire, {}, problems), nullptr);
+  EXPECT_THAT(problems.ToString(), ::testing::HasSubstr("within[0]"));
+}
+
+TEST(TranslateScene, FloorsHoldBodiesThatNothingElseHolds) {
+  v1::Scene wire = BoxScene();
+  wire.mutable_bodies(0)->clear_constraints();
+  google::protobuf::TextFormat::MergeFromString(
+      R"(gravity { acceleration: [0, 0, -9.81] } floors { name: "ground" point: [0, 0, -1] normal: [0, 0, 2] })",
+      &wire);
+  const auto scene = Translate(wire);
+  ASSERT_NE(scene, nullptr);
+  ASSERT_EQ(scene->floors.size(), 1u);
+  EXPECT_EQ(scene->floors[0].name, "ground");
+  EXPECT_EQ(scene->floors[0].point, Vec3(0, 0, -1));
+  EXPECT_EQ(scene->floors[0].normal, Vec3(0, 0, 1));
+
+  Problems problems;
+  wire.mutable_floors(0)->mutable_normal()->Set(2, -1);
+  *wire.add_floors() = wire.floors(0);
+  EXPECT_EQ(TranslateScene(wire, {}, problems), nullptr);
+  EXPECT_THAT(problems.ToString(), ::testing::HasSubstr("floors[1].name"));
+  EXPECT_THAT(problems.ToString(), ::testing::HasSubstr("inside of the floor"));
+}
+
 TEST(TranslateScene, AnExcitationBecomesAnActivation) {
   v1::Scene wire = BoxScene();
   google::protobuf::TextFormat::MergeFromString(

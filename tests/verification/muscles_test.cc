@@ -151,5 +151,38 @@ TEST(MusclesTest, BicepsFemoris) {
   CheckIsometricContraction(*scene);
 }
 
+// Tendon at both ends and aponeuroses: the part of the scene in which it is activated at its own length.
+void CheckTendonScene(const std::string& muscle) {
+  const auto mesh = DataFolder() / ("opendihu_upper_arm/" + muscle + "_coarse.msh");
+  if (!std::filesystem::exists(mesh)) GTEST_SKIP() << "no real anatomy in " << DataFolder() << " (set FASCICLE_DATA)";
+  const auto loaded = LoadExample(muscle + "_tendon.json", {mesh});
+  ASSERT_NE(loaded, nullptr);
+  Scene scene = *loaded;
+  scene.duration = 1;
+  std::array<std::size_t, 2> elements = {};  // of muscle and of tendon
+  for (const std::int32_t m : scene.bodies[0].material_of) ++elements[m == 0 ? 0 : 1];
+  EXPECT_GT(elements[1], 0.05 * static_cast<double>(elements[0]));
+  const RunResult run = RunScene(scene, 2);
+  ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded) << run.outcome.failure.message;
+  double before = -1, iterations = 0;
+  for (std::size_t k = 0; k < run.frames.size(); ++k) {
+    EXPECT_NEAR(run.At(k, muscle + "/volume_ratio"), 1, 0.005) << run.frames[k].time;
+    iterations += run.At(k, "solver/iterations");
+    const double pull = run.At(k, muscle + "/reaction/proximal/z");
+    for (const char* axis : {"x", "y", "z"}) {
+      const double sum =
+          run.At(k, muscle + "/reaction/proximal/" + axis) + run.At(k, muscle + "/reaction/distal/" + axis);
+      EXPECT_LT(std::abs(sum), 1e-5 * std::max(1.0, std::abs(pull)));
+    }
+    EXPECT_GT(pull, before) << "rises with activation";
+    before = pull;
+  }
+  std::printf("%s with tendon: %.1f N at full activation, volume ratio %.5f, %.0f iterations\n", muscle.c_str(), before,
+              run.Last(muscle + "/volume_ratio"), iterations);
+}
+
+TEST(MusclesTest, BicepsWithTendon) { CheckTendonScene("biceps"); }
+TEST(MusclesTest, TricepsWithTendon) { CheckTendonScene("triceps"); }
+
 }  // namespace
 }  // namespace fascicle

@@ -1,0 +1,13 @@
+#ifndef FASCICLE_CLIENT_CLI_DIGESTS_H_
+#define FASCICLE_CLIENT_CLI_DIGESTS_H_
+
+#include "fascicle/v1/frame.pb.h"
+
+namespace fascicle::client {
+
+// A line with the frame's index, time and SHA-256, or a JSON object, on stdout.
+void PrintDigest(const v1::Frame& frame, bool json);
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_CLI_DIGESTS_H_

@@ -1,0 +1,53 @@
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "core/scene/checks.h"
+
+namespace fascicle::scene_checks {
+namespace {
+
+// How deep the body's rest shape, moved by its initial displacement, is in a floor [m]; negative above it.
+double DepthOf(const Body& body, const Floor& floor) {
+  double deepest = -INFINITY;
+  for (std::size_t n = 0; n < body.mesh.nodes.size(); ++n) {
+    Vec3 x = body.mesh.nodes[n];
+    if (n < body.initial_displacement.size()) x += body.initial_displacement[n];
+    deepest = std::max(deepest, (floor.point - x).dot(floor.normal));
+  }
+  return deepest;
+}
+
+// Bodies may lie on a floor: this part of their size is round-off.
+double RoundOff(const Body& body) {
+  double size = 0;
+  for (const Vec3& x : body.mesh.nodes) size = std::max(size, (x - body.mesh.nodes[0]).norm());
+  return 1e-9 * size;
+}
+
+}  // namespace
+
+void CheckFloors(const Scene& scene, Problems& problems) {
+  std::set<std::string> names;
+  for (std::size_t k = 0; k < scene.floors.size(); ++k) {
+    const Floor& floor = scene.floors[k];
+    const std::string path = IndexPath("floors", k);
+    if (!names.insert(floor.name).second) {
+      problems.Add(JoinPath(path, "name"), "another floor is called `" + floor.name + "` too");
+    }
+    if (!(std::abs(floor.normal.norm() - 1) < 1e-9) || !floor.point.allFinite()) {
+      problems.Add(path, "has no finite point and unit normal");
+      continue;
+    }
+    for (const Body& body : scene.bodies) {
+      const double depth = DepthOf(body, floor);
+      if (!(depth > RoundOff(body))) continue;
+      char text[64];
+      std::snprintf(text, sizeof(text), "%.3g m", depth);
+      problems.Add(path, "the body `" + body.name + "` starts " + text + " inside of the floor",
+                   "move the floor, or turn its normal: it points to the side where bodies are");
+    }
+  }
+}
+
+}  // namespace fascicle::scene_checks
