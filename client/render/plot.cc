@@ -64,6 +64,7 @@ void StyleAxis(vtkAxis& axis, const std::string& label) {
   axis.GetLabelProperties()->SetFontSize(13);
   axis.SetNotation(vtkAxis::PRINTF_NOTATION);
   axis.SetLabelFormat("%.6g");
+  axis.SetTickLabelAlgorithm(vtkAxis::TICK_WILKINSON_EXTENDED);  // the simple one lets long labels run into each other
   axis.GetPen()->SetWidth(Canvas::kSampling);
   axis.GetPen()->SetColor(60, 60, 60);
   axis.GetGridPen()->SetWidth(Canvas::kSampling);

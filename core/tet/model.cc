@@ -30,15 +30,16 @@ const Material& MaterialOf(const Body& body, std::size_t tet) {
 
 // What is left to an element of its volume modulus when the rest acts on patches. All of it up to a Poisson's ratio of
 // 0.3, which does not lock; beyond, a part of what may crush the element by itself: its shear modulus, and the stress
-// that its fibres have at rest when active, which may be a hundred times that.
+// that its fibres have at rest when active, which may be a hundred times that. Quadratic elements bear ten times as
+// much of it before they stiffen, and need it: each of their points may be crushed by itself.
 template <class Law>
-double ElementVolumeModulus(const Law& law) {
+double ElementVolumeModulus(const Law& law, ElementOrder order) {
   constexpr double kDoesNotLock = 1.5;
-  constexpr double kKept = 0.3;
+  const double kept = order == ElementOrder::kLinear ? 0.3 : 3;
   const double modulus = law.VolumeModulus(), shear = law.ShearModulus();
   if (modulus <= kDoesNotLock * (1 + 1e-12) * shear) return modulus;
   const double active_stress = law.Stress(Mat3::Identity(), FibreState{Vec3::UnitX(), 1}).norm();
-  return std::min(modulus, kKept * (shear + active_stress));
+  return std::min(modulus, kept * (shear + active_stress));
 }
 
 // Whether the active stress of any law depends on how fast the fibre shortens.
@@ -198,7 +199,7 @@ void TetModel::FillGroup(const Body& body, TetGroup& group) {
       if (is_new) {
         const Law& law = std::get<Law>(material);
         const double whole = law.VolumeModulus();
-        const double kept = nodal ? ElementVolumeModulus(law) : whole;
+        const double kept = nodal ? ElementVolumeModulus(law, order()) : whole;
         laws.push_back(law.WithVolumeModulus(kept));
         given_by_law.push_back(whole - kept);
         depends_on_rate_ |= DependsOnRate(law);

@@ -214,7 +214,9 @@ TEST_F(ExampleTest, TorusBounce) {
     for (std::string value; std::getline(in, value, ',');) values.push_back(std::stod(value));
     const double time = values[1];
     // It falls freely before it touches the floor.
-    if (time < 0.1) EXPECT_NEAR(values[top], -0.5 * 9.81 * time * time, 1e-6);
+    if (time < 0.1) {
+      EXPECT_NEAR(values[top], -0.5 * 9.81 * time * time, 1e-6);
+    }
     most_work = std::max(most_work, values[work]);
     EXPECT_NEAR(values[elastic] + values[kinetic] + values[contact] - values[work], 0, 0.01 * weight * fall) << time;
     if (time > 0.2) after_bounce = std::max(after_bounce, most_work - values[work]);

@@ -157,15 +157,15 @@ double RingDeflection(int n, ElementOrder element) {
 // all meshes approach the answer as 1/n.
 TEST(FurtherProblems, CookMembrane) {
   const double fine = CookDeflection(16, ElementOrder::kQuadratic);
-  EXPECT_NEAR(CookDeflection(4, ElementOrder::kQuadratic), fine, 0.04 * fine);
-  EXPECT_NEAR(CookDeflection(8, ElementOrder::kQuadratic), fine, 0.011 * fine);
+  EXPECT_NEAR(CookDeflection(4, ElementOrder::kQuadratic), fine, 0.06 * fine);
+  EXPECT_NEAR(CookDeflection(8, ElementOrder::kQuadratic), fine, 0.015 * fine);
   EXPECT_NEAR(CookDeflection(16, ElementOrder::kLinear), fine, 0.08 * fine);
 }
 
 TEST(FurtherProblems, QuarterRing) {
   const double fine = RingDeflection(3, ElementOrder::kQuadratic);
-  EXPECT_NEAR(RingDeflection(1, ElementOrder::kQuadratic), fine, 0.03 * fine);
-  EXPECT_NEAR(RingDeflection(2, ElementOrder::kQuadratic), fine, 0.005 * fine);
+  EXPECT_NEAR(RingDeflection(1, ElementOrder::kQuadratic), fine, 0.04 * fine);
+  EXPECT_NEAR(RingDeflection(2, ElementOrder::kQuadratic), fine, 0.01 * fine);
   EXPECT_NEAR(RingDeflection(4, ElementOrder::kLinear), fine, 0.12 * fine);
 }
 

@@ -55,15 +55,11 @@ TEST_P(RobustnessTest, Twist) {
   EXPECT_EQ(run.state.step, 10);
 }
 
-// Quadratic elements do not get the nearly incompressible cube further, where its sides fold over the edges of its
-// ends.
 TEST_P(RobustnessTest, CompressedCubes) {
-  for (const auto& [name, law, height] :
-       {std::tuple<const char*, Material, double>{"Mooney-Rivlin", NearlyIncompressible(),
-                                                  GetParam() == ElementOrder::kLinear ? 0.3 : 0.45},
-        {"neo-Hookean", NeoHookean(std::array{1e5, 0.3}), 0.3}}) {
-    SteppedRun run(SceneOf(ClampedCube(4, law, Ramp(0.01 * (height - 1)))));
-    Finish(run, std::string("a ") + name + " cube compressed to " + std::to_string(height) + " of its height");
+  for (const auto& [name, law] : {std::pair<const char*, Material>{"Mooney-Rivlin", NearlyIncompressible()},
+                                  {"neo-Hookean", NeoHookean(std::array{1e5, 0.3})}}) {
+    SteppedRun run(SceneOf(ClampedCube(4, law, Ramp(-0.007))));
+    Finish(run, std::string("a ") + name + " cube compressed to 30 % of its height");
     EXPECT_LT(run.Reaction(1)[2], 0);
   }
 }
