@@ -64,7 +64,6 @@ void StyleAxis(vtkAxis& axis, const std::string& label) {
   axis.GetLabelProperties()->SetFontSize(13);
   axis.SetNotation(vtkAxis::PRINTF_NOTATION);
   axis.SetLabelFormat("%.6g");
-  axis.SetTickLabelAlgorithm(vtkAxis::TICK_WILKINSON_EXTENDED);  // the simple one lets long labels run into each other
   axis.GetPen()->SetWidth(Canvas::kSampling);
   axis.GetPen()->SetColor(60, 60, 60);
   axis.GetGridPen()->SetWidth(Canvas::kSampling);
@@ -98,6 +97,8 @@ vtkSmartPointer<vtkChartXY> MakeChart(const PlotPanel& panel) {
     plot.GetPen()->SetLineType(kStyles[i / kColours.size() % kStyles.size()]);
   }
   StyleAxis(*chart->GetAxis(vtkAxis::BOTTOM), panel.x_label);
+  // The simple one lets long labels run into each other; upright there is room, and its ranges are the tighter ones.
+  chart->GetAxis(vtkAxis::BOTTOM)->SetTickLabelAlgorithm(vtkAxis::TICK_WILKINSON_EXTENDED);
   StyleAxis(*chart->GetAxis(vtkAxis::LEFT), panel.y_label);
   if (x_extent.lowest <= x_extent.highest) {
     SetRange(x_extent, 0, *chart->GetAxis(vtkAxis::BOTTOM));

@@ -1,6 +1,6 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <set>
 
 #include "core/scene/checks.h"
 
@@ -28,13 +28,9 @@ double RoundOff(const Body& body) {
 }  // namespace
 
 void CheckFloors(const Scene& scene, Problems& problems) {
-  std::set<std::string> names;
   for (std::size_t k = 0; k < scene.floors.size(); ++k) {
     const Floor& floor = scene.floors[k];
     const std::string path = IndexPath("floors", k);
-    if (!names.insert(floor.name).second) {
-      problems.Add(JoinPath(path, "name"), "another floor is called `" + floor.name + "` too");
-    }
     if (!(std::abs(floor.normal.norm() - 1) < 1e-9) || !floor.point.allFinite()) {
       problems.Add(path, "has no finite point and unit normal");
       continue;

@@ -29,7 +29,7 @@ void CheckConstraints(const Scene& scene, Problems& problems);
 void CheckLoads(const Scene& scene, Problems& problems);
 // A load or gravity that nothing, not even a floor, holds against: the body would fly away.
 void CheckSupports(const Scene& scene, Problems& problems);
-// Floors with a name of their own and a unit normal, that no body starts in.
+// Floors with a unit normal, that no body starts in.
 void CheckFloors(const Scene& scene, Problems& problems);
 // Probes that follow a node that exists; the number of frames; duration.
 void CheckOutput(const Scene& scene, Problems& problems);
