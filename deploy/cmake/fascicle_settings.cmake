@@ -29,7 +29,7 @@ if(FASCICLE_SANITIZE)
 endif()
 if(FASCICLE_SANITIZE MATCHES "address" AND NOT FASCICLE_FUZZ)
   target_sources(fascicle_settings INTERFACE
-    $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${CMAKE_CURRENT_LIST_DIR}/keep_libraries_loaded.cc>)
+    $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${CMAKE_CURRENT_LIST_DIR}/sanitized_program.cc>)
 endif()
 
 # Precompiled headers: parsing Eigen, gRPC and Google Test would otherwise take most of a build. Headers stay
