@@ -7,6 +7,7 @@
 #include "core/materials/uniaxial_curve.h"
 #include "reference_problems.h"
 #include "static_run.h"
+#include "twisted_rod.h"
 
 namespace fascicle {
 namespace {
@@ -75,43 +76,13 @@ TEST(ContractionTest, BarWithFibresAcross) {
 // A round rod, its surface curved, twisted with its length held [Rivlin 1948]: the torque and the axial force of a
 // Mooney-Rivlin law without compressibility, which K/mu = 1000 comes near to.
 TEST(TorsionTest, RoundRod) {
-  const double radius = 0.005, length = 0.02, angle = std::numbers::pi / 2, c1 = 0.03e6, c2 = 0.01e6;
-  TetMesh mesh = MakeFusiform(
-      {.length = length, .belly_radius = radius, .end_radius = radius, .divisions_across = 4, .divisions_along = 8});
-  std::set<std::array<std::int32_t, 2>> edges;
-  for (const Triangle& t : BoundaryTriangles(mesh)) {
-    for (int c = 0; c < 3; ++c) {
-      const auto [i, j] = std::minmax(t[c], t[(c + 1) % 3]);
-      const auto is_outside = [&](std::int32_t n) { return mesh.nodes[n].head<2>().norm() > (1 - 1e-9) * radius; };
-      if (!is_outside(i) || !is_outside(j) || !edges.insert({i, j}).second) continue;
-      Vec3 middle = 0.5 * (mesh.nodes[i] + mesh.nodes[j]);
-      middle.head<2>() *= radius / middle.head<2>().norm();
-      mesh.curved_edges.push_back({{i, j}, middle});
-    }
-  }
-  Body body = MakeBody("rod", std::move(mesh), NearlyIncompressible());
-  Constraint turn = Fix(kZ1);
-  turn.motion.rotation = Rotation{Vec3::Zero(), Vec3::UnitZ(), Ramp(angle)};
-  body.constraints = {Fix(kZ0), turn};
-  Scene scene = StaticScene(std::move(body), ElementOrder::kQuadratic);
-  scene.method.time_step = 0.25;
-  SteppedRun run(scene);
-  ASSERT_TRUE(run.To(1));
-  NodalVector force;
-  ForceWorkspace workspace;
-  ElasticForce(run.model, std::array{0.0}, run.state.positions, run.team, workspace, force);
-  double torque = 0, axial = 0;
-  for (const std::int32_t n : run.model.supports()[1].nodes) {
-    torque -= run.state.positions[n].cross(force[n])[2];
-    axial -= force[n][2];
-  }
-  const double twist = angle / length, fourth = std::pow(radius, 4);
-  const double exact_torque = std::numbers::pi * twist * fourth * (c1 + c2);
-  const double exact_axial = -0.5 * std::numbers::pi * twist * twist * fourth * (c1 + 2 * c2);
-  std::printf("torque %.5g N m, exact %.5g; axial force %.5g N, exact %.5g; %lld iterations\n", torque, exact_torque,
-              axial, exact_axial, static_cast<long long>(run.state.iterations));
-  EXPECT_NEAR(torque, exact_torque, 0.01 * exact_torque);
-  EXPECT_NEAR(axial, exact_axial, 0.02 * std::abs(exact_axial));
+  const double c1 = 0.03e6, c2 = 0.01e6;
+  const double twist = kRodAngle / kRodLength, fourth = std::pow(kRodRadius, 4);
+  const RodForces exact{.torque = std::numbers::pi * twist * fourth * (c1 + c2),
+                        .axial = -0.5 * std::numbers::pi * twist * twist * fourth * (c1 + 2 * c2)};
+  const RodForces found = TwistRod(MakeBody("rod", RodMesh(), NearlyIncompressible()), 0, exact);
+  EXPECT_NEAR(found.torque, exact.torque, 0.01 * exact.torque);
+  EXPECT_NEAR(found.axial, exact.axial, 0.02 * std::abs(exact.axial));
 }
 
 }  // namespace

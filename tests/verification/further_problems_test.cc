@@ -7,6 +7,7 @@
 
 #include "reference_problems.h"
 #include "static_run.h"
+#include "twisted_rod.h"
 
 namespace fascicle {
 namespace {
@@ -19,15 +20,7 @@ constexpr double kPi = std::numbers::pi;
 Body MappedBody(const Vec3& size, const std::array<int, 3>& divisions, const std::function<Vec3(const Vec3&)>& place,
                 const Material& law) {
   Body body = BoxBody(size, divisions, law);
-  std::set<std::array<std::int32_t, 2>> edges;
-  for (const Tetrahedron& tet : body.mesh.tetrahedra) {
-    for (const auto& [a, b] : kTetEdges) {
-      const auto [i, j] = std::minmax(tet[a], tet[b]);
-      if (!edges.insert({i, j}).second) continue;
-      body.mesh.curved_edges.push_back({{i, j}, place(0.5 * (body.mesh.nodes[i] + body.mesh.nodes[j]))});
-    }
-  }
-  for (Vec3& X : body.mesh.nodes) X = place(X);
+  Place(place, body.mesh);
   return body;
 }
 
@@ -45,8 +38,8 @@ struct TwistedRod {
     const FibreState fibre{Vec3(0, std::sin(winding), std::cos(winding)), activation};
     return law.Stress(F, fibre) * F.transpose();
   }
-  // Torque [N m] and axial force [N], by the midpoint rule from the surface inwards.
-  std::array<double, 2> Forces() const {
+  // By the midpoint rule from the surface inwards.
+  RodForces Forces() const {
     constexpr int kSteps = 20000;
     const double h = radius / kSteps;
     double torque = 0, axial = 0, radial = 0;
@@ -65,47 +58,17 @@ struct TwistedRod {
 TEST(FurtherProblems, TwistedMuscleWithWindingFibres) {
   const Muscle law(std::array{0.03e6, 0.01e6, 4e7, 0.3e6, 1.0, 0.05, 6.6, 1.4});
   for (const double winding : {0.0, 0.35}) {
-    const TwistedRod exact{0.005, 0.5 * kPi / 0.02, winding, law, 0.5};
-    TetMesh mesh = MakeFusiform(
-        {.length = 0.02, .belly_radius = 0.005, .end_radius = 0.005, .divisions_across = 4, .divisions_along = 8});
-    std::set<std::array<std::int32_t, 2>> edges;
-    for (const Triangle& t : BoundaryTriangles(mesh)) {
-      for (int c = 0; c < 3; ++c) {
-        const auto [i, j] = std::minmax(t[c], t[(c + 1) % 3]);
-        const auto is_outside = [&](std::int32_t n) { return mesh.nodes[n].head<2>().norm() > 0.005 * (1 - 1e-9); };
-        if (!is_outside(i) || !is_outside(j) || !edges.insert({i, j}).second) continue;
-        Vec3 middle = 0.5 * (mesh.nodes[i] + mesh.nodes[j]);
-        middle.head<2>() *= 0.005 / middle.head<2>().norm();
-        mesh.curved_edges.push_back({{i, j}, middle});
-      }
-    }
-    Body body = MakeBody("rod", std::move(mesh), law);
+    const RodForces exact = TwistedRod{kRodRadius, kRodAngle / kRodLength, winding, law, 0.5}.Forces();
+    Body body = MakeBody("rod", RodMesh(), law);
     for (std::size_t t = 0; t < body.mesh.tetrahedra.size(); ++t) {
       const Vec3 at = Centroid(body.mesh, t);
       const Vec3 around = Vec3(-at[1], at[0], 0).normalized();
       body.fibres.push_back(std::sin(winding) * around + std::cos(winding) * Vec3::UnitZ());
     }
-    Constraint turn = Fix(kZ1);
-    turn.motion.rotation = Rotation{Vec3::Zero(), Vec3::UnitZ(), Ramp(0.5 * kPi)};
-    body.constraints = {Fix(kZ0), turn};
-    body.activation = Ramp(0.5);
-    Scene scene = StaticScene(std::move(body), ElementOrder::kQuadratic);
-    scene.method.time_step = 0.25;
-    SteppedRun run(scene);
-    ASSERT_TRUE(run.To(1));
-    NodalVector force;
-    ForceWorkspace workspace;
-    ElasticForce(run.model, std::array{0.5}, run.state.positions, run.team, workspace, force);
-    double torque = 0, axial = 0;
-    for (const std::int32_t n : run.model.supports()[1].nodes) {
-      torque -= run.state.positions[n].cross(force[n])[2];
-      axial -= force[n][2];
-    }
-    const auto [exact_torque, exact_axial] = exact.Forces();
-    std::printf("fibres at %.2f rad: torque %.5g N m, exact %.5g; axial force %.5g N, exact %.5g; %lld iterations\n",
-                winding, torque, exact_torque, axial, exact_axial, static_cast<long long>(run.state.iterations));
-    EXPECT_NEAR(torque, exact_torque, 0.015 * std::abs(exact_torque));
-    EXPECT_NEAR(axial, exact_axial, 0.015 * std::abs(exact_axial));
+    std::printf("fibres at %.2f rad: ", winding);
+    const RodForces found = TwistRod(std::move(body), 0.5, exact);
+    EXPECT_NEAR(found.torque, exact.torque, 0.015 * std::abs(exact.torque));
+    EXPECT_NEAR(found.axial, exact.axial, 0.015 * std::abs(exact.axial));
   }
 }
 

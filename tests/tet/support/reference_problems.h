@@ -39,6 +39,20 @@ inline Body ClampedCube(int n, const Material& law, const Curve& lift) {
   return body;
 }
 
+// Puts a mesh of parameter space in place, the middles of all its edges too.
+template <class Map>
+void Place(const Map& place, TetMesh& mesh) {
+  std::set<std::array<std::int32_t, 2>> edges;
+  for (const Tetrahedron& tet : mesh.tetrahedra) {
+    for (const auto& [a, b] : kTetEdges) {
+      const auto [i, j] = std::minmax(tet[a], tet[b]);
+      if (!edges.insert({i, j}).second) continue;
+      mesh.curved_edges.push_back({{i, j}, place(0.5 * (mesh.nodes[i] + mesh.nodes[j]))});
+    }
+  }
+  for (Vec3& X : mesh.nodes) X = place(X);
+}
+
 // Problem d: a muscle of rounded-square section fixed at both ends, n x n x 4 n hexahedra of parameter space.
 inline Body ReferenceMuscle(int n, const Curve& activation) {
   const auto place = [](const Vec3& p) {
@@ -48,17 +62,11 @@ inline Body ReferenceMuscle(int n, const Curve& activation) {
   };
   TetMesh mesh = MakeBox(Vec3(-1, -1, 0), Vec3(2, 2, 1), {n, n, 4 * n});
   FibreField fibres;
-  std::set<std::array<std::int32_t, 2>> edges;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     const Vec3 centroid = Centroid(mesh, t), along(0, 0, 1e-6);
     fibres.push_back((place(centroid + along) - place(centroid - along)).normalized());
-    for (const auto& [a, b] : kTetEdges) {
-      const auto [i, j] = std::minmax(mesh.tetrahedra[t][a], mesh.tetrahedra[t][b]);
-      if (!edges.insert({i, j}).second) continue;
-      mesh.curved_edges.push_back({{i, j}, place(0.5 * (mesh.nodes[i] + mesh.nodes[j]))});
-    }
   }
-  for (Vec3& X : mesh.nodes) X = place(X);
+  Place(place, mesh);
   Body body = MakeBody("muscle", std::move(mesh), Muscle(std::array{0.03e6, 0.01e6, 8e6, 0.3e6, 1.0, 0.05, 6.6, 1.4}));
   body.fibres = std::move(fibres);
   body.constraints = {Fix(kZ0), Fix(kZ1)};
