@@ -89,7 +89,8 @@ void MarkRegion(const std::string& name, const std::string& path, const Translat
   const Region& region = regions.regions[*index];
   if (region.tetrahedra.empty() && !region.nodes.empty()) {
     problems.Add(path, "region `" + name + "` holds no tetrahedron",
-                 "select by plane, box or sphere, by side with a depth, or by a tag of tetrahedra");
+                 "select by plane, box or sphere, which take those with their centroid inside, by side with a depth, "
+                 "or by a tag of tetrahedra");
   }
   for (const std::int32_t t : region.tetrahedra) parts[static_cast<std::size_t>(t)] = value;
 }
