@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "core/geometry/faces.h"
+#include "core/geometry/quadratic_tetrahedron.h"
 
 namespace fascicle {
 namespace {
@@ -265,22 +266,9 @@ double SmallestDihedralAngle(const TetMesh& mesh) {
   return smallest;
 }
 
-// Corners whose plain tetrahedron has the Jacobian of a ten-node element where the barycentric coordinates are L.
-std::array<Vec3, 4> CornersAt(const std::array<Vec3, 10>& x, const std::array<double, 4>& L) {
-  std::array<Vec3, 4> corners;
-  for (int c = 0; c < 4; ++c) corners[c] = (4 * L[c] - 1) * x[c];
-  for (int k = 0; k < 6; ++k) {
-    const auto [i, j] = kTetEdges[k];
-    corners[i] += 4 * L[j] * x[4 + k];
-    corners[j] += 4 * L[i] * x[4 + k];
-  }
-  return corners;
-}
-
 // Whether a ten-node element has a positive Jacobian in its corners and at the quadrature points of degree two.
 bool IsUpright(const std::array<Vec3, 10>& x) {
-  const double near = (5 + 3 * std::sqrt(5.0)) / 20, far = (5 - std::sqrt(5.0)) / 20;
-  for (const auto& [at, rest] : {std::pair(1.0, 0.0), std::pair(near, far)}) {
+  for (const auto& [at, rest] : {std::pair(1.0, 0.0), std::pair(kNearCorner, kFarCorner)}) {
     for (int c = 0; c < 4; ++c) {
       std::array<double, 4> L;
       L.fill(rest);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/geometry/quadratic_tetrahedron.h"
 #include "core/geometry/tet_mesh.h"
 #include "core/linalg/nodal_vector.h"
 
@@ -14,7 +15,7 @@
 // Both elements are made of linear tetrahedra: what happens at a quadrature point of the quadratic element is what
 // happens in a linear tetrahedron whose corners are fixed combinations of the element's ten nodes, because
 //   F = sum_a x_a (x) grad N_a = sum_c y_c (x) g_c,   y_c = (4 L_c - 1) x_c + sum_{j != c} 4 L_j x_cj,
-// with L the barycentric coordinates of the point, g_c their rest gradients (constant: rest edges are straight) and
+// with L the barycentric coordinates of the point, g_c their gradients in that tetrahedron at rest and
 // x_cj the node in the middle of the edge from c to j. So all laws and loops are written for a linear tetrahedron.
 namespace fascicle {
 
@@ -40,8 +41,8 @@ struct LinearElement {
   static constexpr double Part(int /*q*/, int c, int a) { return c == a ? 1 : 0; }
 };
 
-// Ten nodes: the corners and the middles of the edges in the order of kTetEdges; straight rest edges, linear strain,
-// four-point quadrature of degree two [Zienkiewicz, Taylor & Zhu 2013, 5.11].
+// Ten nodes: the corners and the middles of the edges in the order of kTetEdges; edges straight or curved at rest,
+// linear strain when straight, four-point quadrature of degree two [Zienkiewicz, Taylor & Zhu 2013, 5.11].
 struct QuadraticElement {
   static constexpr int kNodes = 10;
   static constexpr int kPoints = 4;
@@ -51,16 +52,9 @@ struct QuadraticElement {
   static constexpr std::array<double, 10> kMassShare = {1. / 36, 1. / 36, 1. / 36, 1. / 36, 4. / 27,
                                                         4. / 27, 4. / 27, 4. / 27, 4. / 27, 4. / 27};
 
-  static constexpr double Barycentric(int q, int c) { return q == c ? kNear : kFar; }
+  static constexpr double Barycentric(int q, int c) { return q == c ? kNearCorner : kFarCorner; }
   static CornerValues Corners(const std::array<Vec3, 10>& nodes, int q) {
-    CornerValues corners;
-    for (int c = 0; c < 4; ++c) corners[c] = (4 * Barycentric(q, c) - 1) * nodes[c];
-    for (int k = 0; k < 6; ++k) {
-      const auto [i, j] = kTetEdges[k];
-      corners[i] += 4 * Barycentric(q, j) * nodes[4 + k];
-      corners[j] += 4 * Barycentric(q, i) * nodes[4 + k];
-    }
-    return corners;
+    return CornersAt(nodes, {Barycentric(q, 0), Barycentric(q, 1), Barycentric(q, 2), Barycentric(q, 3)});
   }
   static void AddCorners(const CornerValues& corners, int q, std::array<Vec3, 10>& nodes) {
     for (int c = 0; c < 4; ++c) nodes[c] += (4 * Barycentric(q, c) - 1) * corners[c];
@@ -75,10 +69,6 @@ struct QuadraticElement {
     if (edge[0] == c) return 4 * Barycentric(q, edge[1]);
     return edge[1] == c ? 4 * Barycentric(q, edge[0]) : 0;
   }
-
- private:
-  static constexpr double kNear = 0.58541019662496845446;  // (5 + 3 sqrt 5) / 20
-  static constexpr double kFar = 0.13819660112501051518;   // (5 - sqrt 5) / 20
 };
 
 // [a1 - a0, a2 - a0, a3 - a0] of the values a at the corners: Dm of rest positions, Ds of positions, their rates of
