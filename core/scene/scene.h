@@ -103,11 +103,15 @@ enum class ElementOrder { kLinear, kQuadratic };
 // which locks.
 enum class VolumeForm { kNodal, kElement };
 
+// How the linear systems of Newton's method are solved; automatic: iteratively where they are large.
+enum class LinearSolver { kAutomatic, kDirect, kIterative };
+
 struct TetMethod {
   Stepping stepping = Stepping::kExplicit;
   ElementOrder element = ElementOrder::kLinear;
   VolumeForm volume = VolumeForm::kNodal;
   std::optional<double> time_step;  // [s]; automatic when absent
+  LinearSolver linear_solver = LinearSolver::kAutomatic;
   double newton_tolerance = 1e-8;   // relative force at which the iterations of implicit steps end
   double safety = 0.9;
   double solver_tolerance = 1e-8;

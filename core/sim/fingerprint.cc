@@ -26,6 +26,7 @@ class Fingerprint {
     Put(static_cast<int>(scene.method.element));
     Put(static_cast<int>(scene.method.volume));
     Put(scene.method.newton_tolerance);
+    Put(static_cast<int>(scene.method.linear_solver));
     Put(scene.bodies.size());
     for (const Body& body : scene.bodies) Put(body);
     Put(scene.output);

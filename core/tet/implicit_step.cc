@@ -125,6 +125,7 @@ StepReport TetSolver::StepImplicit(const TetState& now, double dt, TetState& nex
 
   StepReport report;
   report.iterations = result.iterations;
+  report.solves = result.solves;
   report.problem = ProblemOf(result);
   if (report.problem == StepProblem::kNoEquilibrium) report.bad = FindElementsAt(model_, result.node);
   next.iterations = now.iterations + result.iterations;

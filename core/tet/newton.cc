@@ -35,6 +35,7 @@ NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const No
                                  const NewtonOptions& options, NodalVector& x, std::vector<double>& pressure) {
   NewtonResult result;
   pressure.resize(model_.patches().size());
+  system_.StartStep();
   Iterate(potential, target, options, x, pressure, result);
   // A start that is tangled, or a motion that no valid part of the linear answer follows, may have a place to go all
   // the same: from where it is in order, and if that is no good, from rest.
@@ -45,6 +46,7 @@ NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const No
     Iterate(potential, target, options, x, pressure, result);
     if (attempt == 0 && result.end != NewtonResult::End::kConverged) result.end = NewtonResult::End::kInvalid;
   }
+  result.solves = system_.solves();
   return result;
 }
 
@@ -52,7 +54,7 @@ void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVec
                            const NewtonOptions& options, NodalVector& x, std::vector<double>& pressure,
                            NewtonResult& result) {
   result.end = NewtonResult::End::kNotConverged;
-  double projection = 0;
+  double projection = 0, norm_before = 0;
   for (int iteration = 0;; ++iteration) {
     const bool prescribed_move = FindRemaining(target, x);
     now_ = system_.Evaluate(potential, x, pressure, team_, force_);
@@ -66,10 +68,12 @@ void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVec
       return;
     }
     if (iteration == options.max_iterations) return;
+    ChooseForcing(norm, norm_before, options.tolerance);
+    norm_before = norm;
     ++result.iterations;
     double part = 0;
-    for (;;) {
-      part = TakeStep(potential, projection, prescribed_move, x, pressure);
+    for (bool same_point = false;; same_point = true) {
+      part = TakeStep(potential, projection, same_point, prescribed_move, x, pressure);
       if (part > 0 || projection == 1) break;
       projection = std::min(1.0, std::max(kLeastProjection, 4 * projection));
     }
@@ -103,8 +107,9 @@ bool NewtonSolver::Untangle(const NodalVector& target, NodalVector& x, NewtonRes
     now_ = now;
     if (RelativeForce(result) < (now.smallest_ratio >= kUntangled ? kUntangledForce : kUntanglingTolerance)) break;
     ++result.iterations;
-    if (!system_.Factor(potential, x, no_pressure, 1, team_)) return false;
-    system_.Solve(force_, remaining_, no_pressure, dx_, dp_);
+    if (!system_.FindStep(potential, x, no_pressure, {.projection = 1}, force_, remaining_, team_, dx_, dp_)) {
+      return false;
+    }
     double slope = 0;
     for (std::size_t n = 0; n < x.size(); ++n) slope -= force_[n].dot(dx_[n]);
     double part = 1;
@@ -122,10 +127,10 @@ bool NewtonSolver::Untangle(const NodalVector& target, NodalVector& x, NewtonRes
 }
 
 // The part of the step with tangents projected so that was taken; 0, and nothing has moved, when none is of use.
-double NewtonSolver::TakeStep(const IncrementalPotential& potential, double projection, bool prescribed_move,
-                              NodalVector& x, std::vector<double>& pressure) {
-  if (!system_.Factor(potential, x, pressure, projection, team_)) return 0;
-  system_.Solve(force_, remaining_, pressure, dx_, dp_);
+double NewtonSolver::TakeStep(const IncrementalPotential& potential, double projection, bool same_point,
+                              bool prescribed_move, NodalVector& x, std::vector<double>& pressure) {
+  const NewtonSystem::StepOptions options{.projection = projection, .tolerance = forcing_, .same_point = same_point};
+  if (!system_.FindStep(potential, x, pressure, options, force_, remaining_, team_, dx_, dp_)) return 0;
   LookAhead(pressure);
   const double part = LineSearch(potential, x, prescribed_move);
   if (part == 0) {
@@ -252,6 +257,15 @@ double NewtonSolver::RelativeForce(NewtonResult& result) const {
   }
   result.residual = std::max(0.0, std::sqrt(squares) - now_.rounding) / now_.force_scale;
   return result.residual;
+}
+
+// As accurate as what is left to be gained, where linear systems are solved iteratively [Eisenstat & Walker 1996,
+// Choosing the forcing terms in an inexact Newton method, SIAM J. Sci. Comput. 17, choice 2].
+void NewtonSolver::ChooseForcing(double residual, double residual_before, double tolerance) {
+  constexpr double kGamma = 0.1, kMost = 0.01, kLeast = 1e-6;
+  const double gain = residual_before > 0 ? residual / residual_before : 1;
+  const double useful = residual > 0 ? 0.1 * tolerance / residual : kMost;
+  forcing_ = std::min(kMost, std::max({kGamma * gain * gain, useful, kLeast}));
 }
 
 // Whether p is U'(theta), measured by the forces that the difference makes.

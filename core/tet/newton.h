@@ -18,6 +18,7 @@ struct NewtonResult {
   int iterations = 0;    // factorizations
   double residual = 0;   // largest |force| on an unknown component over the norm of all element forces [1]
   std::size_t node = 0;  // where
+  LinearSolves solves;
 };
 
 // Finds a stationary point of an IncrementalPotential, a minimum wherever there is one nearby.
@@ -42,8 +43,8 @@ class NewtonSolver {
                      NodalVector& x, std::vector<double>& pressure);
 
  private:
-  double TakeStep(const IncrementalPotential& potential, double projection, bool prescribed_move, NodalVector& x,
-                  std::vector<double>& pressure);
+  double TakeStep(const IncrementalPotential& potential, double projection, bool same_point, bool prescribed_move,
+                  NodalVector& x, std::vector<double>& pressure);
   bool Untangle(const NodalVector& target, NodalVector& x, NewtonResult& result);
   void Iterate(const IncrementalPotential& potential, const NodalVector& target, const NewtonOptions& options,
                NodalVector& x, std::vector<double>& pressure, NewtonResult& result);
@@ -55,6 +56,7 @@ class NewtonSolver {
   double SlopeAt(double augmentation) const;
   bool FindRemaining(const NodalVector& target, const NodalVector& x);
   double RelativeForce(NewtonResult& result) const;
+  void ChooseForcing(double residual, double residual_before, double tolerance);
   bool PressuresAgree(std::span<const double> pressure, double tolerance) const;
 
   const TetModel& model_;
@@ -63,6 +65,7 @@ class NewtonSolver {
   NodalVector force_, trial_, trial_force_, dx_, remaining_;
   std::vector<double> dp_, pressure_ahead_, ratio_, ratio_ahead_;  // of each patch
   NewtonSystem::Evaluation now_;
+  double forcing_ = 0;  // tolerance of the next linear solution
 };
 
 }  // namespace fascicle

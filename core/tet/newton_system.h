@@ -1,24 +1,28 @@
 #ifndef FASCICLE_CORE_TET_NEWTON_SYSTEM_H_
 #define FASCICLE_CORE_TET_NEWTON_SYSTEM_H_
 
-#include "core/linalg/direct_solver.h"
-#include "core/tet/potential.h"
+#include "core/tet/saddle_solvers.h"
 
 namespace fascicle {
 
-// The linear system of one Newton iteration on IncrementalPotential, with the pressures p of the patches as unknowns of
-// their own (a perturbed Lagrangian, [Zienkiewicz, Taylor & Zhu 2013, 11.3]):
+// How the linear systems of one step in time were solved.
+struct LinearSolves {
+  int direct = 0, iterative = 0;  // number of systems
+  int iterations = 0;             // of GMRES, all systems
+  int not_converged = 0;          // iterative ones that were then factored
+};
+
+// The linear system of one Newton iteration on IncrementalPotential: SaddleMatrix with f the force -dPhi/dx with p in
+// place of U'(theta),
 //
-//   [ A   B^T ] [dx]   [ f                      ]
-//   [ B   -C  ] [dp] = [ C (p - U'(theta))      ],    B = V_n dtheta_n/dx,   C = V_n / U''(theta_n)
+//   [ A   B^T ] [dx]   [ f                ]
+//   [ B   -C  ] [dp] = [ C (p - U'(theta)) ]
 //
-// f the force -dPhi/dx with p in place of U'(theta), A its derivative -df/dx, or that with the tangents of the points
-// moved towards positive semidefinite ones. Eliminating dp gives Newton's equation of Phi, but p is free to differ from
-// U'(theta) on the way, which spares the stiff volume energy's detours. Prescribed components are eliminated. All
-// bits are the same for any number of threads.
+// Eliminating dp gives Newton's equation of Phi, but p is free to differ from U'(theta) on the way, which spares the
+// stiff volume energy's detours. All bits are the same for any number of threads.
 class NewtonSystem {
  public:
-  // Finds the pattern and has it analyzed; the model must outlive the system.
+  // Finds the pattern; the model must outlive the system.
   explicit NewtonSystem(const TetModel& model);
 
   // Force f on all nodes (unknown and prescribed) and the merit function's parts at x with pressures p.
@@ -34,69 +38,53 @@ class NewtonSystem {
   // theta of each patch at the x of the last Evaluate.
   const std::vector<double>& ratios() const { return forces_.ratio; }
 
-  // Assembles and factors at x and p, theta from the last Evaluate at that x. `projection` in [0, 1] is the part of
-  // every point's tangent that its projection to a positive semidefinite one replaces: 0 for the exact tangent. False
-  // when the matrix can't be factored or its inertia is not that of a minimum.
-  bool Factor(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
-              double projection, ThreadTeam& team);
+  // How to solve.
+  struct StepOptions {
+    // In [0, 1]: the part of every point's tangent that its projection to a positive semidefinite one replaces.
+    double projection = 0;
+    double tolerance = 1e-3;  // of an iterative solution, relative to the right side
+    bool same_point = false;  // x, pressure, force and prescribed are those of the last call
+  };
+  // The step from x and p, theta from the last Evaluate at that x: `force` as from there; `prescribed` the change of
+  // prescribed components, which dx takes over. False when it is not a step towards a minimum: when the matrix can't be
+  // factored or its inertia is not that of a minimum or, where it is solved iteratively, when its
+  // Ritz values say so.
+  bool FindStep(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
+                const StepOptions& options, const NodalVector& force, const NodalVector& prescribed, ThreadTeam& team,
+                NodalVector& dx, std::vector<double>& dp);
 
-  // Solves for the step: `force` as from Evaluate; `prescribed` the change of prescribed components, which dx takes
-  // over.
-  void Solve(const NodalVector& force, const NodalVector& prescribed, std::span<const double> pressure, NodalVector& dx,
-             std::vector<double>& dp);
+  // To be called before the first FindStep of a step in time: nothing of those before it is left, so that a run that
+  // goes on from a checkpoint makes the same bits.
+  void StartStep();
+
+  // How the linear systems since StartStep were solved.
+  const LinearSolves& solves() const { return solves_; }
 
  private:
-  // Part of each corner of an element in the theta of a patch: its weights in W.
-  struct PatchShare {
-    std::int32_t patch;
-    std::array<double, 4> weights;
-  };
-
-  std::vector<PatchShare> SharesOf(std::size_t tet) const;
-  template <class Element>
-  std::array<std::int32_t, 3 * Element::kNodes> UnknownsOf(std::size_t tet) const;
-  template <class Element>
-  void FindPattern();
   template <class Element>
   Evaluation EvaluateElements(const IncrementalPotential& potential, const NodalVector& x, ThreadTeam& team);
-  template <class Element>
-  void SetElementMatrices(const IncrementalPotential& potential, const NodalVector& x, double projection,
-                          ThreadTeam& team);
-  template <class Element>
-  void AddElementMatrices(bool without_patches);
-  template <class Element>
-  void MovePrescribed(const NodalVector& prescribed);
   void Smooth(const IncrementalPotential& potential, std::span<const double> pressure);
-  void AddFloorMatrices(const NodalVector& x);
-  // Change of V_n theta_n of a patch with component j of an element of volume derivatives B.
-  template <int kComponents>
-  static double VolumeChange(const PatchShare& share, const double* B, int j) {
-    double sum = 0;
-    for (int c = 0; c < 4; ++c) sum += share.weights[c] * B[kComponents * c + j];
-    return sum;
-  }
 
   const TetModel& model_;
-  DirectSolver solver_;
+  SaddleAssembly assembly_;
+  // The first that is needed of each.
+  std::unique_ptr<DirectSaddleSolver> direct_;
+  std::unique_ptr<IterativeSaddleSolver> iterative_;
+  bool prefers_iterative_ = false, is_iterative_ = false;
   ForceWorkspace forces_;
-  double force_floor_ = 0;  // [N]
-  std::int32_t unknowns_ = 0;
-  std::vector<std::array<std::int32_t, 3>> unknown_of_node_;  // -1: prescribed
-  std::vector<std::int32_t> unknown_of_patch_;
-  std::vector<PatchShare> shares_;  // of element e: [share_begin_[e], share_begin_[e + 1])
-  std::vector<std::size_t> share_begin_;
-  // Where each entry of each element goes among the values, -1: nowhere. Lower triangle of A, then a row for each
-  // share. With floors, from node_blocks_begin_ on, the lower triangle of each node's own block.
-  std::vector<std::int32_t> places_;
-  std::size_t node_blocks_begin_ = 0;
-  std::vector<std::int32_t> diagonal_;  // place of each unknown's diagonal entry
-  std::vector<std::int32_t> rows_, columns_;
-  std::vector<double> values_;
-  std::vector<double> element_matrices_;
-  bool untangling_ = false;         // the matrix last factored
-  std::vector<double> acting_;      // W p of each patch [Pa]
-  std::vector<double> compliance_;  // C of each patch
-  std::vector<double> right_side_;
+  double force_floor_ = 0;      // [N]
+  std::vector<double> acting_;  // W p of each patch [Pa]
+  void Assemble(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
+                const NodalVector& force, const NodalVector& prescribed, ThreadTeam& team);
+  void Project(const IncrementalPotential& potential, const NodalVector& x, double projection,
+               const NodalVector& prescribed, ThreadTeam& team);
+  bool Solve(double tolerance, ThreadTeam& team, NodalVector& dx, std::vector<double>& dp);
+
+  double projection_ = 0;            // that is in the matrix
+  bool has_projected_ = false;       // at this point
+  NodalVector side_, projected_side_;  // right side, and what a whole projection takes from it [N]
+  std::vector<double> volume_side_;  // [m^3]
+  LinearSolves solves_;
 };
 
 }  // namespace fascicle

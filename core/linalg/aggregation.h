@@ -1,0 +1,52 @@
+#ifndef FASCICLE_CORE_LINALG_AGGREGATION_H_
+#define FASCICLE_CORE_LINALG_AGGREGATION_H_
+
+#include "core/linalg/block_matrix.h"
+
+namespace fascicle {
+
+// Interpolation from the blocks of a coarser level: a row of the pattern for each block of the finer one.
+struct Prolongation {
+  BlockPattern pattern;
+  BlockValues values;
+  std::size_t coarse = 0;  // blocks of the coarser level
+};
+
+// What the three components of a block mean: the translation of a point, or a rotation about it.
+struct RigidBlock {
+  Vec3 position = Vec3::Zero();  // [m]
+  double rotation_scale = 0;     // length by which rotations are measured [m]; 0 for a translation
+};
+
+// Interpolation by smoothed aggregation with rigid body modes [Vanek, Mandel & Brezina 1996, Algebraic multigrid by
+// smoothed aggregation for second and fourth order elliptic problems, Computing 56]: blocks that are strongly coupled
+// are joined to aggregates, each of which moves as a rigid body does, by a translation and a rotation (two blocks of the
+// coarser level, in this order); one step of damped Jacobi smooths that.
+//   blocks           what the finer level's blocks are; of a level that is made of aggregates, two after each other belong
+//                    together
+//   inverse_diagonal of the values; largest_eigenvalue: of inverse_diagonal times the matrix, at least
+//   coarse_blocks    receives the coarser level's
+Prolongation SmoothedAggregation(const BlockPattern& pattern, const BlockValues& values, const FreeComponents& free,
+                                 const std::vector<RigidBlock>& blocks, const BlockValues& inverse_diagonal,
+                                 double largest_eigenvalue, std::vector<RigidBlock>& coarse_blocks);
+
+// Galerkin product P^T A P: its pattern once, its values whenever those of A change.
+class GalerkinProduct {
+ public:
+  GalerkinProduct() = default;
+  GalerkinProduct(const BlockPattern& fine, const Prolongation& prolongation);
+
+  const BlockPattern& pattern() const { return coarse_; }
+  void Compute(const BlockPattern& fine, const BlockValues& values, const Prolongation& prolongation, ThreadTeam& team,
+               BlockValues& coarse_values);
+  const TransposedPattern& restriction() const { return restriction_; }
+
+ private:
+  BlockPattern product_, coarse_;  // of A P, of P^T A P
+  TransposedPattern restriction_;
+  BlockValues product_values_;  // scratch
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_LINALG_AGGREGATION_H_

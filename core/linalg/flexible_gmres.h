@@ -1,0 +1,107 @@
+#ifndef FASCICLE_CORE_LINALG_FLEXIBLE_GMRES_H_
+#define FASCICLE_CORE_LINALG_FLEXIBLE_GMRES_H_
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <vector>
+
+#include "core/base/parallel.h"
+
+namespace fascicle {
+
+// Iterations between looks at the Ritz values.
+inline constexpr int kRitzInterval = 8;
+
+struct GmresResult {
+  bool converged = false;
+  int iterations = 0;
+  double residual = 0;  // norm over that of the right side [1]
+  // Least real part of the Ritz values, which approach eigenvalues of the preconditioned matrix, extreme ones first.
+  double least_eigenvalue = 0;
+};
+
+// Of the eigenvalues of a small matrix.
+double LeastRealPart(const Eigen::MatrixXd& matrix);
+
+// Scratch of FlexibleGmres; keeps its memory from call to call.
+struct GmresWorkspace {
+  std::vector<Eigen::VectorXd> basis, preconditioned;
+};
+
+// Solves A x = b by flexible GMRES without restart, preconditioned from the right [Saad 1993, A flexible inner-outer
+// preconditioned GMRES algorithm, SIAM J. Sci. Comput. 14].
+//   apply(v, Av), precondition(r, z)   neither needs to be symmetric, the second not even the same from call to call
+//   x                                  the result; starts from zero
+// Stops when the norm of the residual is at most `tolerance` times that of b, when a Ritz value turns out negative, or
+// after `max_iterations`, each of which keeps two vectors. The same bits for any number of threads.
+template <class Apply, class Precondition>
+GmresResult FlexibleGmres(ThreadTeam& team, const Apply& apply, const Precondition& precondition,
+                          const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& x,
+                          GmresWorkspace& ws) {
+  using Eigen::VectorXd;
+  const auto dot = [&](const VectorXd& u, const VectorXd& v) {
+    return team.Sum(u.size(), [&](std::size_t begin, std::size_t end) {
+      return u.segment(begin, end - begin).dot(v.segment(begin, end - begin));
+    });
+  };
+  const auto add = [&](double scale, const VectorXd& v, VectorXd& sum) {
+    team.For(v.size(), 8192, [&](std::size_t begin, std::size_t end) {
+      sum.segment(begin, end - begin) += scale * v.segment(begin, end - begin);
+    });
+  };
+  x = VectorXd::Zero(b.size());
+  GmresResult result;
+  const double b_norm = std::sqrt(dot(b, b));
+  result.converged = b_norm == 0;
+  if (!(b_norm > 0)) return result;
+  ws.basis.resize(max_iterations + 1);
+  ws.preconditioned.resize(max_iterations);
+  ws.basis[0] = b / b_norm;
+  // The Hessenberg matrix, made triangular by rotations as it grows, and what they make of the right side.
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(max_iterations + 1, max_iterations), H_before = H;
+  VectorXd cosine(max_iterations), sine(max_iterations), side = VectorXd::Zero(max_iterations + 1);
+  side[0] = b_norm;
+  int k = 0;
+  for (result.residual = 1; k < max_iterations && result.residual > tolerance;) {
+    precondition(ws.basis[k], ws.preconditioned[k]);
+    VectorXd& w = ws.basis[k + 1];
+    apply(ws.preconditioned[k], w);
+    for (int i = 0; i <= k; ++i) {
+      H(i, k) = dot(w, ws.basis[i]);
+      add(-H(i, k), ws.basis[i], w);
+    }
+    const double norm = std::sqrt(dot(w, w));
+    if (!std::isfinite(norm)) break;
+    H_before.col(k) = H.col(k);
+    H_before(k + 1, k) = norm;
+    for (int i = 0; i < k; ++i) {
+      const double upper = cosine[i] * H(i, k) + sine[i] * H(i + 1, k);
+      H(i + 1, k) = -sine[i] * H(i, k) + cosine[i] * H(i + 1, k);
+      H(i, k) = upper;
+    }
+    const double length = std::hypot(H(k, k), norm);
+    if (length == 0) break;
+    cosine[k] = H(k, k) / length;
+    sine[k] = norm / length;
+    H(k, k) = length;
+    side[k + 1] = -sine[k] * side[k];
+    side[k] *= cosine[k];
+    result.residual = std::abs(side[k + 1]) / b_norm;
+    ++k;
+    if (norm == 0) break;
+    if (k % kRitzInterval == 0 && LeastRealPart(H_before.topLeftCorner(k, k)) < 0) break;
+    w /= norm;
+  }
+  result.iterations = k;
+  result.converged = result.residual <= tolerance;
+  if (k == 0) return result;
+  result.least_eigenvalue = LeastRealPart(H_before.topLeftCorner(k, k));
+  const VectorXd y = H.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(side.head(k));
+  for (int i = 0; i < k; ++i) add(y[i], ws.preconditioned[i], x);
+  return result;
+}
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_LINALG_FLEXIBLE_GMRES_H_

@@ -1,0 +1,306 @@
+#include "core/linalg/multigrid.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+
+#include "core/base/check.h"
+
+namespace fascicle {
+namespace {
+
+using Vec4f = Eigen::Vector4f;  // three components and one that is zero, for whole vector registers
+using Field = std::vector<Vec4f>;
+
+// Levels up to that many blocks are factored.
+constexpr std::size_t kCoarsest = 2000;
+constexpr std::size_t kMostLevels = 10;
+constexpr int kSmoothing = 3;  // degree of the polynomials
+// Part of the spectrum that they damp: from the largest eigenvalue down to that part of it.
+constexpr float kDamped = 1.0f / 8;
+constexpr int kPowerIterations = 12;
+constexpr float kEigenvalueMargin = 1.15f;
+// Least eigenvalue of a diagonal block relative to its largest, and what is added to the coarsest diagonal for rotations
+// that nothing resists.
+constexpr double kLeastEigenvalue = 1e-6;
+constexpr double kRegularization = 1e-9;
+
+struct FloatBlock {
+  std::array<Vec4f, 3> column;
+
+  FloatBlock() = default;
+  explicit FloatBlock(const Mat3& m) {
+    for (int c = 0; c < 3; ++c) column[c] << m.col(c).cast<float>(), 0;
+  }
+  Vec4f operator*(const Vec4f& x) const { return column[0] * x[0] + column[1] * x[1] + column[2] * x[2]; }
+  Vec4f TransposedTimes(const Vec4f& x) const {
+    return Vec4f(column[0].dot(x), column[1].dot(x), column[2].dot(x), 0);
+  }
+};
+
+// The inverse of a symmetric block with its eigenvalues' absolute values, none too small.
+Mat3 PositiveInverse(const Mat3& block) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(block);
+  Vec3 values = eigen.eigenvalues().cwiseAbs();
+  const double least = kLeastEigenvalue * values.maxCoeff();
+  values = values.cwiseMax(least > 0 ? least : 1);
+  return eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+// Some vector without a pattern, the same every time.
+Field StartVector(std::size_t size) {
+  Field start(size);
+  std::uint32_t state = 1;
+  for (Vec4f& v : start) {
+    for (int c = 0; c < 3; ++c) {
+      state = 1664525u * state + 1013904223u;
+      v[c] = static_cast<float>(state >> 8) * 0x1p-24f - 0.5f;
+    }
+    v[3] = 0;
+  }
+  return start;
+}
+
+float SquaredNorm(const Field& v, ThreadTeam& team) {
+  return static_cast<float>(
+      SumOverNodes(team, v.size(), [&](std::size_t n) { return static_cast<double>(v[n].squaredNorm()); }));
+}
+
+}  // namespace
+
+struct Multigrid::Level {
+  explicit Level(const BlockPattern& p) : pattern(&p), free(p.rows(), {true, true, true}) {
+    for (Field* field : {&x, &b, &r, &d, &d_next}) field->assign(p.rows(), Vec4f::Zero());
+  }
+
+  void SetValues(const BlockValues& values, ThreadTeam& team) {
+    matrix.resize(values.size());
+    inverse_diagonal.resize(pattern->rows());
+    ForNodes(team, pattern->rows(), [&](std::size_t i) {
+      for (std::int32_t k = pattern->begin[i]; k < pattern->begin[i + 1]; ++k) matrix[k] = FloatBlock(values[k]);
+      const auto n = static_cast<std::int32_t>(i);
+      inverse_diagonal[i] = FloatBlock(PositiveInverse(values[pattern->PlaceOf(n, n)]));
+    });
+  }
+
+  Vec4f RowTimes(std::size_t i, const Field& v) const {
+    Vec4f sum = Vec4f::Zero();
+    for (std::int32_t k = pattern->begin[i]; k < pattern->begin[i + 1]; ++k) sum += matrix[k] * v[pattern->column[k]];
+    return sum;
+  }
+
+  // By power iteration.
+  void FindLargestEigenvalue(ThreadTeam& team) {
+    Field v = StartVector(pattern->rows()), w(pattern->rows());
+    double length = std::sqrt(SquaredNorm(v, team));
+    for (int i = 0; i < kPowerIterations; ++i) {
+      const auto scale = static_cast<float>(1 / length);
+      ForNodes(team, v.size(), [&](std::size_t n) { w[n] = inverse_diagonal[n] * (RowTimes(n, v) * scale); });
+      std::swap(v, w);
+      length = std::sqrt(SquaredNorm(v, team));
+    }
+    largest_eigenvalue = static_cast<float>(length) * kEigenvalueMargin;
+  }
+
+  // x += polynomial in D^-1 A, times D^-1 (b - A x); from_zero: x is zero whatever it holds.
+  void Smooth(bool from_zero, ThreadTeam& team) {
+    const std::size_t size = pattern->rows();
+    const float centre = 0.5f * (1 + kDamped) * largest_eigenvalue, half = 0.5f * (1 - kDamped) * largest_eigenvalue;
+    const float sigma = centre / half;
+    float rho = 1 / sigma;
+    ForNodes(team, size, [&](std::size_t n) {
+      r[n] = from_zero ? b[n] : Vec4f(b[n] - RowTimes(n, x));
+      d[n] = (inverse_diagonal[n] * r[n]) / centre;
+    });
+    for (int k = 0; k < kSmoothing; ++k) {
+      if (k + 1 == kSmoothing) {
+        ForNodes(team, size, [&](std::size_t n) { x[n] = from_zero && k == 0 ? d[n] : Vec4f(x[n] + d[n]); });
+        return;
+      }
+      const float rho_next = 1 / (2 * sigma - rho);
+      const float keep = rho_next * rho, step = 2 * rho_next / half;
+      ForNodes(team, size, [&](std::size_t n) {
+        x[n] = from_zero && k == 0 ? d[n] : Vec4f(x[n] + d[n]);
+        r[n] -= RowTimes(n, d);
+        d_next[n] = keep * d[n] + step * (inverse_diagonal[n] * r[n]);
+      });
+      std::swap(d, d_next);
+      rho = rho_next;
+    }
+  }
+
+  // Components that no free one of the finer level follows.
+  void IsolateUnused(BlockValues& values) {
+    for (std::size_t i = 0; i < pattern->rows(); ++i) {
+      const auto n = static_cast<std::int32_t>(i);
+      Mat3& diagonal = values[pattern->PlaceOf(n, n)];
+      for (int c = 0; c < 3; ++c) {
+        free[i][c] = diagonal(c, c) != 0;
+        if (!free[i][c]) diagonal(c, c) = 1;
+      }
+    }
+  }
+
+  const BlockPattern* pattern;  // of the caller or the finer level
+  FreeComponents free;
+  std::vector<RigidBlock> blocks;
+  std::vector<FloatBlock> matrix, inverse_diagonal;
+  float largest_eigenvalue = 1;
+  Field x, b, r, d, d_next;
+  // To the next coarser level, where there is one.
+  std::optional<Prolongation> prolongation;
+  GalerkinProduct galerkin;
+  std::vector<FloatBlock> interpolation;
+  BlockValues coarse_values;
+};
+
+Multigrid::Multigrid(const BlockPattern& pattern, const NodalVector& positions, const FreeComponents& free,
+                     std::optional<Prolongation> first) {
+  levels_.push_back(std::make_unique<Level>(pattern));
+  Level& finest = *levels_.front();
+  finest.free = free;
+  for (const Vec3& X : positions) finest.blocks.push_back({X, 0});
+  finest.prolongation = std::move(first);
+  first_is_given_ = finest.prolongation.has_value();
+}
+
+Multigrid::~Multigrid() = default;
+
+bool Multigrid::SetUp(const BlockValues& values, ThreadTeam& team) {
+  const BlockValues* current = &values;
+  for (std::size_t l = 0; HasCoarser(l); ++l) {
+    Level& level = *levels_[l];
+    level.SetValues(*current, team);
+    level.FindLargestEigenvalue(team);
+    if (l + 1 == levels_.size()) AddLevel(*current);
+    level.galerkin.Compute(*level.pattern, *current, *level.prolongation, team, level.coarse_values);
+    levels_[l + 1]->IsolateUnused(level.coarse_values);
+    current = &level.coarse_values;
+  }
+  return FactorCoarsest(*current);
+}
+
+void Multigrid::ForgetAggregation() {
+  const std::size_t kept = first_is_given_ ? 2 : 1;
+  if (levels_.size() < kept) return;
+  levels_.resize(kept);
+  if (levels_.back()->prolongation) levels_.back()->prolongation.reset();
+  coarsest_analyzed_ = false;
+}
+
+bool Multigrid::HasCoarser(std::size_t l) const {
+  return levels_[l]->prolongation || (levels_[l]->pattern->rows() > kCoarsest && l + 1 < kMostLevels);
+}
+
+// The level below the last one, whose values are given.
+void Multigrid::AddLevel(const BlockValues& values) {
+  Level& level = *levels_.back();
+  std::vector<RigidBlock> coarse_blocks;
+  if (!level.prolongation) {
+    BlockValues inverse_diagonal(level.pattern->rows());
+    for (std::size_t i = 0; i < inverse_diagonal.size(); ++i) {
+      const auto n = static_cast<std::int32_t>(i);
+      inverse_diagonal[i] = PositiveInverse(values[level.pattern->PlaceOf(n, n)]);
+    }
+    level.prolongation = SmoothedAggregation(*level.pattern, values, level.free, level.blocks, inverse_diagonal,
+                                             level.largest_eigenvalue, coarse_blocks);
+  } else {
+    // A block of the coarser level is where the one block stands that follows it alone.
+    coarse_blocks.resize(level.prolongation->coarse);
+    const BlockPattern& rows = level.prolongation->pattern;
+    for (std::size_t i = 0; i < rows.rows(); ++i) {
+      if (rows.begin[i + 1] - rows.begin[i] == 1) coarse_blocks[rows.column[rows.begin[i]]] = level.blocks[i];
+    }
+  }
+  level.interpolation.clear();
+  for (const Mat3& block : level.prolongation->values) level.interpolation.emplace_back(block);
+  level.galerkin = GalerkinProduct(*level.pattern, *level.prolongation);
+  levels_.push_back(std::make_unique<Level>(level.galerkin.pattern()));
+  levels_.back()->blocks = std::move(coarse_blocks);
+}
+
+bool Multigrid::FactorCoarsest(const BlockValues& values) {
+  const BlockPattern& pattern = *levels_.back()->pattern;
+  std::vector<std::int32_t> rows, columns;
+  coarsest_values_.clear();
+  for (std::size_t i = 0; i < pattern.rows(); ++i) {
+    for (std::int32_t k = pattern.begin[i]; k < pattern.begin[i + 1]; ++k) {
+      const std::size_t j = pattern.column[k];
+      if (j > i) continue;
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < (i == j ? a + 1 : 3); ++b) {
+          if (!coarsest_analyzed_) {
+            rows.push_back(static_cast<std::int32_t>(3 * i + a));
+            columns.push_back(static_cast<std::int32_t>(3 * j + b));
+          }
+          const bool diagonal = i == j && a == b;
+          coarsest_values_.push_back(values[k](a, b) * (diagonal ? 1 + kRegularization : 1));
+        }
+      }
+    }
+  }
+  if (!coarsest_analyzed_) {
+    coarsest_analyzed_ = coarsest_.Analyze(static_cast<std::int32_t>(3 * pattern.rows()), rows, columns);
+    if (!coarsest_analyzed_) return false;
+    coarsest_side_.resize(3 * pattern.rows());
+  }
+  const DirectSolver::Factored factored = coarsest_.Factor(coarsest_values_);
+  return factored.ok;
+}
+
+void Multigrid::Apply(const NodalVector& r, ThreadTeam& team, NodalVector& z) {
+  Level& finest = *levels_.front();
+  ForNodes(team, r.size(), [&](std::size_t n) { finest.b[n] << r[n].cast<float>(), 0; });
+  Cycle(0, team);
+  z.resize(r.size());
+  ForNodes(team, r.size(), [&](std::size_t n) { z[n] = finest.x[n].head<3>().cast<double>(); });
+}
+
+void Multigrid::Cycle(std::size_t l, ThreadTeam& team) {
+  if (l + 1 == levels_.size()) {
+    SolveCoarsest();
+    return;
+  }
+  Level& level = *levels_[l];
+  Level& coarse = *levels_[l + 1];
+  level.Smooth(true, team);
+  ForNodes(team, level.b.size(), [&](std::size_t n) { level.r[n] = level.b[n] - level.RowTimes(n, level.x); });
+  const TransposedPattern& restriction = level.galerkin.restriction();
+  ForNodes(team, coarse.b.size(), [&](std::size_t n) {
+    Vec4f sum = Vec4f::Zero();
+    for (std::int32_t k = restriction.pattern.begin[n]; k < restriction.pattern.begin[n + 1]; ++k) {
+      sum += level.interpolation[restriction.source[k]].TransposedTimes(level.r[restriction.pattern.column[k]]);
+    }
+    coarse.b[n] = sum;
+  });
+  Cycle(l + 1, team);
+  const BlockPattern& rows = level.prolongation->pattern;
+  ForNodes(team, level.x.size(), [&](std::size_t n) {
+    for (std::int32_t k = rows.begin[n]; k < rows.begin[n + 1]; ++k) {
+      level.x[n] += level.interpolation[k] * coarse.x[rows.column[k]];
+    }
+  });
+  level.Smooth(false, team);
+}
+
+void Multigrid::SolveCoarsest() {
+  Level& level = *levels_.back();
+  for (std::size_t n = 0; n < level.b.size(); ++n) {
+    for (int c = 0; c < 3; ++c) coarsest_side_[3 * n + c] = level.b[n][c];
+  }
+  coarsest_.Solve(coarsest_side_);
+  for (std::size_t n = 0; n < level.b.size(); ++n) {
+    for (int c = 0; c < 3; ++c) level.x[n][c] = static_cast<float>(coarsest_side_[3 * n + c]);
+  }
+}
+
+std::string Multigrid::Description() const {
+  std::string text;
+  for (const auto& level : levels_) {
+    if (!text.empty()) text += " + ";
+    text += std::to_string(level->pattern->rows());
+  }
+  return text + " blocks";
+}
+
+}  // namespace fascicle
