@@ -176,8 +176,7 @@ Prolongation SmoothedAggregation(const BlockPattern& pattern, const BlockValues&
   return result;
 }
 
-GalerkinProduct::GalerkinProduct(const BlockPattern& fine, const Prolongation& p)
-    : restriction_(p.pattern, p.coarse) {
+GalerkinProduct::GalerkinProduct(const BlockPattern& fine, const Prolongation& p) : restriction_(p.pattern, p.coarse) {
   PatternBuilder product, coarse;
   std::vector<std::int32_t> columns;
   for (std::size_t i = 0; i < fine.rows(); ++i) {

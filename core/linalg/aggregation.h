@@ -20,9 +20,10 @@ struct RigidBlock {
 
 // Interpolation by smoothed aggregation with rigid body modes [Vanek, Mandel & Brezina 1996, Algebraic multigrid by
 // smoothed aggregation for second and fourth order elliptic problems, Computing 56]: blocks that are strongly coupled
-// are joined to aggregates, each of which moves as a rigid body does, by a translation and a rotation (two blocks of the
-// coarser level, in this order); one step of damped Jacobi smooths that.
-//   blocks           what the finer level's blocks are; of a level that is made of aggregates, two after each other belong
+// are joined to aggregates, each of which moves as a rigid body does, by a translation and a rotation (two blocks of
+// the coarser level, in this order); one step of damped Jacobi smooths that.
+//   blocks           what the finer level's blocks are; of a level that is made of aggregates, two after each other
+//   belong
 //                    together
 //   inverse_diagonal of the values; largest_eigenvalue: of inverse_diagonal times the matrix, at least
 //   coarse_blocks    receives the coarser level's

@@ -20,8 +20,8 @@ constexpr int kSmoothing = 3;  // degree of the polynomials
 constexpr float kDamped = 1.0f / 8;
 constexpr int kPowerIterations = 12;
 constexpr float kEigenvalueMargin = 1.15f;
-// Least eigenvalue of a diagonal block relative to its largest, and what is added to the coarsest diagonal for rotations
-// that nothing resists.
+// Least eigenvalue of a diagonal block relative to its largest, and what is added to the coarsest diagonal for
+// rotations that nothing resists.
 constexpr double kLeastEigenvalue = 1e-6;
 constexpr double kRegularization = 1e-9;
 
@@ -33,9 +33,7 @@ struct FloatBlock {
     for (int c = 0; c < 3; ++c) column[c] << m.col(c).cast<float>(), 0;
   }
   Vec4f operator*(const Vec4f& x) const { return column[0] * x[0] + column[1] * x[1] + column[2] * x[2]; }
-  Vec4f TransposedTimes(const Vec4f& x) const {
-    return Vec4f(column[0].dot(x), column[1].dot(x), column[2].dot(x), 0);
-  }
+  Vec4f TransposedTimes(const Vec4f& x) const { return Vec4f(column[0].dot(x), column[1].dot(x), column[2].dot(x), 0); }
 };
 
 // The inverse of a symmetric block with its eigenvalues' absolute values, none too small.

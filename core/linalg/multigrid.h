@@ -15,10 +15,10 @@ namespace fascicle {
 //
 // Coarser levels are made by Galerkin products P^T A P, the first with an interpolation that the caller may know (from
 // the corners of quadratic elements to all of their nodes), all others by smoothed aggregation with the rigid body
-// modes (aggregation.h); the coarsest is factored. Smoothing is by Chebyshev polynomials of the matrix preconditioned by
-// its 3x3 diagonal blocks [Adams, Brezina, Hu & Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188]: a
-// fixed sequence of products, so the cycle is a symmetric linear operator, and the bits are the same for any number of
-// threads. Levels are kept in single precision but for the coarsest. One thread at a time.
+// modes (aggregation.h); the coarsest is factored. Smoothing is by Chebyshev polynomials of the matrix preconditioned
+// by its 3x3 diagonal blocks [Adams, Brezina, Hu & Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188]:
+// a fixed sequence of products, so the cycle is a symmetric linear operator, and the bits are the same for any number
+// of threads. Levels are kept in single precision but for the coarsest. One thread at a time.
 class Multigrid {
  public:
   // Nodes of the finest level are at `positions` [m]; the pattern must outlive the multigrid.

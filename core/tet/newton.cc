@@ -36,7 +36,15 @@ NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const No
   NewtonResult result;
   pressure.resize(model_.patches().size());
   system_.StartStep();
+  const NodalVector x_start = x;
+  const std::vector<double> pressure_start = pressure;
   Iterate(potential, target, options, x, pressure, result);
+  // Only a factorization tells for sure what is a minimum.
+  if (result.end == NewtonResult::End::kNotConverged && system_.SolveDirectly()) {
+    x = x_start;
+    pressure = pressure_start;
+    Iterate(potential, target, options, x, pressure, result);
+  }
   // A start that is tangled, or a motion that no valid part of the linear answer follows, may have a place to go all
   // the same: from where it is in order, and if that is no good, from rest.
   for (int attempt = 0; attempt < 2 && result.end == NewtonResult::End::kInvalid; ++attempt) {

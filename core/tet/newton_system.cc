@@ -12,6 +12,8 @@ namespace {
 
 // Larger systems are solved iteratively.
 constexpr std::size_t kMostDirectUnknowns = 6000;
+// Up to that size a step whose iterations come to nothing is made again with factorizations.
+constexpr std::size_t kMostFallbackUnknowns = 60000;
 // So many failures of the iteration, and the rest of the step in time is solved directly.
 constexpr int kMostFailures = 2;
 
@@ -33,14 +35,19 @@ double ForceFloor(const TetModel& model) {
 
 }  // namespace
 
-NewtonSystem::NewtonSystem(const TetModel& model)
-    : model_(model), assembly_(model), force_floor_(ForceFloor(model)) {
-  std::size_t unknowns = model.patches().size();
-  for (const auto& free : assembly_.matrix().free) unknowns += std::count(free.begin(), free.end(), true);
+NewtonSystem::NewtonSystem(const TetModel& model) : model_(model), assembly_(model), force_floor_(ForceFloor(model)) {
+  unknowns_ = model.patches().size();
+  for (const auto& free : assembly_.matrix().free) unknowns_ += std::count(free.begin(), free.end(), true);
   const LinearSolver choice = model.scene().method.linear_solver;
-  prefers_iterative_ = choice == LinearSolver::kIterative ||
-                       (choice == LinearSolver::kAutomatic && unknowns > kMostDirectUnknowns);
+  prefers_iterative_ =
+      choice == LinearSolver::kIterative || (choice == LinearSolver::kAutomatic && unknowns_ > kMostDirectUnknowns);
   is_iterative_ = prefers_iterative_;
+}
+
+bool NewtonSystem::SolveDirectly() {
+  if (!is_iterative_ || unknowns_ > kMostFallbackUnknowns) return false;
+  is_iterative_ = false;
+  return true;
 }
 
 void NewtonSystem::StartStep() {
@@ -134,8 +141,7 @@ NewtonSystem::Evaluation NewtonSystem::EvaluateElements(const IncrementalPotenti
 
 bool NewtonSystem::FindStep(const IncrementalPotential& potential, const NodalVector& x,
                             std::span<const double> pressure, const StepOptions& options, const NodalVector& force,
-                            const NodalVector& prescribed, ThreadTeam& team, NodalVector& dx,
-                            std::vector<double>& dp) {
+                            const NodalVector& prescribed, ThreadTeam& team, NodalVector& dx, std::vector<double>& dp) {
   if (!options.same_point) Assemble(potential, x, pressure, force, prescribed, team);
   if (options.projection != projection_) Project(potential, x, options.projection, prescribed, team);
   dp.resize(model_.patches().size());
@@ -205,7 +211,9 @@ bool NewtonSystem::Solve(double tolerance, ThreadTeam& team, NodalVector& dx, st
     const auto result = iterative_->Solve(matrix, side_, volume_side_, tolerance, team, dx, dp);
     ++solves_.iterative;
     solves_.iterations += result.iterations;
-    if (result.ok || !result.is_minimum) return result.is_minimum;
+    if (result.ok && result.is_minimum) return true;
+    // Wholly projected, it is that of a minimum whatever the Ritz values say.
+    if (!result.is_minimum && projection_ < 1) return false;
     is_iterative_ = ++solves_.not_converged < kMostFailures;
   }
   ++solves_.direct;

@@ -57,6 +57,9 @@ class NewtonSystem {
   // goes on from a checkpoint makes the same bits.
   void StartStep();
 
+  // Has the systems of this step in time solved directly from here on. False when they are already, or too large.
+  bool SolveDirectly();
+
   // How the linear systems since StartStep were solved.
   const LinearSolves& solves() const { return solves_; }
 
@@ -70,6 +73,7 @@ class NewtonSystem {
   // The first that is needed of each.
   std::unique_ptr<DirectSaddleSolver> direct_;
   std::unique_ptr<IterativeSaddleSolver> iterative_;
+  std::size_t unknowns_ = 0;
   bool prefers_iterative_ = false, is_iterative_ = false;
   ForceWorkspace forces_;
   double force_floor_ = 0;      // [N]
@@ -80,10 +84,10 @@ class NewtonSystem {
                const NodalVector& prescribed, ThreadTeam& team);
   bool Solve(double tolerance, ThreadTeam& team, NodalVector& dx, std::vector<double>& dp);
 
-  double projection_ = 0;            // that is in the matrix
-  bool has_projected_ = false;       // at this point
+  double projection_ = 0;              // that is in the matrix
+  bool has_projected_ = false;         // at this point
   NodalVector side_, projected_side_;  // right side, and what a whole projection takes from it [N]
-  std::vector<double> volume_side_;  // [m^3]
+  std::vector<double> volume_side_;    // [m^3]
   LinearSolves solves_;
 };
 

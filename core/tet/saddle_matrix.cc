@@ -98,8 +98,8 @@ void SaddleAssembly::FindPattern() {
   const auto has_patches = [&](std::size_t e) {
     return !patches.empty() && patches.of_element[e][0] != VolumePatches::kNone;
   };
-  matrix_.pattern = PatternOfElements(model_.nodes(), model_.tetrahedra(),
-                                      [&](std::size_t e) { return model_.NodesOf<Element>(e); });
+  matrix_.pattern =
+      PatternOfElements(model_.nodes(), model_.tetrahedra(), [&](std::size_t e) { return model_.NodesOf<Element>(e); });
   matrix_.A.resize(matrix_.pattern.blocks());
   matrix_.C.resize(patches.size());
 
@@ -167,9 +167,8 @@ void SaddleAssembly::Assemble(const IncrementalPotential& potential, const Nodal
   }
   const VolumePatches& patches = model_.patches();
   for (std::size_t n = 0; n < patches.size(); ++n) {
-    matrix_.C[n] = potential.untangling
-                       ? 1
-                       : patches.rest_volume[n] / PatchEnergy{patches.modulus[n]}.ConvexSlope(ratio[n]);
+    matrix_.C[n] =
+        potential.untangling ? 1 : patches.rest_volume[n] / PatchEnergy{patches.modulus[n]}.ConvexSlope(ratio[n]);
   }
   if (potential.untangling) std::fill(matrix_.B.begin(), matrix_.B.end(), Vec3::Zero());
 }

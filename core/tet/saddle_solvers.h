@@ -36,9 +36,9 @@ class DirectSaddleSolver {
 };
 
 // By flexible GMRES: memory and time of an iteration grow with the size. The preconditioner is block triangular
-// [Elman, Silvester & Wathen 2014, 4.2 and 9.2]: a multigrid cycle stands for A^-1, a diagonal for the Schur complement,
-// S = C + B A^-1 B^T ~ C + kSchurScale diag(B diag(A)^-1 B^T). What keeps the number of iterations small is that A
-// holds a volume modulus of its own (see Volumes in README.md), so that both are well conditioned whatever K/mu.
+// [Elman, Silvester & Wathen 2014, 4.2 and 9.2]: a multigrid cycle stands for A^-1, a diagonal for the Schur
+// complement, S = C + B A^-1 B^T ~ C + kSchurScale diag(B diag(A)^-1 B^T). What keeps the number of iterations small is
+// that A holds a volume modulus of its own (see Volumes in README.md), so that both are well conditioned whatever K/mu.
 class IterativeSaddleSolver {
  public:
   IterativeSaddleSolver(const TetModel& model, const SaddleMatrix& matrix);

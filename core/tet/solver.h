@@ -26,7 +26,7 @@ enum class StepProblem {
 
 struct StepReport {
   StepProblem problem = StepProblem::kNone;
-  int iterations = 0;  // of linear solves, or of Newton's method
+  int iterations = 0;   // of linear solves, or of Newton's method
   LinearSolves solves;  // of Newton's method
   // Kinetic energy of the free components at the half step [J].
   double kinetic = 0;
