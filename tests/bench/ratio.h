@@ -50,6 +50,15 @@ double SecondsOf(const Function& function) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+// How much one call of A or B does: 0.105456 "Mtets" is printed as Mtets/s of each.
+struct Amount {
+  double count = 0;
+  const char* unit = "";
+};
+
+// Rounds of a comparison; fewer only where one takes minutes.
+inline constexpr int kRounds = 9;
+
 // Runs A and B in turns and prints the medians of their times, a warning when other processes took more than 5 % of the
 // machine meanwhile, and the line
 //
@@ -57,15 +66,16 @@ double SecondsOf(const Function& function) {
 //
 // with the median over the rounds of time(B) / time(A): how many times faster A is. Both must do the same amount of
 // work. Each runs once before the first round, so that caches and memory are warm.
-//   rounds  at least 9; each swaps who goes first
+//   rounds  each swaps who goes first
 template <class FunctionA, class FunctionB>
-double MedianRatio(const std::string& name, int rounds, const FunctionA& a, const FunctionB& b) {
+double MedianRatio(const std::string& name, int rounds, const FunctionA& a, const FunctionB& b,
+                   const Amount& amount = {}) {
   a();
   b();
   std::vector<double> times_a, times_b, ratios;
   const CpuTime cpu_before = CpuTime::Now();
   const double wall = SecondsOf([&] {
-    for (int round = 0; round < std::max(rounds, 9); ++round) {
+    for (int round = 0; round < rounds; ++round) {
       double time_a = 0, time_b = 0;
       if (round % 2 == 0) {
         time_a = SecondsOf(a);
@@ -86,6 +96,10 @@ double MedianRatio(const std::string& name, int rounds, const FunctionA& a, cons
   std::printf("%s: A %.6g s, B %.6g s (medians of %zu rounds), ratios %.3f to %.3f\n", name.c_str(), Median(times_a),
               Median(times_b), ratios.size(), *std::min_element(ratios.begin(), ratios.end()),
               *std::max_element(ratios.begin(), ratios.end()));
+  if (amount.count > 0) {
+    std::printf("%s: A %.4g %s/s, B %.4g %s/s\n", name.c_str(), amount.count / Median(times_a), amount.unit,
+                amount.count / Median(times_b), amount.unit);
+  }
   if (share > 0.05) std::printf("warning: other processes took %.0f %% of the machine meanwhile\n", 100 * share);
   std::printf("ratio %s %.3f\n", name.c_str(), ratio);
   std::fflush(stdout);

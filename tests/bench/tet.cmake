@@ -1,3 +1,12 @@
 # Forces and whole steps of the tet method.
-fascicle_bench(tet_bench SOURCES tet_bench.cc
-               DEPS core/tet core/scene core/muscle core/geometry core/materials core/linalg core/base)
+set(tet_rooms core/tet core/scene core/muscle core/geometry core/materials core/linalg core/base)
+fascicle_bench(tet_bench SOURCES tet_bench.cc DEPS ${tet_rooms})
+
+# Programs of others are compared with where they are installed (deploy/setup bench).
+fascicle_bench(tet_force_bench SOURCES tet_force_bench.cc DEPS ${tet_rooms})
+pkg_check_modules(BULLET QUIET IMPORTED_TARGET bullet)
+if(BULLET_FOUND)
+  target_sources(tet_force_bench PRIVATE bullet_box.cc)
+  target_compile_definitions(tet_force_bench PRIVATE FASCICLE_WITH_BULLET)
+  target_link_libraries(tet_force_bench PRIVATE PkgConfig::BULLET)
+endif()
