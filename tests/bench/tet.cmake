@@ -19,3 +19,17 @@ if(GETFEM_INCLUDE_DIR AND GETFEM_LIBRARY)
   target_compile_definitions(tet_tangent_bench PRIVATE FASCICLE_WITH_GETFEM GMM_USES_BLAS GMM_USES_LAPACK)
   target_link_libraries(tet_tangent_bench PRIVATE ${GETFEM_LIBRARY} superlu openblas)
 endif()
+
+find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
+find_library(CHOLMOD_LIBRARY cholmod)
+if(CHOLMOD_INCLUDE_DIR AND CHOLMOD_LIBRARY)
+  fascicle_bench(tet_solve_bench SOURCES tet_solve_bench.cc cholmod_solver.cc condensed_matrix.cc plain_newton.cc
+                 DEPS fascicle_tet_scenes)
+  # CHOLMOD's supernodal module is GPL: nothing but this program links it.
+  target_include_directories(tet_solve_bench SYSTEM PRIVATE ${CHOLMOD_INCLUDE_DIR})
+  target_link_libraries(tet_solve_bench PRIVATE ${CHOLMOD_LIBRARY})
+else()
+  fascicle_bench(tet_solve_bench SOURCES left_out.cc DEPS core/base)
+  target_compile_definitions(tet_solve_bench PRIVATE
+    LEFT_OUT="tet_implicit_vs_cholmod, tet_quasistatic_vs_newton_cholmod (install libsuitesparse-dev and build again)")
+endif()
