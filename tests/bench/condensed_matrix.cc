@@ -1,6 +1,7 @@
 #include "condensed_matrix.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "core/base/check.h"
@@ -90,6 +91,7 @@ void CondensedMatrix::Assemble(const FibreDrive& drive, const NodalVector& x, co
 template <class Element>
 void CondensedMatrix::AddElements(const FibreDrive& drive, const NodalVector& x, double projection) {
   const VolumePatches& patches = model_.patches();
+  double squares = 0;
   for (const TetGroup& group : model_.groups()) {
     std::visit(
         [&](const auto& laws) {
@@ -98,11 +100,20 @@ void CondensedMatrix::AddElements(const FibreDrive& drive, const NodalVector& x,
             const auto positions = ValuesOf<Element>(model_, e, x);
             Eigen::Matrix<double, 3 * Element::kNodes, 3 * Element::kNodes> A;
             A.setZero();
+            std::array<Vec3, Element::kNodes> forces;
+            forces.fill(Vec3::Zero());
             for (int q = 0; q < Element::kPoints; ++q) {
               const Mat3 F = GradientAt<Element>(model_, e, positions, q);
               const double volume = model_.rest_volume()[Element::kPoints * e + q];
-              Mat9 H = laws[model_.law_of()[e]].Tangent(F, FibreAt<Element>(model_, e, drive, q));
-              AddCofactorTangent(PatchPressure<Element>(patches, workspace_.pressure, e, q), F, H);
+              const auto& law = laws[model_.law_of()[e]];
+              const FibreState fibre = FibreAt<Element>(model_, e, drive, q);
+              const double pressure = PatchPressure<Element>(patches, workspace_.pressure, e, q);
+              CornerValues corners;
+              SetCornerForces(law.Stress(F, fibre) + pressure * Cofactor(F),
+                              model_.Dm_inverse()[Element::kPoints * e + q], volume, corners);
+              Element::AddCorners(corners, q, forces);
+              Mat9 H = law.Tangent(F, fibre);
+              AddCofactorTangent(pressure, F, H);
               if (projection > 0) H += projection * (NearestPositive(H) - H);
               const auto G = ShapeGradients<Element>(model_, e, q);
               // dF/dx of the element: component (i, j) of F changes by G(j, a) with component i of node a.
@@ -126,6 +137,7 @@ void CondensedMatrix::AddElements(const FibreDrive& drive, const NodalVector& x,
                 }
               }
             }
+            for (const Vec3& f : forces) squares += f.squaredNorm();
             for (int a = 0; a < Element::kNodes; ++a) {
               for (int b = 0; b < Element::kNodes; ++b) {
                 AddBlock(unknown_[nodes[a]], unknown_[nodes[b]], A.template block<3, 3>(3 * a, 3 * b));
@@ -135,6 +147,7 @@ void CondensedMatrix::AddElements(const FibreDrive& drive, const NodalVector& x,
         },
         group.laws);
   }
+  element_force_norm_ = std::sqrt(squares);
 }
 
 void CondensedMatrix::AddPatches() {

@@ -25,6 +25,9 @@ class CondensedMatrix {
   // Sets all values at positions x [m].
   void Assemble(const FibreDrive& drive, const NodalVector& x, const Changes& changes, ThreadTeam& team);
 
+  // Norm of the forces of all elements on their nodes at the x of the last Assemble [N].
+  double element_force_norm() const { return element_force_norm_; }
+
   // Free components, three for each free node in the model's order, and back; held ones are left alone.
   std::vector<double> ToComponents(const NodalVector& values) const;
   void AddComponents(const std::vector<double>& components, double part, NodalVector& values) const;
@@ -51,6 +54,7 @@ class CondensedMatrix {
   std::vector<std::int32_t> column_begin_, rows_;
   std::vector<double> values_;
   ForceWorkspace workspace_;
+  double element_force_norm_ = 0;
   std::vector<std::vector<std::int32_t>> patch_nodes_;  // free nodes that each patch's volume depends on, ascending
   std::vector<NodalVector> patch_gradients_;            // a row of B
 };

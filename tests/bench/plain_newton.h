@@ -30,7 +30,7 @@ class PlainNewton {
   bool Factor(const FibreDrive& drive);
   bool Search(const FibreDrive& drive, const std::vector<double>& step);
   double EnergyAt(const FibreDrive& drive, const NodalVector& x);
-  double RelativeForce() const;
+  double NormOfFreeForce() const;
 
   const TetModel& model_;
   ThreadTeam team_{1};

@@ -18,16 +18,7 @@ using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
 template <class Scalar>
 using Matrix3 = Eigen::Matrix<Scalar, 3, 3>;
 
-// A law of core/materials as it stands, and without a rate.
-template <class Law>
-struct CoreLaw {
-  using Scalar = double;
-  Law law;
-
-  Mat3 Stress(const Mat3& F, const Vec3& a0, double activation) const { return law.Stress(F, {a0, activation}); }
-};
-
-// The held muscle of core/materials/muscle.h once more, for any scalar.
+// The held muscle of core/materials/muscle.h, written out for any scalar.
 template <class ScalarType>
 struct PlainMuscle {
   using Scalar = ScalarType;

@@ -31,5 +31,5 @@ if(CHOLMOD_INCLUDE_DIR AND CHOLMOD_LIBRARY)
 else()
   fascicle_bench(tet_solve_bench SOURCES left_out.cc DEPS core/base)
   target_compile_definitions(tet_solve_bench PRIVATE
-    LEFT_OUT="tet_implicit_vs_cholmod, tet_quasistatic_vs_newton_cholmod (install libsuitesparse-dev and build again)")
+    "LEFT_OUT=\"tet_implicit_vs_cholmod, tet_quasistatic_vs_newton_cholmod (install libsuitesparse-dev and build again)\"")
 endif()

@@ -1,7 +1,6 @@
 // Implicit and quasi-static steps over CHOLMOD, one thread. Each comparison first checks that both sides come to the
 // same answer, then prints both figures and `ratio NAME VALUE`.
-//   tet_solve_bench [PART] [ROUNDS]    only the rows whose name contains PART; rounds of the largest muscle, 3 unless
-//   said
+//   tet_solve_bench [PART] [ROUNDS]    only the rows whose name contains PART; ROUNDS of each muscle
 #include <cstdlib>
 #include <string>
 
