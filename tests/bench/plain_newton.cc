@@ -1,5 +1,6 @@
 #include "plain_newton.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fascicle::bench {
@@ -7,6 +8,7 @@ namespace {
 
 constexpr int kMostIterations = 50;
 constexpr double kShortestPart = 1.0 / 1024;
+constexpr double kLeastProjection = 1.0 / 16;
 constexpr double kSufficient = 1e-4;  // Armijo
 
 }  // namespace
@@ -35,14 +37,17 @@ bool PlainNewton::Equilibrate(double activation, double tolerance) {
   return false;
 }
 
-// With the exact tangent where that is positive definite, or else with the least projected one that is.
+// With the exact tangent where that is positive definite, or else with one that is projected in part. What an iteration
+// needed the next one tries a quarter of, as core does.
 bool PlainNewton::Factor(const FibreDrive& drive) {
-  for (const double projection : {0.0, 1.0 / 16, 0.25, 1.0}) {
-    matrix_.Assemble(drive, x_, {.projection = projection}, team_);
+  projection_ = projection_ > kLeastProjection ? projection_ / 4 : 0;
+  for (;;) {
+    matrix_.Assemble(drive, x_, {.projection = projection_}, team_);
     ++factorizations_;
     if (solver_.Factor()) return true;
+    if (projection_ == 1) return false;
+    projection_ = std::min(1.0, std::max(kLeastProjection, 4 * projection_));
   }
-  return false;
 }
 
 // Goes the largest part of the step that lowers the energy.

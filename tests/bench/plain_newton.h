@@ -40,6 +40,7 @@ class PlainNewton {
   NodalVector x_, trial_, force_;
   int iterations_ = 0;
   int factorizations_ = 0;
+  double projection_ = 0;  // part of the last factored matrix's tangents
 };
 
 }  // namespace fascicle::bench
