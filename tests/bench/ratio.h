@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -50,33 +51,65 @@ double SecondsOf(const Function& function) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+// Wall time, and CPU time of all threads of this process [s].
+struct Duration {
+  double wall = 0;
+  double cpu = 0;
+};
+
+template <class Function>
+Duration DurationOf(const Function& function) {
+  const auto cpu_now = [] {
+    timespec now = {};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  };
+  const double cpu = cpu_now();
+  const double wall = SecondsOf(function);
+  return {wall, cpu_now() - cpu};
+}
+
+// How much one call of A or B does: 0.105456 "Mtets" is printed as Mtets/s of each.
+struct Amount {
+  double count = 0;
+  const char* unit = "";
+};
+
+// Rounds of a comparison; fewer only where one takes minutes.
+inline constexpr int kRounds = 9;
+
 // Runs A and B in turns and prints the medians of their times, a warning when other processes took more than 5 % of the
-// machine meanwhile, and the line
+// machine meanwhile (then with the ratio of CPU times, which says more of programs of one thread), and the line
 //
 //   ratio NAME VALUE
 //
 // with the median over the rounds of time(B) / time(A): how many times faster A is. Both must do the same amount of
-// work. Each runs once before the first round, so that caches and memory are warm.
-//   rounds  at least 9; each swaps who goes first
+// work. Each runs once before the first round, so that caches and memory are warm, unless a round takes minutes and
+// there are fewer than kRounds.
+//   rounds  each swaps who goes first
 template <class FunctionA, class FunctionB>
-double MedianRatio(const std::string& name, int rounds, const FunctionA& a, const FunctionB& b) {
-  a();
-  b();
-  std::vector<double> times_a, times_b, ratios;
+double MedianRatio(const std::string& name, int rounds, const FunctionA& a, const FunctionB& b,
+                   const Amount& amount = {}) {
+  if (rounds >= kRounds) {
+    a();
+    b();
+  }
+  std::vector<double> times_a, times_b, ratios, cpu_ratios;
   const CpuTime cpu_before = CpuTime::Now();
   const double wall = SecondsOf([&] {
-    for (int round = 0; round < std::max(rounds, 9); ++round) {
-      double time_a = 0, time_b = 0;
+    for (int round = 0; round < rounds; ++round) {
+      Duration time_a, time_b;
       if (round % 2 == 0) {
-        time_a = SecondsOf(a);
-        time_b = SecondsOf(b);
+        time_a = DurationOf(a);
+        time_b = DurationOf(b);
       } else {
-        time_b = SecondsOf(b);
-        time_a = SecondsOf(a);
+        time_b = DurationOf(b);
+        time_a = DurationOf(a);
       }
-      times_a.push_back(time_a);
-      times_b.push_back(time_b);
-      ratios.push_back(time_b / time_a);
+      times_a.push_back(time_a.wall);
+      times_b.push_back(time_b.wall);
+      ratios.push_back(time_b.wall / time_a.wall);
+      cpu_ratios.push_back(time_b.cpu / time_a.cpu);
     }
   });
   const CpuTime cpu_after = CpuTime::Now();
@@ -86,7 +119,14 @@ double MedianRatio(const std::string& name, int rounds, const FunctionA& a, cons
   std::printf("%s: A %.6g s, B %.6g s (medians of %zu rounds), ratios %.3f to %.3f\n", name.c_str(), Median(times_a),
               Median(times_b), ratios.size(), *std::min_element(ratios.begin(), ratios.end()),
               *std::max_element(ratios.begin(), ratios.end()));
-  if (share > 0.05) std::printf("warning: other processes took %.0f %% of the machine meanwhile\n", 100 * share);
+  if (amount.count > 0) {
+    std::printf("%s: A %.4g %s/s, B %.4g %s/s\n", name.c_str(), amount.count / Median(times_a), amount.unit,
+                amount.count / Median(times_b), amount.unit);
+  }
+  if (share > 0.05) {
+    std::printf("warning: other processes took %.0f %% of the machine meanwhile; by CPU time the ratio is %.3f\n",
+                100 * share, Median(cpu_ratios));
+  }
   std::printf("ratio %s %.3f\n", name.c_str(), ratio);
   std::fflush(stdout);
   return ratio;

@@ -1,12 +1,11 @@
-// Speed of the tet method: force evaluations and whole steps on a box of 105,456 tetrahedra with the full muscle law,
-// and the gain from a second thread.
+// Speed of the tet method: force evaluations and whole steps on a box of 105,456 tetrahedra with the full muscle law.
+// Comparisons with others stand in tet_force_bench, tet_tangent_bench and tet_solve_bench.
 #include <benchmark/benchmark.h>
 
 #include <memory>
 
 #include "core/geometry/shapes.h"
 #include "core/tet/solver.h"
-#include "ratio.h"
 
 namespace fascicle {
 namespace {
@@ -102,15 +101,5 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();
-  fascicle::Box one(1, fascicle::Stepping::kExplicit), two(2, fascicle::Stepping::kExplicit);
-  constexpr int kEvaluations = 20;
-  fascicle::bench::MedianRatio(
-      "tet_threads_2", 15,
-      [&] {
-        for (int i = 0; i < kEvaluations; ++i) two.EvaluateForce();
-      },
-      [&] {
-        for (int i = 0; i < kEvaluations; ++i) one.EvaluateForce();
-      });
   return 0;
 }

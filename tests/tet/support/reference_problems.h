@@ -53,14 +53,14 @@ void Place(const Map& place, TetMesh& mesh) {
   for (Vec3& X : mesh.nodes) X = place(X);
 }
 
-// Problem d: a muscle of rounded-square section fixed at both ends, n x n x 4 n hexahedra of parameter space.
-inline Body ReferenceMuscle(int n, const Curve& activation) {
+// Problem d: a muscle of rounded-square section fixed at both ends, n x n x lengthwise hexahedra of parameter space.
+inline Body ReferenceMuscle(int n, int lengthwise, const Curve& activation) {
   const auto place = [](const Vec3& p) {
     const double radius = 0.006 + 0.008 * std::pow(std::sin(std::numbers::pi * p[2]), 2);  // [m]
     return Vec3(radius * p[0] * std::sqrt(1 - 0.3 * p[1] * p[1]), radius * p[1] * std::sqrt(1 - 0.3 * p[0] * p[0]),
                 0.1 * p[2]);
   };
-  TetMesh mesh = MakeBox(Vec3(-1, -1, 0), Vec3(2, 2, 1), {n, n, 4 * n});
+  TetMesh mesh = MakeBox(Vec3(-1, -1, 0), Vec3(2, 2, 1), {n, n, lengthwise});
   FibreField fibres;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     const Vec3 centroid = Centroid(mesh, t), along(0, 0, 1e-6);
@@ -73,6 +73,7 @@ inline Body ReferenceMuscle(int n, const Curve& activation) {
   body.activation = activation;
   return body;
 }
+inline Body ReferenceMuscle(int n, const Curve& activation) { return ReferenceMuscle(n, 4 * n, activation); }
 inline const Vec3 kMuscleBelly(0.014, 0, 0.05);
 
 }  // namespace fascicle::testing

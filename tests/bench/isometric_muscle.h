@@ -1,0 +1,43 @@
+#ifndef FASCICLE_TESTS_BENCH_ISOMETRIC_MUSCLE_H_
+#define FASCICLE_TESTS_BENCH_ISOMETRIC_MUSCLE_H_
+
+#include <array>
+#include <cmath>
+
+#include "reference_problems.h"
+#include "static_run.h"
+
+// Problem d of the reference problems, a muscle held at both ends, in the sizes that benchmarks run: quadratic elements
+// with curved edges on n x n x lengthwise hexahedra of six tetrahedra each.
+namespace fascicle::bench {
+
+struct MuscleGrid {
+  int n;
+  int lengthwise;
+
+  int FreeComponents() const { return 3 * (2 * n + 1) * (2 * n + 1) * (2 * lengthwise - 1); }
+  int Tetrahedra() const { return 6 * n * n * lengthwise; }
+};
+
+inline constexpr std::array<MuscleGrid, 9> kMuscleGrids = {
+    {{2, 8}, {3, 12}, {4, 20}, {6, 20}, {8, 28}, {10, 38}, {12, 54}, {16, 64}, {20, 80}}};
+
+// The one whose free components are nearest to a number, by ratio.
+inline MuscleGrid NearestMuscleGrid(double components) {
+  MuscleGrid best = kMuscleGrids[0];
+  const auto distance = [&](const MuscleGrid& grid) { return std::abs(std::log(grid.FreeComponents() / components)); };
+  for (const MuscleGrid& grid : kMuscleGrids) {
+    if (distance(grid) < distance(best)) best = grid;
+  }
+  return best;
+}
+
+// Activation t at time t in [0, 1] s, quasi-static.
+inline Scene IsometricMuscle(const MuscleGrid& grid) {
+  return testing::StaticScene(testing::ReferenceMuscle(grid.n, grid.lengthwise, testing::Ramp(1)),
+                              ElementOrder::kQuadratic);
+}
+
+}  // namespace fascicle::bench
+
+#endif  // FASCICLE_TESTS_BENCH_ISOMETRIC_MUSCLE_H_

@@ -1,0 +1,205 @@
+// A quasi-static muscle (reference problem d, activation 0 to 0.3) at growing sizes: time, iterations, memory and
+// growth in one table, each size in a process of its own, beside the figures of FEBio 4.11 for the same grids. A
+// program to see where a solver stands; the row tet_quasistatic_vs_newton_cholmod is measured by tet_static_bench.
+#include <getopt.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "child_run.h"
+#include "isometric_muscle.h"
+#include "ratio.h"
+
+namespace fascicle::bench {
+namespace {
+
+constexpr double kActivation = 0.3;
+// Of FEBio's ten-node elements with straight edges (6 x 6 x 20); its finest hexahedra say 25.338 N.
+constexpr double kReferenceForce = 25.499;  // [N]
+
+// FEBio 4.11, three steps, on a machine like the one that the project's bars are for; not in this run.
+struct ReferenceRun {
+  int components;
+  int iterations;
+  double cpu;   // [s]
+  double peak;  // [GB]
+};
+constexpr ReferenceRun kReferenceRuns[] = {{9477, 12, 2.4, 0.1}, {47685, 12, 35, 0.6}, {99225, 12, 106, 1.4}};
+
+struct Options {
+  std::vector<double> sizes = {10e3, 50e3, 100e3};
+  int steps = 1;
+  int threads = 1;
+  double tolerance = 0;  // 0: the scene's default
+  unsigned limit = 300;  // [s]
+};
+
+struct Report {
+  double setup = 0;  // model and solver [s]
+  double wall = 0;   // of all, mesh included [s]
+  long long iterations = 0;
+  int steps = 0;
+  double force = 0;  // [N]
+  bool failed = false;
+};
+
+void RunMuscle(const MuscleGrid& grid, const Options& options, Report& report) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto passed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  Scene scene = IsometricMuscle(grid);
+  if (options.tolerance > 0) scene.method.newton_tolerance = options.tolerance;
+  const double before_model = passed();
+  const TetModel model(scene);
+  ThreadTeam team(options.threads);
+  TetSolver solver(model, team);
+  TetState state = solver.InitialState();
+  report.setup = passed() - before_model;
+  for (int step = 1; step <= options.steps && !report.failed; ++step) {
+    const double end = kActivation * step / options.steps;
+    while (state.time < end && !report.failed) {
+      report.failed = solver.Advance(state, end).problem != StepProblem::kNone;
+      report.iterations = state.iterations;
+      report.wall = passed();
+      ++report.steps;
+    }
+  }
+  report.force = Reactions(model, state, team).at(1)[2];
+  report.wall = passed();
+}
+
+const ReferenceRun* ReferenceOf(const MuscleGrid& grid) {
+  for (const ReferenceRun& run : kReferenceRuns) {
+    if (run.components == grid.FreeComponents()) return &run;
+  }
+  return nullptr;
+}
+
+void PrintReference(const MuscleGrid& grid, const ChildRun<Report>& run) {
+  const ReferenceRun* const reference = ReferenceOf(grid);
+  if (reference == nullptr) return;
+  std::printf("%10s %8s %5d %6d %8s %8s %8.1f %8.0f", "reference", "", 3, reference->iterations, "", "", reference->cpu,
+              1e3 * reference->peak);
+  if (run.end == ChildRun<Report>::End::kFinished && !run.report.failed) {
+    std::printf("   %.1f times the time, %.1f times the memory", reference->cpu / run.cpu,
+                1e9 * reference->peak / run.peak_rss);
+  }
+  std::printf("\n");
+}
+
+// Prints a row; 0 where there is no time to compare.
+double MeasureRow(const MuscleGrid& grid, const Options& options, double components_before, double cpu_before) {
+  const auto run = RunInChild<Report>(options.limit, [&](Report& report) { RunMuscle(grid, options, report); });
+  const Report& report = run.report;
+  std::printf("%10d %8d %5d %6lld %8.2f %8.2f %8.2f %8.0f", grid.FreeComponents(), grid.Tetrahedra(), report.steps,
+              report.iterations, report.setup, report.wall, run.cpu, 1e-6 * run.peak_rss);
+  const bool good = run.end == ChildRun<Report>::End::kFinished && !report.failed;
+  if (good) {
+    if (cpu_before > 0) {
+      std::printf(" %7.2f", std::log(run.cpu / cpu_before) / std::log(grid.FreeComponents() / components_before));
+    } else {
+      std::printf(" %7s", "");
+    }
+    std::printf(" %9.4f (%+.2f %%)\n", report.force, 100 * (report.force / kReferenceForce - 1));
+  } else if (run.end == ChildRun<Report>::End::kOutOfTime) {
+    std::printf(" not done after %u s\n", options.limit);
+  } else {
+    std::printf(run.end == ChildRun<Report>::End::kCrashed ? " crashed\n" : " did not converge\n");
+  }
+  PrintReference(grid, run);
+  std::fflush(stdout);
+  return good ? run.cpu : 0;
+}
+
+void MeasureAll(const Options& options) {
+  std::printf("isometric muscle, activation 0 to %.1f, ten-node elements with curved edges, %d thread(s)\n",
+              kActivation, options.threads);
+  std::printf("%10s %8s %5s %6s %8s %8s %8s %8s %7s %9s\n", "free", "tets", "steps", "Newton", "set-up s", "wall s",
+              "CPU s", "peak MB", "growth", "force N");
+  const CpuTime before = CpuTime::Now();
+  double first_size = 0, first_cpu = 0, last_size = 0, last_cpu = 0;
+  const double wall = SecondsOf([&] {
+    for (const double size : options.sizes) {
+      const MuscleGrid grid = NearestMuscleGrid(size);
+      const double cpu = MeasureRow(grid, options, last_size, last_cpu);
+      if (cpu == 0) continue;
+      last_size = grid.FreeComponents();
+      last_cpu = cpu;
+      if (first_cpu == 0) {
+        first_size = last_size;
+        first_cpu = cpu;
+      }
+    }
+  });
+  const CpuTime after = CpuTime::Now();
+  if (last_size > first_size) {
+    std::printf("growth of CPU time with free components, %.0f to %.0f: n^%.2f\n", first_size, last_size,
+                std::log(last_cpu / first_cpu) / std::log(last_size / first_size));
+  }
+  const double others = (after.machine - before.machine) - (after.own - before.own);
+  const double share = others / (wall * static_cast<double>(sysconf(_SC_NPROCESSORS_ONLN)));
+  if (share > 0.05) std::printf("warning: other processes took %.0f %% of the machine meanwhile\n", 100 * share);
+}
+
+[[noreturn]] void Usage() {
+  std::fprintf(
+      stderr,
+      "quasistatic_bench [--sizes 10000,50000,100000] [--steps 1] [--threads 1] [--tolerance 1e-8]\n"
+      "                  [--limit SECONDS]\n"
+      "  sizes in free components of the displacement; the nearest grid is run. limit: wall time of one size.\n");
+  std::exit(2);
+}
+
+double NumberOf(const char* text, double least) {
+  char* end = nullptr;
+  const double value = std::strtod(text, &end);
+  if (end == text || *end != '\0' || !(value >= least)) Usage();
+  return value;
+}
+
+std::vector<double> NumbersOf(std::string text) {
+  std::vector<double> numbers;
+  for (char* part = std::strtok(text.data(), ","); part != nullptr; part = std::strtok(nullptr, ",")) {
+    numbers.push_back(NumberOf(part, 1));
+  }
+  if (numbers.empty()) Usage();
+  return numbers;
+}
+
+Options Parse(int argc, char** argv) {
+  constexpr option kOptions[] = {
+      {"sizes", required_argument, nullptr, 's'},   {"steps", required_argument, nullptr, 'n'},
+      {"threads", required_argument, nullptr, 't'}, {"tolerance", required_argument, nullptr, 'e'},
+      {"limit", required_argument, nullptr, 'l'},   {nullptr, 0, nullptr, 0}};
+  Options options;
+  for (int key = 0; (key = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
+    switch (key) {
+      case 's':
+        options.sizes = NumbersOf(optarg);
+        break;
+      case 'n':
+        options.steps = static_cast<int>(NumberOf(optarg, 1));
+        break;
+      case 't':
+        options.threads = static_cast<int>(NumberOf(optarg, 1));
+        break;
+      case 'e':
+        options.tolerance = NumberOf(optarg, 0);
+        break;
+      case 'l':
+        options.limit = static_cast<unsigned>(NumberOf(optarg, 1));
+        break;
+      default:
+        Usage();
+    }
+  }
+  if (optind != argc) Usage();
+  return options;
+}
+
+}  // namespace
+}  // namespace fascicle::bench
+
+int main(int argc, char** argv) { fascicle::bench::MeasureAll(fascicle::bench::Parse(argc, argv)); }

@@ -1,0 +1,63 @@
+#ifndef FASCICLE_TESTS_BENCH_TET_BOX_H_
+#define FASCICLE_TESTS_BENCH_TET_BOX_H_
+
+#include <array>
+#include <string>
+
+#include "core/geometry/shapes.h"
+#include "core/tet/forces.h"
+
+// The box of linear tetrahedra that rows of several sizes are measured on.
+namespace fascicle::bench {
+
+struct BoxSize {
+  int divisions;
+  // What the row's name ends in; nothing at the size that PERFORMANCE names.
+  const char* suffix;
+};
+inline constexpr std::array<BoxSize, 3> kBoxSizes = {{{12, "_10k"}, {26, ""}, {55, "_1M"}}};  // 6 n^3 tetrahedra
+
+// 500 Pa, 500 Pa, K = 10 MPa, 0.3 MPa, optimal stretch 1.2, passive curve of Blemker.
+inline constexpr std::array<double, 8> kMuscle = {5e2, 5e2, 1e7, 3e5, 1.2, 0.05, 6.6, 1.4};
+inline constexpr std::array<double, 2> kNeoHookean = {1e4, 0.3};
+inline constexpr double kActivation = 0.5;
+
+// A cube of 0.1 m with fibres askew, made ready for stepping.
+struct TetBox {
+  TetBox(int divisions, const Material& material, VolumeForm volume) : scene(MakeScene(divisions, material, volume)) {}
+
+  static Scene MakeScene(int divisions, const Material& material, VolumeForm volume) {
+    Body body;
+    body.name = "box";
+    body.mesh = MakeBox(Vec3::Zero(), Vec3::Constant(0.1), {divisions, divisions, divisions});
+    body.material = material;
+    body.fibres = ConstantFibres(body.mesh, Vec3(1, 0.2, 0.1));
+    body.activation = Curve::Constant(kActivation);
+    Scene scene;
+    scene.bodies.push_back(std::move(body));
+    scene.method.volume = volume;
+    scene.duration = 1;
+    scene.output.frame_interval = 1;
+    return scene;
+  }
+
+  // Stretched along x by 1 at one end to 1.3 at the other, narrower across and sheared: fibres from 0.85 to 1.08 of
+  // their optimal length, so that all branches of their curves but the outermost are taken.
+  NodalVector Bent() const {
+    NodalVector x = model.rest_positions();
+    for (Vec3& p : x) p = Vec3(p[0] + 1.5 * p[0] * p[0], 0.95 * p[1] + 0.05 * p[0], 0.93 * p[2]);
+    return x;
+  }
+
+  double Megatets() const { return 1e-6 * static_cast<double>(model.tetrahedra()); }
+
+  const Scene scene;
+  const TetModel model{scene};
+};
+
+// Calls that together take some ten milliseconds.
+inline int CallsFor(const TetBox& box) { return std::max(1, static_cast<int>(0.3 / box.Megatets())); }
+
+}  // namespace fascicle::bench
+
+#endif  // FASCICLE_TESTS_BENCH_TET_BOX_H_
