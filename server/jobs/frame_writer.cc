@@ -107,7 +107,7 @@ void FrameWriter::StoreProgressRarely() {
       record.profile = codec_.encode_profile(profile_);
       return true;
     });
-  } catch (const StoreError&) {
+  } catch (const std::exception&) {
     // Progress is a convenience: whatever is wrong, the next frame or the end of the job will tell.
   }
 }

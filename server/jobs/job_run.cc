@@ -15,7 +15,7 @@ namespace {
 
 // False when the job was cancelled in the queue at the last moment.
 bool Start(ActiveJob& job, Profile& profile) {
-  const StageTimer timer(&profile, "set-up");
+  const StageTimer timer(&profile, "start");
   bool has_started = false;
   job.Update([&](JobRecord& record) {
     if (record.state != JobState::kQueued) return false;

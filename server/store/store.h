@@ -70,8 +70,8 @@ class JobStore {
   // Newest first, without `spec`; ids below `before_id` (empty: from the newest), states in `states` (empty: all).
   virtual std::vector<JobRecord> ListJobs(int limit, std::string_view before_id,
                                           const std::vector<JobState>& states) = 0;
-  // Writes state, failure, profile, attempt, generation, start and end time, progress and counts of an existing job; without
-  // effect when there is none.
+  // Writes state, failure, profile, attempt, generation, start and end time, progress and counts of an existing job;
+  // without effect when there is none.
   virtual void UpdateJob(const JobRecord& job) = 0;
   // Removes the job with its frames. False when there is none.
   virtual bool DeleteJob(std::string_view id) = 0;

@@ -176,7 +176,7 @@ TEST_F(ProcessTest, AProfileSurvivesAKillAndTheNextRunAddsToIt) {
     EXPECT_EQ(last.attempt(), 2);
     EXPECT_EQ(last.profile().runs(), 2);
     EXPECT_GT(last.profile().wall_seconds(), first.wall_seconds());
-    EXPECT_EQ(last.profile().stages(0).name(), "set-up");
+    EXPECT_EQ(last.profile().stages(0).name(), "start");
     EXPECT_EQ(last.profile().stages(0).calls(), 2 * first.stages(0).calls());
   }
   process_->Signal(SIGTERM);
