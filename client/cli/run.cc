@@ -13,6 +13,7 @@
 #include "client/cli/follow.h"
 #include "client/cli/interrupts.h"
 #include "client/cli/outputs.h"
+#include "client/cli/profile_table.h"
 #include "client/cli/summary.h"
 #include "client/export/csv.h"
 #include "client/export/vtk_series.h"
@@ -27,6 +28,7 @@ namespace fs = std::filesystem;
 constexpr const char* kExamples = R"(  fascicle run scene.json                         simulate and print what came out
   fascicle run scene.json --out out               and keep series.csv, series.png, frames.pvd and last.png in out/
   fascicle run scene.json --threads 2 --data db   on two threads; the server's database stays in db/
+  fascicle run scene.json --profile               and print where the time went
   fascicle run scene.json --set 'bodies[0].activation.values=[0, 0.5]'
   fascicle run scene.json --json | jq .series     for programs
 
@@ -39,6 +41,7 @@ struct Options {
   std::string data;
   int threads = 1;
   bool digests = false;
+  bool profile = false;
 };
 
 // A folder that is removed in the end.
@@ -97,9 +100,12 @@ int Run(const Options& options, const Context& context) {
   server->Stop();
   if (frames) frames->Finish();
   if (context.json) {
-    PrintJson(SummaryJson(followed));
+    Json summary = SummaryJson(followed);
+    if (options.profile) summary["profile"] = ProfileJson(followed.job);
+    PrintJson(summary);
   } else {
     PrintSummary(followed);
+    if (options.profile) PrintProfile(followed.job);
   }
   if (!options.out.empty()) {
     WriteResults(followed, options.out);
@@ -120,6 +126,7 @@ void AddRun(CLI::App& app, Context& context) {
   command->add_option("--threads", options->threads, "Threads that step the scene; results do not depend on it")
       ->check(CLI::Range(1, 256));
   command->add_flag("--digests", options->digests, "Print a line with the digest of each frame");
+  command->add_flag("--profile", options->profile, "Print where the time went, stage by stage");
   command->callback([options, &context] { context.action = [options, &context] { return Run(*options, context); }; });
 }
 

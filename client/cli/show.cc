@@ -8,6 +8,7 @@
 #include <google/protobuf/util/json_util.h>
 
 #include "client/cli/command.h"
+#include "client/cli/profile_table.h"
 #include "client/cli/progress_bar.h"
 #include "client/cli/summary.h"
 
@@ -16,11 +17,13 @@ namespace {
 
 constexpr const char* kExamples = R"(  fascicle show jobs/3f2a             where a job stands, and why it failed
   fascicle show 3f2a --scene          its scene, as a scene file
+  fascicle show 3f2a --profile        where its time went, stage by stage
 )";
 
 struct Options {
   std::string job;
   bool scene = false;
+  bool profile = false;
 };
 
 std::string SceneText(const v1::Scene& scene) {
@@ -41,6 +44,14 @@ int Show(const Options& options, const Context& context) {
       PrintJson(Json::parse(SceneText(job.scene())));
     } else {
       std::cout << SceneText(job.scene());
+    }
+    return kDone;
+  }
+  if (options.profile) {
+    if (context.json) {
+      PrintJson(ProfileJson(job));
+    } else {
+      PrintProfile(job);
     }
     return kDone;
   }
@@ -66,7 +77,9 @@ void AddShow(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "show", "Show one job", kExamples);
   const auto options = std::make_shared<Options>();
   command->add_option("JOB", options->job, "The job")->required();
-  command->add_flag("--scene", options->scene, "Print the job's scene instead");
+  CLI::Option* scene = command->add_flag("--scene", options->scene, "Print the job's scene instead");
+  command->add_flag("--profile", options->profile, "Print where its time went instead, stage by stage")
+      ->excludes(scene);
   command->callback([options, &context] { context.action = [options, &context] { return Show(*options, context); }; });
 }
 

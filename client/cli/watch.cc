@@ -8,6 +8,7 @@
 #include "client/cli/digests.h"
 #include "client/cli/follow.h"
 #include "client/cli/interrupts.h"
+#include "client/cli/profile_table.h"
 #include "client/cli/summary.h"
 
 namespace fascicle::client {
@@ -25,6 +26,7 @@ struct Options {
   std::string job;
   std::int64_t from = 0;
   bool digests = false;
+  bool profile = false;
 };
 
 int Watch(const Options& options, const Context& context) {
@@ -37,9 +39,12 @@ int Watch(const Options& options, const Context& context) {
   }
   const Followed followed = Follow(client, JobName(options.job), options.from, on_frame, interrupted.get_token());
   if (context.json) {
-    PrintJson(SummaryJson(followed));
+    Json summary = SummaryJson(followed);
+    if (options.profile) summary["profile"] = ProfileJson(followed.job);
+    PrintJson(summary);
   } else {
     PrintSummary(followed);
+    if (options.profile) PrintProfile(followed.job);
   }
   if (followed.stopped) {
     std::cerr << "fascicle: left " << followed.job.name() << "; it goes on. To stop it: fascicle cancel "
@@ -57,6 +62,7 @@ void AddWatch(CLI::App& app, Context& context) {
   command->add_option("JOB", options->job, "The job, as `submit` and `list` print it")->required();
   command->add_option("--from", options->from, "First frame to read")->check(CLI::NonNegativeNumber);
   command->add_flag("--digests", options->digests, "Print a line with the digest of each frame");
+  command->add_flag("--profile", options->profile, "Print where the time went, stage by stage");
   command->callback([options, &context] { context.action = [options, &context] { return Watch(*options, context); }; });
 }
 

@@ -1,9 +1,12 @@
 #include "core/base/parallel.h"
 
+#include <pthread.h>
+
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <ctime>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -146,6 +149,17 @@ ThreadTeam::~ThreadTeam() {
 }
 
 int ThreadTeam::size() const { return impl_->size; }
+
+double ThreadTeam::others_cpu_seconds() const {
+  double sum = 0;
+  for (std::thread& thread : impl_->threads) {
+    clockid_t clock = {};
+    timespec time = {};
+    if (pthread_getcpuclockid(thread.native_handle(), &clock) != 0 || clock_gettime(clock, &time) != 0) continue;
+    sum += static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+  return sum;
+}
 
 void ThreadTeam::Run(std::size_t count, std::size_t grain, LoopBody call, const void* body) {
   if (count == 0) return;

@@ -18,6 +18,8 @@ class ThreadTeam {
   ThreadTeam& operator=(const ThreadTeam&) = delete;
 
   int size() const;
+  // Processor time of all threads but the calling one, since they were started [s].
+  double others_cpu_seconds() const;
 
   // Calls body(begin, end) on ranges that together cover [0, count) once, each at least `grain` long where possible.
   // `body` may write only what belongs to its own indices; then the result does not depend on the number of threads.

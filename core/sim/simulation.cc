@@ -51,11 +51,17 @@ ProblemText TextOf(StepProblem problem) {
 }  // namespace
 
 struct Simulation::Impl {
-  Impl(std::shared_ptr<const Scene> s, int threads)
-      : scene(std::move(s)), team(threads), model(*scene), solver(model, team), series(SeriesOf(model)) {
+  Impl(std::shared_ptr<const Scene> s, int threads, Profile* p)
+      : profile(p), scene(std::move(s)), team(threads), model(*scene), solver(model, team, p), series(SeriesOf(model)) {
     const double intervals = scene->duration / scene->output.frame_interval;
     // The allowance keeps rounding from adding a frame to a whole number of intervals.
     last_frame = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(intervals * (1 - 1e-12))));
+  }
+
+  ~Impl() { NoteCpu(); }
+
+  void NoteCpu() {
+    if (profile != nullptr) profile->NoteCpu(team.others_cpu_seconds());
   }
 
   void StartFromRest() {
@@ -77,13 +83,23 @@ struct Simulation::Impl {
   }
 
   Frame TakeFrame() {
+    const StageTimer timer(profile, "frame");
     Frame frame;
     frame.index = next_frame;
     frame.time = state.time;
     frame.step = state.step;
-    frame.bodies = MeasureBodies(model, state, team);
-    frame.series = MeasureSeries(model, state, iterations_at_frame, team);
-    frame.digest = DigestOf(frame);
+    {
+      const StageTimer fields(profile, "fields");
+      frame.bodies = MeasureBodies(model, state, team);
+    }
+    {
+      const StageTimer series_timer(profile, "series");
+      frame.series = MeasureSeries(model, state, iterations_at_frame, team);
+    }
+    {
+      const StageTimer digest(profile, "digest");
+      frame.digest = DigestOf(frame);
+    }
     ++next_frame;
     iterations_at_frame = state.iterations;
     settled = IsSettled();
@@ -91,6 +107,7 @@ struct Simulation::Impl {
   }
 
   std::string Checkpoint() const {
+    const StageTimer timer(profile, "checkpoint");
     ArchiveWriter archive(kCheckpointKind, kCheckpointVersion);
     archive.PutString("scene", Hex(fingerprint));
     archive.PutInt("next_frame", next_frame);
@@ -110,6 +127,17 @@ struct Simulation::Impl {
     return archive.AtEnd();
   }
 
+  StepReport Step(double end) {
+    const StageTimer timer(profile, "step");
+    return solver.Advance(state, end);
+  }
+
+  bool Put(FrameSink& sink, Frame frame, std::string checkpoint) {
+    const StageTimer timer(profile, "waiting for storage");
+    NoteCpu();
+    return sink.PutFrame(std::move(frame), std::move(checkpoint));
+  }
+
   Progress ProgressNow() const {
     return {settled ? 1.0 : std::min(1.0, state.time / scene->duration), state.time, state.step, state.time_step};
   }
@@ -120,6 +148,7 @@ struct Simulation::Impl {
             report.bad.elements, text.advice};
   }
 
+  Profile* const profile;
   std::shared_ptr<const Scene> scene;
   ThreadTeam team;
   TetModel model;
@@ -134,8 +163,8 @@ struct Simulation::Impl {
   bool settled = false;
 };
 
-Simulation::Simulation(std::shared_ptr<const Scene> scene, int threads)
-    : impl_(std::make_unique<Impl>(std::move(scene), threads)) {
+Simulation::Simulation(std::shared_ptr<const Scene> scene, int threads, Profile* profile)
+    : impl_(std::make_unique<Impl>(std::move(scene), threads, profile)) {
   impl_->StartFromRest();
 }
 
@@ -159,7 +188,7 @@ Outcome Simulation::Run(FrameSink& sink, std::stop_token stop, std::chrono::mill
     const double frame_time = run.TimeOfFrame(run.next_frame);
     while (run.state.time < frame_time) {
       if (stop.stop_requested()) return {Outcome::Kind::kCancelled, {}};
-      const StepReport report = run.solver.Advance(run.state, frame_time);
+      const StepReport report = run.Step(frame_time);
       if (report.problem != StepProblem::kNone) return {Outcome::Kind::kFailed, run.FailureOf(report)};
       sink.PutProgress(run.ProgressNow());
     }
@@ -169,7 +198,7 @@ Outcome Simulation::Run(FrameSink& sink, std::stop_token stop, std::chrono::mill
       checkpoint = run.Checkpoint();
       last_checkpoint = Clock::now();
     }
-    if (!sink.PutFrame(std::move(frame), std::move(checkpoint))) {
+    if (!run.Put(sink, std::move(frame), std::move(checkpoint))) {
       return {Outcome::Kind::kFailed,
               {"STORAGE",
                "a frame could not be stored",

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/profile.h"
 #include "core/scene/scene.h"
 #include "core/sim/frame.h"
 
@@ -54,8 +55,9 @@ class FrameSink {
 // nor on how often a run was interrupted and restored. One thread at a time.
 class Simulation {
  public:
-  // The scene must have passed CheckScene. threads >= 1.
-  Simulation(std::shared_ptr<const Scene> scene, int threads);
+  // The scene must have passed CheckScene. threads >= 1. What takes time is timed in `profile`, if there is one, which
+  // must outlive the simulation; that then ends in the thread that made it.
+  Simulation(std::shared_ptr<const Scene> scene, int threads, Profile* profile = nullptr);
   ~Simulation();
 
   const std::vector<SeriesInfo>& series() const;

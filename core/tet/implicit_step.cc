@@ -120,8 +120,10 @@ StepReport TetSolver::StepImplicit(const TetState& now, double dt, TetState& nex
       potential_.inertia_centre[n] = (scheme.inertia * scheme.a_centre[n] + damping * scheme.v_centre[n]) / sum;
     }
   }
-  const NewtonResult result =
-      newton_->Solve(potential_, target, {method_.newton_tolerance, 50}, next.positions, next.pressures);
+  const NewtonResult result = [&] {
+    const StageTimer timer(profile_, "Newton");
+    return newton_->Solve(potential_, target, {method_.newton_tolerance, 50}, next.positions, next.pressures);
+  }();
 
   StepReport report;
   report.iterations = result.iterations;
@@ -151,6 +153,7 @@ StepReport TetSolver::StepImplicit(const TetState& now, double dt, TetState& nex
 }
 
 double TetSolver::SmallestRatio(const NodalVector& x) const {
+  const StageTimer timer(profile_, "volume ratios");
   double smallest = 1;
   for (std::size_t b = 0; b < model_.bodies().size(); ++b) {
     smallest = std::min(smallest, VolumeRatiosOf(model_, b, x).smallest);

@@ -27,12 +27,15 @@ constexpr double kMostSteps = 1e9;
 
 }  // namespace
 
-TetSolver::TetSolver(const TetModel& model, ThreadTeam& team)
-    : model_(model), team_(team), method_(model.scene().method) {
-  if (IsImplicit()) newton_ = std::make_unique<NewtonSolver>(model, team);
+TetSolver::TetSolver(const TetModel& model, ThreadTeam& team, Profile* profile)
+    : model_(model), team_(team), profile_(profile), method_(model.scene().method) {
+  if (!IsImplicit()) return;
+  const StageTimer timer(profile_, "matrix pattern");
+  newton_ = std::make_unique<NewtonSolver>(model, team);
 }
 
 TetState TetSolver::InitialState() {
+  const StageTimer timer(profile_, "initial state");
   TetState state;
   controls_next_.Set(model_, 0);
   state.positions = model_.InitialPositions();
@@ -94,6 +97,7 @@ StepReport TetSolver::AdvanceExplicit(TetState& state, double end) {
 }
 
 double TetSolver::StableStepAt(const TetState& state) {
+  const StageTimer timer(profile_, "stable step");
   controls_now_.Set(model_, state.time);
   return LargestStableStep(model_, FibreDrive{controls_now_.activation}, state.positions,
                            method_.stepping == Stepping::kExplicit, team_, forces_, stable_step_);

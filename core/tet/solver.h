@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "core/base/profile.h"
 #include "core/linalg/conjugate_gradient.h"
 #include "core/tet/bad_elements.h"
 #include "core/tet/controls.h"
@@ -39,8 +40,8 @@ struct StepReport {
 // Steps a model in time by Lagrangian finite volumes [Teran 2003]. One thread at a time.
 class TetSolver {
  public:
-  // Model and team must outlive the solver.
-  TetSolver(const TetModel& model, ThreadTeam& team);
+  // Model, team and profile must outlive the solver. Stages of a step are timed in `profile` where there is one.
+  TetSolver(const TetModel& model, ThreadTeam& team, Profile* profile = nullptr);
 
   // At rest at time 0, with what is prescribed at that time.
   TetState InitialState();
@@ -74,6 +75,7 @@ class TetSolver {
   double SmallestRatio(const NodalVector& x) const;
   FibreDrive DriveOf(const TetState& now, double dt) const;
 
+  void UpdateControls(double now, double next);
   void Drift(const TetState& now, double dt, TetState& next);
   CgResult SolveDamping(const NodalVector& x, const NodalVector& internal, const NodalVector& external,
                         double half_step, TetState& next);
@@ -91,6 +93,7 @@ class TetSolver {
 
   const TetModel& model_;
   ThreadTeam& team_;
+  Profile* const profile_;
   const TetMethod& method_;
   // Scratch: nothing here outlives a step.
   TetControls controls_now_, controls_next_;

@@ -21,15 +21,24 @@ StepReport TetSolver::Step(const TetState& now, double next_time, TetState& next
   next.time_step = dt;
   next.dissipated = now.dissipated;
   next.iterations = now.iterations;
-  controls_now_.Set(model_, now.time);
-  controls_next_.Set(model_, next_time);
-  ExternalForce(model_, controls_now_, team_, external_now_);
-  ExternalForce(model_, controls_next_, team_, external_next_);
+  UpdateControls(now.time, next_time);
   const StepReport report = IsImplicit()                              ? StepImplicit(now, dt, next)
                             : method_.stepping == Stepping::kExplicit ? StepExplicit(now, dt, next)
                                                                       : StepMixed(now, dt, next);
   AddExternalWork(now, next);
   return report;
+}
+
+// What acts from outside at both ends of the step.
+void TetSolver::UpdateControls(double now, double next) {
+  {
+    const StageTimer timer(profile_, "controls");
+    controls_now_.Set(model_, now);
+    controls_next_.Set(model_, next);
+  }
+  const StageTimer timer(profile_, "external force");
+  ExternalForce(model_, controls_now_, team_, external_now_);
+  ExternalForce(model_, controls_next_, team_, external_next_);
 }
 
 StepReport TetSolver::StepExplicit(const TetState& now, double dt, TetState& next) {
@@ -40,10 +49,13 @@ StepReport TetSolver::StepExplicit(const TetState& now, double dt, TetState& nex
 
   // v_half = v + dt/2 (M^-1 f - a v)
   next.velocities.resize(model_.nodes());
-  ForNodes(team_, model_.nodes(), [&](std::size_t n) {
-    next.velocities[n] =
-        (1 - h * a[n]) * now.velocities[n] + h * inverse_mass[n].cwiseProduct(now.force[n] + external_now_[n]);
-  });
+  {
+    const StageTimer timer(profile_, "velocities");
+    ForNodes(team_, model_.nodes(), [&](std::size_t n) {
+      next.velocities[n] =
+          (1 - h * a[n]) * now.velocities[n] + h * inverse_mass[n].cwiseProduct(now.force[n] + external_now_[n]);
+    });
+  }
   // x' = x + dt v_half
   Drift(now, dt, next);
   // f' = f(x', v_half)
@@ -57,11 +69,14 @@ StepReport TetSolver::StepExplicit(const TetState& now, double dt, TetState& nex
                        });
   }
   // v' = v_half + dt/2 (M^-1 f' - a v')
-  ForNodes(team_, model_.nodes(), [&](std::size_t n) {
-    next.velocities[n] =
-        (next.velocities[n] + h * inverse_mass[n].cwiseProduct(next.force[n] + external_next_[n])) / (1 + h * a[n]);
-  });
-  PrescribeVelocities(model_, controls_next_, next.velocities);
+  {
+    const StageTimer timer(profile_, "velocities");
+    ForNodes(team_, model_.nodes(), [&](std::size_t n) {
+      next.velocities[n] =
+          (next.velocities[n] + h * inverse_mass[n].cwiseProduct(next.force[n] + external_next_[n])) / (1 + h * a[n]);
+    });
+    PrescribeVelocities(model_, controls_next_, next.velocities);
+  }
   report.problem = ProblemOf(forces);
   return report;
 }
@@ -89,6 +104,7 @@ StepReport TetSolver::StepMixed(const TetState& now, double dt, TetState& next) 
 
 // x' = x + dt v_half; what is prescribed gets its place, and in v_half the velocity that leads there.
 void TetSolver::Drift(const TetState& now, double dt, TetState& next) {
+  const StageTimer timer(profile_, "positions");
   next.positions.resize(model_.nodes());
   ForNodes(team_, model_.nodes(),
            [&](std::size_t n) { next.positions[n] = now.positions[n] + dt * next.velocities[n]; });
@@ -109,6 +125,7 @@ FibreDrive TetSolver::DriveOf(const TetState& now, double dt) const {
 }
 
 ForceReport TetSolver::UpdateForce(const NodalVector* viscous_velocity, const FibreDrive& drive, TetState& next) {
+  const StageTimer timer(profile_, "elastic force");
   const ForceReport report =
       viscous_velocity == nullptr
           ? ElasticForce(model_, drive, next.positions, team_, forces_, next.force)
@@ -122,6 +139,7 @@ ForceReport TetSolver::UpdateForce(const NodalVector* viscous_velocity, const Fi
 // their value; D is the viscous operator at positions x, half_step is dt/2.
 CgResult TetSolver::SolveDamping(const NodalVector& x, const NodalVector& internal, const NodalVector& external,
                                  double half_step, TetState& next) {
+  const StageTimer timer(profile_, "damping");
   const std::vector<double>& mass = model_.mass();
   const std::vector<double>& a = model_.mass_damping();
   const NodalVector& inverse_mass = model_.inverse_mass();
@@ -160,6 +178,7 @@ CgResult TetSolver::SolveDamping(const NodalVector& x, const NodalVector& intern
 }
 
 void TetSolver::MeasureMotion(const TetState& now, const TetState& next, StepReport& report) const {
+  const StageTimer timer(profile_, "stability");
   const double twice_kinetic = SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
     const double m = model_.mass()[n];
     return m * m * model_.inverse_mass()[n].dot(next.velocities[n].cwiseAbs2());
@@ -174,6 +193,7 @@ void TetSolver::MeasureMotion(const TetState& now, const TetState& next, StepRep
 }
 
 void TetSolver::AddExternalWork(const TetState& now, TetState& next) const {
+  const StageTimer timer(profile_, "external work");
   next.external_work = now.external_work;
   if (!model_.has_gravity() && model_.loads().empty()) return;
   next.external_work += 0.5 * SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {

@@ -10,10 +10,11 @@ constexpr std::chrono::seconds kProgressInterval{1};
 
 }  // namespace
 
-FrameWriter::FrameWriter(ActiveJob& job, Encode encode, std::function<void()> notify)
+FrameWriter::FrameWriter(ActiveJob& job, const JobCodec& codec, RunProfile& profile, std::function<void()> notify)
     : job_(job),
       frames_(job.frames()),
-      encode_(std::move(encode)),
+      codec_(codec),
+      profile_(profile),
       notify_(std::move(notify)),
       next_progress_(std::chrono::steady_clock::now() + kProgressInterval),
       thread_([this] { Loop(); }) {}
@@ -73,7 +74,7 @@ void FrameWriter::Loop() {
 
 void FrameWriter::Store(const Item& item) {
   const Frame& frame = item.frame;
-  const std::string bytes = encode_(frame);
+  const std::string bytes = Encode(frame);
   const FrameRecord record{frame.index, frame.time, frame.step, static_cast<std::int64_t>(bytes.size()),
                            std::string(frame.digest.begin(), frame.digest.end())};
   // A replaced frame must never be read under the old generation, so the generation goes first; should this process end
@@ -83,17 +84,30 @@ void FrameWriter::Store(const Item& item) {
     const bool is_same = !stored.empty() && stored.front().digest == record.digest;
     if (!is_same) job_.Update([](JobRecord& job) { return ++job.generation > 0; });
   }
-  frames_->PutFrame(record, bytes, item.checkpoint);
+  {
+    const StageTimer timer(&profile_.storing, "commit");
+    frames_->PutFrame(record, bytes, item.checkpoint);
+  }
+  profile_.storing.NoteCpu();
   notify_();
+}
+
+std::string FrameWriter::Encode(const Frame& frame) {
+  const StageTimer timer(&profile_.storing, "encode");
+  return codec_.encode_frame(frame);
 }
 
 void FrameWriter::StoreProgressRarely() {
   const auto now = std::chrono::steady_clock::now();
   if (now < next_progress_) return;
   next_progress_ = now + kProgressInterval;
+  const StageTimer timer(&profile_.storing, "progress");
   try {
-    job_.Update([](JobRecord&) { return true; });
-  } catch (const StoreError&) {
+    job_.Update([this](JobRecord& record) {
+      record.profile = codec_.encode_profile(profile_);
+      return true;
+    });
+  } catch (const std::exception&) {
     // Progress is a convenience: whatever is wrong, the next frame or the end of the job will tell.
   }
 }

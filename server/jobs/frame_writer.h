@@ -17,13 +17,12 @@
 namespace fascicle::server {
 
 // Takes the frames of a run and stores them from a thread of its own: the solver goes on while a frame is encoded and
-// brought to the disk, and waits only when kMaxWaiting frames are queued. Also stores the progress now and then.
+// brought to the disk, and waits only when kMaxWaiting frames are queued. Also stores progress and profile now and
+// then.
 class FrameWriter final : public FrameSink {
  public:
-  using Encode = std::function<std::string(const Frame&)>;
-
-  // `job` has its frame store. `notify` is called after each frame that was stored.
-  FrameWriter(ActiveJob& job, Encode encode, std::function<void()> notify);
+  // `job` has its frame store. `notify` is called after each frame that was stored. All must outlive the writer.
+  FrameWriter(ActiveJob& job, const JobCodec& codec, RunProfile& profile, std::function<void()> notify);
   // Finishes; an error is lost.
   ~FrameWriter() override;
 
@@ -43,12 +42,14 @@ class FrameWriter final : public FrameSink {
 
   void Loop();
   void Store(const Item& item);
+  std::string Encode(const Frame& frame);
   void StoreProgressRarely();
   void Close();
 
   ActiveJob& job_;
   const std::shared_ptr<FrameStore> frames_;
-  const Encode encode_;
+  const JobCodec& codec_;
+  RunProfile& profile_;
   const std::function<void()> notify_;
   std::chrono::steady_clock::time_point next_progress_;  // of the thread alone
 

@@ -10,21 +10,32 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/profile.h"
 #include "core/scene/scene.h"
 #include "core/sim/simulation.h"
 #include "server/store/store.h"
 
 namespace fascicle::server {
 
+// Where the time of a run goes.
+struct RunProfile {
+  Profile working;               // of the worker
+  Profile storing = Profile(0);  // of the thread that stores frames meanwhile
+  std::string earlier;           // profile of the job's runs before this one, encoded; empty when there was none
+};
+
 // How jobs become bytes and back; made by server/translate, so that this room knows no wire format. Called from several
 // threads at once; what they throw fails the job with reason INTERNAL (StoreError: STORAGE).
 struct JobCodec {
-  // Scene of a job's spec; assets are read from `assets`. Throws std::runtime_error when it can't be built any more
-  // (an asset was lost).
-  std::function<std::shared_ptr<const Scene>(const std::string& spec, AssetStore& assets)> decode_scene;
+  // Scene of a job's spec; assets are read from `assets`, and stages timed in `profile`. Throws std::runtime_error when
+  // it can't be built any more (an asset was lost).
+  std::function<std::shared_ptr<const Scene>(const std::string& spec, AssetStore& assets, Profile* profile)>
+      decode_scene;
   std::function<std::string(const Scene&, const std::vector<SeriesInfo>&)> encode_geometry;
   std::function<std::string(const Frame&)> encode_frame;
   std::function<std::string(const Failure&)> encode_failure;
+  // The sum of this run and the earlier ones.
+  std::function<std::string(const RunProfile&)> encode_profile;
 };
 
 struct JobManagerOptions {

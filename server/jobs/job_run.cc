@@ -14,7 +14,8 @@ namespace fascicle::server {
 namespace {
 
 // False when the job was cancelled in the queue at the last moment.
-bool Start(ActiveJob& job) {
+bool Start(ActiveJob& job, Profile& profile) {
+  const StageTimer timer(&profile, "start");
   bool has_started = false;
   job.Update([&](JobRecord& record) {
     if (record.state != JobState::kQueued) return false;
@@ -36,31 +37,47 @@ void SetRunning(ActiveJob& job) {
 }
 
 // At the stored checkpoint when that fits the scene and the stored frames, else at rest.
-std::unique_ptr<Simulation> MakeSimulation(std::shared_ptr<const Scene> scene, int threads, FrameStore& frames) {
+std::unique_ptr<Simulation> MakeSimulation(std::shared_ptr<const Scene> scene, int threads, FrameStore& frames,
+                                           Profile& profile) {
+  const StageTimer timer(&profile, "model");
   if (const std::optional<std::string> checkpoint = frames.GetCheckpoint()) {
-    auto simulation = std::make_unique<Simulation>(scene, threads);
+    auto simulation = std::make_unique<Simulation>(scene, threads, &profile);
     if (simulation->Restore(*checkpoint) && simulation->next_frame() <= frames.frame_count()) return simulation;
   }
-  return std::make_unique<Simulation>(std::move(scene), threads);
+  return std::make_unique<Simulation>(std::move(scene), threads, &profile);
 }
 
-Outcome Simulate(const RunContext& context, ActiveJob& job, const std::function<void()>& notify) {
+std::shared_ptr<const Scene> DecodeScene(const RunContext& context, const std::string& spec, Profile& profile) {
+  const StageTimer timer(&profile, "scene");
+  std::shared_ptr<const Scene> scene = context.codec.decode_scene(spec, context.store, &profile);
+  if (scene == nullptr) throw std::runtime_error("the scene can't be built");
+  return scene;
+}
+
+// All that comes before the first step.
+std::unique_ptr<Simulation> SetUp(const RunContext& context, ActiveJob& job, Profile& profile) {
+  const StageTimer timer(&profile, "set-up");
   const std::optional<JobRecord> record = context.store.GetJob(job.id());
   if (!record) throw StoreError("job " + job.id() + " has gone");
-  std::shared_ptr<const Scene> scene = context.codec.decode_scene(record->spec, context.store);
-  if (scene == nullptr) throw std::runtime_error("the scene can't be built");
+  const std::shared_ptr<const Scene> scene = DecodeScene(context, record->spec, profile);
   const std::shared_ptr<FrameStore> frames = context.store.OpenFrames(job.id());
   if (frames == nullptr) throw StoreError("job " + job.id() + " has gone");
   job.SetFrames(frames);
 
   const int threads = record->threads > 0 ? record->threads : context.options.default_threads;
-  const std::unique_ptr<Simulation> simulation = MakeSimulation(scene, threads, *frames);
+  std::unique_ptr<Simulation> simulation = MakeSimulation(scene, threads, *frames, profile);
+  const StageTimer geometry(&profile, "geometry");
   frames->PutGeometry(context.codec.encode_geometry(*scene, simulation->series()));
   SetRunning(job);
-  notify();
+  return simulation;
+}
 
-  FrameWriter writer(job, context.codec.encode_frame, notify);
+Outcome Simulate(const RunContext& context, ActiveJob& job, RunProfile& profile, const std::function<void()>& notify) {
+  const std::unique_ptr<Simulation> simulation = SetUp(context, job, profile.working);
+  notify();
+  FrameWriter writer(job, context.codec, profile, notify);
   const Outcome outcome = simulation->Run(writer, job.stop_token(), context.options.checkpoint_interval);
+  const StageTimer timer(&profile.working, "waiting for storage");
   writer.Finish();
   return outcome;
 }
@@ -77,9 +94,10 @@ Outcome Failed(std::string reason, const char* message, std::string advice, cons
 }
 
 // As Simulate, with failures in place of exceptions.
-Outcome SimulateSafely(const RunContext& context, ActiveJob& job, const std::function<void()>& notify) {
+Outcome SimulateSafely(const RunContext& context, ActiveJob& job, RunProfile& profile,
+                       const std::function<void()>& notify) {
   try {
-    return Simulate(context, job, notify);
+    return Simulate(context, job, profile, notify);
   } catch (const StoreError& error) {
     return Failed("STORAGE", error.what(), "look at the server's disk: its space, its health", job);
   } catch (const std::exception& error) {
@@ -97,9 +115,18 @@ std::string Encode(const JobCodec& codec, const Failure& failure) {
   }
 }
 
+std::string Encode(const JobCodec& codec, const RunProfile& profile) {
+  try {
+    return codec.encode_profile(profile);
+  } catch (...) {
+    return profile.earlier;
+  }
+}
+
 // What the record becomes.
-ActiveJob::Change EndOf(const JobCodec& codec, const Outcome& outcome) {
-  return [&codec, &outcome](JobRecord& record) {
+ActiveJob::Change EndOf(const JobCodec& codec, const RunProfile& profile, const Outcome& outcome) {
+  return [&](JobRecord& record) {
+    record.profile = Encode(codec, profile);
     const bool is_cancelling = record.state == JobState::kCancelling;
     switch (outcome.kind) {
       case Outcome::Kind::kSucceeded:
@@ -118,7 +145,7 @@ ActiveJob::Change EndOf(const JobCodec& codec, const Outcome& outcome) {
   };
 }
 
-void End(const RunContext& context, ActiveJob& job, const Outcome& outcome) {
+void End(const RunContext& context, ActiveJob& job, const RunProfile& profile, const Outcome& outcome) {
   if (outcome.kind == Outcome::Kind::kSucceeded) {
     Progress progress = job.View({}).progress;
     progress.fraction = 1;  // also when it has settled early
@@ -129,30 +156,32 @@ void End(const RunContext& context, ActiveJob& job, const Outcome& outcome) {
   for (int i = 0; i < kTries; ++i) {
     if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
     try {
-      return job.Update(EndOf(context.codec, outcome));
+      return job.Update(EndOf(context.codec, profile, outcome));
     } catch (const std::exception& caught) {
       error = caught.what();
     }
   }
   // The store still has the job as running, so that the next process goes on with it; this one can't.
-  if (outcome.kind == Outcome::Kind::kFailed) return job.UpdateUnstored(EndOf(context.codec, outcome));
+  if (outcome.kind == Outcome::Kind::kFailed) return job.UpdateUnstored(EndOf(context.codec, profile, outcome));
   const Outcome failed =
       Failed("STORAGE", error.c_str(), "look at the server's disk; the job goes on when the server restarts", job);
-  job.UpdateUnstored(EndOf(context.codec, failed));
+  job.UpdateUnstored(EndOf(context.codec, profile, failed));
 }
 
 }  // namespace
 
 void RunJob(const RunContext& context, ActiveJob& job, const std::function<void()>& notify) {
+  RunProfile profile;
+  profile.earlier = job.record().profile;
   Outcome outcome;
   try {
-    if (!Start(job)) return;
+    if (!Start(job, profile.working)) return;
     notify();
-    outcome = SimulateSafely(context, job, notify);
+    outcome = SimulateSafely(context, job, profile, notify);
   } catch (const std::exception& error) {
     outcome = Failed("STORAGE", error.what(), "look at the server's disk: its space, its health", job);
   }
-  End(context, job, outcome);
+  End(context, job, profile, outcome);
   notify();
 }
 

@@ -58,6 +58,7 @@ v1::Job ToMessage(const JobView& view) {
   job.set_scene_name(record.scene_name);
   job.set_state(StateOf(view));
   if (record.state == JobState::kFailed) job.mutable_failure()->ParseFromString(record.failure);
+  if (!record.profile.empty()) job.mutable_profile()->ParseFromString(record.profile);
   *job.mutable_progress() = ProgressOf(view);
   job.set_queue_position(view.queue_position);
   job.set_attempt(static_cast<int>(record.attempt));

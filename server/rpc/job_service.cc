@@ -128,7 +128,8 @@ grpc::Status JobServiceImpl::List(const v1::ListJobsRequest& request, v1::ListJo
       response.set_next_page_token(MakePageToken(*ParseJobName(last), filter));
       break;
     }
-    *response.add_jobs() = ToMessage(view);
+    v1::Job& job = *response.add_jobs() = ToMessage(view);
+    job.clear_profile();  // as long as all the rest
   }
   return grpc::Status::OK;
 }

@@ -47,6 +47,7 @@ struct JobRecord {
   int threads = 1;
   JobState state = JobState::kQueued;
   std::string failure;  // serialized failure, opaque here; empty when none
+  std::string profile;  // serialized profile, opaque here; empty when none
   std::int64_t attempt = 0;
   std::int64_t generation = 1;
   std::int64_t create_time_us = 0;  // since the Unix epoch
@@ -69,8 +70,8 @@ class JobStore {
   // Newest first, without `spec`; ids below `before_id` (empty: from the newest), states in `states` (empty: all).
   virtual std::vector<JobRecord> ListJobs(int limit, std::string_view before_id,
                                           const std::vector<JobState>& states) = 0;
-  // Writes state, failure, attempt, generation, start and end time, progress and counts of an existing job; without
-  // effect when there is none.
+  // Writes state, failure, profile, attempt, generation, start and end time, progress and counts of an existing job;
+  // without effect when there is none.
   virtual void UpdateJob(const JobRecord& job) = 0;
   // Removes the job with its frames. False when there is none.
   virtual bool DeleteJob(std::string_view id) = 0;

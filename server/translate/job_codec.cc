@@ -13,11 +13,11 @@ std::string Serialize(const M& message) {
   return bytes;
 }
 
-std::shared_ptr<const Scene> DecodeScene(const std::string& spec, AssetStore& assets) {
+std::shared_ptr<const Scene> DecodeScene(const std::string& spec, AssetStore& assets, Profile* profile) {
   v1::Job job;
   if (!job.ParseFromString(spec)) throw std::runtime_error("the stored job can't be read");
   Problems problems;
-  auto scene = TranslateScene(job.scene(), ReaderOf(assets), problems);
+  auto scene = TranslateScene(job.scene(), ReaderOf(assets), problems, {}, profile);
   if (scene == nullptr) throw std::runtime_error("the stored scene can't be built any more:\n" + problems.ToString());
   return scene;
 }
@@ -34,7 +34,8 @@ JobCodec MakeJobCodec() {
       .encode_geometry = [](const Scene& scene,
                             const std::vector<SeriesInfo>& series) { return Serialize(EncodeGeometry(scene, series)); },
       .encode_frame = [](const Frame& frame) { return Serialize(EncodeFrame(frame)); },
-      .encode_failure = [](const Failure& failure) { return Serialize(EncodeFailure(failure)); }};
+      .encode_failure = [](const Failure& failure) { return Serialize(EncodeFailure(failure)); },
+      .encode_profile = [](const RunProfile& profile) { return Serialize(EncodeProfile(profile)); }};
 }
 
 }  // namespace fascicle::server

@@ -41,7 +41,7 @@ struct TranslatedBody {
 };
 
 TranslatedBody TranslateBody(const v1::Body& wire, const std::string& path, double duration, const AssetReader& assets,
-                             std::int64_t& budget, Problems& problems) {
+                             std::int64_t& budget, Problems& problems, Profile* profile) {
   TranslatedBody result;
   Body& body = result.body;
   body.name = wire.name();
@@ -50,7 +50,10 @@ TranslatedBody TranslateBody(const v1::Body& wire, const std::string& path, doub
   body.damping = TranslateDamping(wire);
 
   Problems structure;
-  auto mesh = TranslateMesh(wire, path, assets, budget, structure);
+  auto mesh = [&] {
+    const StageTimer timer(profile, "meshes");
+    return TranslateMesh(wire, path, assets, budget, structure);
+  }();
   TranslatedRegions regions = TranslateRegions(wire, path, mesh ? &mesh->mesh : nullptr, structure);
   body.constraints = TranslateConstraints(wire, path, regions.names, structure);
   body.loads = TranslateLoads(wire, path, regions.names, structure);
@@ -61,7 +64,10 @@ TranslatedBody TranslateBody(const v1::Body& wire, const std::string& path, doub
   problems.Append("", structure);
 
   const TetMesh* tetrahedra = mesh ? &mesh->mesh : nullptr;
-  body.fibres = TranslateFibres(wire, path, mesh ? &*mesh : nullptr, regions, assets, body.notes, problems);
+  {
+    const StageTimer timer(profile, "fibres");
+    body.fibres = TranslateFibres(wire, path, mesh ? &*mesh : nullptr, regions, assets, body.notes, problems);
+  }
   TranslateMaterialParts(wire, path, tetrahedra, regions, assets, body, problems);
   TranslateActivations(wire, path, duration, tetrahedra, regions, assets, body, problems);
   TranslateInitialDisplacement(wire, path, tetrahedra, assets, body, problems);
@@ -92,7 +98,7 @@ std::vector<std::string> AssetsOf(const v1::Scene& scene) {
 }
 
 std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetReader& assets, Problems& problems,
-                                            const TranslateLimits& limits) {
+                                            const TranslateLimits& limits, Profile* profile) {
   Problems found;
   CheckRules(scene, found);
   v1::Scene filled = scene;
@@ -112,7 +118,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   for (int i = 0; i < filled.bodies_size(); ++i) {
     const std::string path = IndexPath("bodies", static_cast<std::size_t>(i));
     names.Add(filled.bodies(i).name(), JoinPath(path, "name"), found);
-    TranslatedBody body = TranslateBody(filled.bodies(i), path, filled.duration(), assets, budget, found);
+    TranslatedBody body = TranslateBody(filled.bodies(i), path, filled.duration(), assets, budget, found, profile);
     complete.push_back(body.complete);
     if (!body.body.mesh.curved_edges.empty() && result->method.element == ElementOrder::kLinear) {
       body.body.notes.push_back(JoinPath(path, "mesh") +
@@ -122,7 +128,10 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   }
   result->output = TranslateOutput(filled, result->bodies, names, limits.max_frame_bytes, found);
 
-  if (found.empty()) CheckScene(*result, found);
+  if (found.empty()) {
+    const StageTimer timer(profile, "checks");
+    CheckScene(*result, found);
+  }
   if (found.empty()) return result;
   CheckEachBody(std::move(*result), complete, found);
   problems.Append("", found);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/problems.h"
+#include "core/base/profile.h"
 #include "core/scene/scene.h"
 #include "core/sim/frame.h"
 #include "core/sim/simulation.h"
@@ -17,6 +18,8 @@
 #include "fascicle/v1/scene.pb.h"
 
 namespace fascicle::server {
+
+struct RunProfile;
 
 // The one room that knows both the wire and the core. Stateless and thread-safe.
 
@@ -35,13 +38,16 @@ struct TranslateLimits {
 // Checks everything that can be checked without running (the proto's ranges, names, files, meshes, regions,
 // CheckScene) and adds every problem with its field path ("bodies[0].density"). nullptr when there was any.
 // Nothing large is built before its size is known to be within the limits.
+// Stages are timed in `profile` where there is one.
 std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetReader& assets, Problems& problems,
-                                            const TranslateLimits& limits = {});
+                                            const TranslateLimits& limits = {}, Profile* profile = nullptr);
 
 // To the wire. A frame's digest and numbers are copied bit by bit.
 v1::Geometry EncodeGeometry(const Scene& scene, const std::vector<SeriesInfo>& series);
 v1::Frame EncodeFrame(const Frame& frame);
 v1::Failure EncodeFailure(const Failure& failure);
+// A run's profile, added to that of the runs before it.
+v1::Profile EncodeProfile(const RunProfile& profile);
 
 }  // namespace fascicle::server
 

@@ -105,6 +105,7 @@ TEST_F(BadInputService, TheWireIsCheckedToo) {
   body.mutable_fibres()->mutable_file()->set_path("../../etc/passwd");
   body.mutable_fibres()->mutable_file()->set_asset("assets/../../../etc/passwd");
   grpc::ClientContext context;
+  context.set_wait_for_ready(true);  // a first attempt to connect may fail, see Stubs in tests/server/service_fixture.h
   v1::Job job;
   const grpc::Status status = stub->CreateJob(&context, request, &job);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << status.error_message();

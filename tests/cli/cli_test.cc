@@ -157,6 +157,27 @@ TEST_F(CliTest, RunWithoutDataLeavesNothing) {
   EXPECT_TRUE(fs::is_empty(Temporary()));
 }
 
+TEST_F(CliTest, RunTellsWhereTheTimeWent) {
+  const std::string scene = Scene("scene.json", SceneText(20, 50));
+  const Finished text = Fascicle({"run", scene, "--profile"});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, AllOf(HasSubstr("\nstage "), HasSubstr("\nset-up "), HasSubstr("\n  elastic force "),
+                              HasSubstr("\nwhole "), HasSubstr("meanwhile"), HasSubstr("\nencode ")));
+  EXPECT_THAT(Fascicle({"run", scene}).out, Not(HasSubstr("elastic force")));
+  const json summary = json::parse(Fascicle({"run", scene, "--profile", "--json"}).out);
+  const json& profile = summary["profile"];
+  double top = profile["rest_seconds"];
+  for (const json& stage : profile["stages"]) {
+    EXPECT_GE(stage["seconds"], 0);
+    if (stage["name"] == "step") EXPECT_EQ(stage["calls"], 1000);
+    if (!stage.contains("concurrent") && stage["name"].get<std::string>().find('/') == std::string::npos) {
+      top += stage["seconds"].get<double>();
+    }
+  }
+  EXPECT_NEAR(top, profile["wall_seconds"], 1e-9);
+  EXPECT_GT(profile["wall_seconds"], 0);
+}
+
 TEST_F(CliTest, SettingsChangeTheScene) {
   const std::string scene = Scene("scene.json", SceneText(2, 5));
   const auto set = [&](const std::string& setting) { return Fascicle({"validate", scene, "--set", setting}); };
@@ -316,6 +337,10 @@ TEST_F(ServerTest, AJobsWholeLife) {
   EXPECT_THAT(Call({"show", job.substr(5)}).out, HasSubstr("succeeded"));
   EXPECT_EQ(Lines(Call({"list", "--json", "--state", "succeeded"}).out).size(), 1u);
   EXPECT_THAT(Call({"list"}).out, HasSubstr(job));
+  EXPECT_THAT(Call({"show", job, "--profile"}).out, AllOf(HasSubstr("\n  elastic force"), Not(HasSubstr("succeeded"))));
+  const json profile = json::parse(Call({"show", job, "--profile", "--json"}).out);
+  EXPECT_EQ(profile["runs"], 1);
+  EXPECT_EQ(json::parse(Call({"watch", job, "--profile", "--json"}).out)["profile"], profile);
   // The scene comes back as a scene file.
   EXPECT_EQ(Call({"validate", Scene("again.json", Call({"show", job, "--scene"}).out)}).exit_code, 0);
 

@@ -75,10 +75,19 @@ inline std::string EncodeFrame(const Frame& frame) {
   return bytes;
 }
 
+// A line for each stage: its name and calls, those of earlier runs first.
+inline std::string EncodeProfile(const RunProfile& profile) {
+  std::string text = profile.earlier;
+  for (const Profile* thread : {&profile.working, &profile.storing}) {
+    for (const ProfileStage& stage : thread->Stages()) text += stage.name + " " + std::to_string(stage.calls) + "\n";
+  }
+  return text;
+}
+
 // Plain bytes. What a test wants to happen besides, it puts around these functions.
 inline JobCodec BoxCodec() {
   JobCodec codec;
-  codec.decode_scene = [](const std::string& bytes, AssetStore&) {
+  codec.decode_scene = [](const std::string& bytes, AssetStore&, Profile*) {
     BoxSpec spec;
     std::memcpy(&spec, bytes.data(), sizeof spec);
     if (spec.cannot_be_decoded) throw std::runtime_error("an asset was lost");
@@ -89,6 +98,7 @@ inline JobCodec BoxCodec() {
   };
   codec.encode_frame = EncodeFrame;
   codec.encode_failure = [](const Failure& failure) { return failure.reason + ": " + failure.message; };
+  codec.encode_profile = EncodeProfile;
   return codec;
 }
 

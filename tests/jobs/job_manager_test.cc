@@ -59,14 +59,35 @@ TEST_F(JobManagerTest, NumberOfThreadsDoesNotMatter) {
   EXPECT_EQ(StoredDigests(*manager.Frames(id)), DigestsByCore({}));
 }
 
+TEST_F(JobManagerTest, ARunsProfileCountsItsStages) {
+  JobManager manager(*store_, BoxCodec(), Workers(1));
+  const std::string id = manager.Submit(BoxJob({}), nullptr).record.id;
+  const JobView done = WaitForEnd(manager, id);
+  const std::string steps = std::to_string(done.record.step);
+  for (const std::string& stage :
+       {std::string("set-up/scene 1"), std::string("set-up/model 1"), "step " + steps, "step/elastic force " + steps,
+        std::string("frame 21"), std::string("frame/digest 21"), std::string("checkpoint 21"),
+        std::string("waiting for storage 22"), std::string("encode 21"), std::string("commit 21")}) {
+    EXPECT_NE(("\n" + done.record.profile).find("\n" + stage + "\n"), std::string::npos) << stage << " is not in\n"
+                                                                                         << done.record.profile;
+  }
+}
+
+TEST_F(JobManagerTest, AFailedRunHasAProfileToo) {
+  JobManager manager(*store_, BoxCodec(), Workers(1));
+  const JobView done = WaitForEnd(manager, manager.Submit(BoxJob(Collapsing()), nullptr).record.id);
+  EXPECT_EQ(done.record.state, JobState::kFailed);
+  EXPECT_NE(done.record.profile.find("\nstep/elastic force "), std::string::npos) << done.record.profile;
+}
+
 TEST_F(JobManagerTest, TakesJobsInTheOrderOfTheirSubmission) {
   JobCodec codec = BoxCodec();
   std::vector<std::string> order;
   std::binary_semaphore go(0);
-  codec.decode_scene = [&, decode = codec.decode_scene](const std::string& spec, AssetStore& assets) {
+  codec.decode_scene = [&, decode = codec.decode_scene](const std::string& spec, AssetStore& assets, Profile* profile) {
     if (order.empty()) go.acquire();
     order.push_back(spec);
-    return decode(spec, assets);
+    return decode(spec, assets, profile);
   };
   JobManager manager(*store_, codec, Workers(1));
   std::vector<std::string> submitted, ids;

@@ -67,6 +67,26 @@ TEST_P(JobRecoveryTest, ADrainedJobGoesOnFromItsCheckpointToTheSameFrames) {
   EXPECT_EQ(manager.Get(waiting)->record.attempt, 1);
 }
 
+TEST_P(JobRecoveryTest, TheProfileOfARunIsKeptAndTheNextOneAddsToIt) {
+  const BoxSpec spec = {.duration = 3, .frame_interval = 0.02};
+  std::string id, first;
+  {
+    JobManager manager(*store_, BoxCodec(), Workers(1));
+    id = manager.Submit(BoxJob(spec), nullptr).record.id;
+    ASSERT_TRUE(WaitForFrames(manager, id, 10));
+    manager.Drain();
+    first = manager.Get(id)->record.profile;
+  }
+  EXPECT_THAT(first, testing::AllOf(testing::HasSubstr("set-up/scene 1\n"), testing::HasSubstr("\nstep/elastic force "),
+                                    testing::HasSubstr("\ncommit "), testing::HasSubstr("\ncheckpoint ")));
+  ReopenStore();
+  JobManager manager(*store_, BoxCodec(), Workers(1));
+  EXPECT_TRUE(manager.Get(id)->record.profile.starts_with(first));
+  const std::string both = WaitForEnd(manager, id).record.profile;
+  EXPECT_TRUE(both.starts_with(first));
+  EXPECT_NE(both.substr(first.size()).find("set-up/scene 1\n"), std::string::npos);
+}
+
 TEST_P(JobRecoveryTest, DoesNotRepeatWhatTheCheckpointHolds) {
   const BoxSpec spec = {.duration = 3, .frame_interval = 0.02};
   std::string id;

@@ -150,6 +150,41 @@ TEST_F(ProcessTest, KilledInMidJobItGoesOnAndNoWatcherNotices) {
   EXPECT_EQ(received.frames, expected);
 }
 
+TEST_F(ProcessTest, AProfileSurvivesAKillAndTheNextRunAddsToIt) {
+  Start();
+  std::string name;
+  v1::Profile first;
+  {
+    Stubs stubs(address_);
+    name = stubs.Submit(LongScene());
+    ASSERT_TRUE(Eventually([&] { return stubs.Get(name).has_profile(); })) << "stored while the job runs";
+    first = stubs.Get(name).profile();
+    EXPECT_EQ(first.runs(), 1);
+    EXPECT_GT(first.wall_seconds(), 0.5);
+  }
+  process_->Signal(SIGKILL);
+  ASSERT_EQ(process_->Wait(10s), 128 + SIGKILL);
+  Start();
+  v1::Job last;
+  {
+    Stubs stubs(address_);
+    EXPECT_GE(stubs.Get(name).profile().wall_seconds(), first.wall_seconds());
+    ASSERT_TRUE(stubs.AwaitFrames(name, stubs.Get(name).frame_count() + 10));
+    ASSERT_TRUE(stubs.Cancel(name).ok());
+    ASSERT_TRUE(stubs.AwaitState(name, v1::Job::STATE_CANCELLED));
+    last = stubs.Get(name);
+    EXPECT_EQ(last.attempt(), 2);
+    EXPECT_EQ(last.profile().runs(), 2);
+    EXPECT_GT(last.profile().wall_seconds(), first.wall_seconds());
+    EXPECT_EQ(last.profile().stages(0).name(), "start");
+    EXPECT_EQ(last.profile().stages(0).calls(), 2 * first.stages(0).calls());
+  }
+  process_->Signal(SIGTERM);
+  EXPECT_EQ(process_->Wait(10s), 0);
+  Start();
+  EXPECT_EQ(Stubs(address_).Get(name).profile().SerializeAsString(), last.profile().SerializeAsString());
+}
+
 TEST_F(ProcessTest, DrainsWithOpenStreamsAndTheClientsResume) {
   const v1::Scene scene = KillScene();
   const std::vector<std::string> expected = Undisturbed(scene);

@@ -1,4 +1,5 @@
 // What the calls do when they are right.
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -31,6 +32,43 @@ TEST_F(JobsTest, AJobIsCreatedRunsAndCanBeLookedAt) {
   EXPECT_NEAR(job.progress().fraction(), 1, 1e-9);
   EXPECT_GE(job.end_time().seconds(), job.start_time().seconds());
   EXPECT_FALSE(job.has_failure());
+}
+
+TEST_F(JobsTest, AJobsProfileSaysWhereItsTimeWent) {
+  const std::string name = stubs_->Submit(LargeSteps(100));
+  ASSERT_TRUE(stubs_->AwaitState(name, v1::Job::STATE_SUCCEEDED, 60s));
+  const v1::Job job = stubs_->Get(name);
+  ASSERT_TRUE(job.has_profile());
+  const v1::Profile& profile = job.profile();
+  std::map<std::string, v1::Profile::Stage> stages;
+  double whole = 0, step = 0;
+  for (const v1::Profile::Stage& stage : profile.stages()) {
+    stages[stage.name()] = stage;
+    const bool is_part = stage.name().find('/') != std::string::npos;
+    if (!is_part && !stage.concurrent()) whole += stage.seconds();
+    if (stage.name().starts_with("step/")) step += stage.seconds();
+  }
+  const auto micros = [](const google::protobuf::Timestamp& t) {
+    return 1e6 * static_cast<double>(t.seconds()) + 1e-3 * t.nanos();
+  };
+  EXPECT_GT(profile.wall_seconds(), 0.1);
+  EXPECT_LE(profile.wall_seconds(), 1e-6 * (micros(job.end_time()) - micros(job.start_time())) + 0.01);
+  EXPECT_GT(whole, 0.97 * profile.wall_seconds()) << profile.DebugString();
+  EXPECT_LE(whole, profile.wall_seconds());
+  EXPECT_GT(step, 0.97 * stages["step"].seconds()) << profile.DebugString();
+  EXPECT_GT(stages["step/elastic force"].seconds(), 0.3 * stages["step"].seconds());
+  EXPECT_EQ(stages["step"].calls(), job.progress().step());
+  EXPECT_EQ(stages["commit"].calls(), 100);
+  EXPECT_TRUE(stages["commit"].concurrent());
+  EXPECT_GT(profile.cpu_seconds(), 0.01);
+  EXPECT_EQ(profile.runs(), 1);
+  // It comes with the end of a stream, and not with a list.
+  EXPECT_EQ(ReadStream(*stubs_, AllFramesOf(name)).end->job().profile().SerializeAsString(),
+            profile.SerializeAsString());
+  grpc::ClientContext context;
+  v1::ListJobsResponse list;
+  ASSERT_TRUE(stubs_->jobs->ListJobs(&context, {}, &list).ok());
+  EXPECT_FALSE(list.jobs(0).has_profile());
 }
 
 TEST_F(JobsTest, ValidateOnlyCreatesNothing) {

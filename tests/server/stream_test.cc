@@ -250,7 +250,7 @@ TEST_F(StreamTest, StoppingEndsEveryStreamWithUnavailable) {
           });
     });
   }
-  ASSERT_TRUE(Eventually([&] { return started == kStreams; }));
+  EXPECT_TRUE(Eventually([&] { return started == kStreams; })) << started << " streams have begun";
   const auto begin = std::chrono::steady_clock::now();
   server_->Stop();
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 10s);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <thread>
 
 #include "tet_scenes.h"
@@ -104,6 +105,36 @@ TEST(SimulationTest, SettlesAfterTheCurvesHaveComeToRest) {
   CollectingSink sink;
   EXPECT_EQ(simulation.Run(sink, {}).kind, Outcome::Kind::kSucceeded);
   EXPECT_TRUE(sink.frames.empty());
+}
+
+TEST(SimulationTest, AProfileCountsTheStagesAndChangesNoBit) {
+  for (const Stepping stepping : {Stepping::kExplicit, Stepping::kMixed, Stepping::kBackwardEuler}) {
+    Scene scene = Beam();
+    scene.method.stepping = stepping;
+    const RunResult run = RunScene(scene);
+    Profile profile;
+    CollectingSink sink;
+    Simulation(std::make_shared<Scene>(scene), 1, &profile).Run(sink, {}, std::chrono::milliseconds(0));
+    ASSERT_EQ(sink.frames.size(), run.frames.size());
+    for (std::size_t i = 0; i < run.frames.size(); ++i) EXPECT_EQ(sink.frames[i].digest, run.frames[i].digest);
+    EXPECT_EQ(sink.checkpoints, run.checkpoints);
+
+    std::map<std::string, ProfileStage> stages;
+    double parts = 0;
+    for (const ProfileStage& stage : profile.Stages()) {
+      stages[stage.name] = stage;
+      if (stage.name.starts_with("step/")) parts += stage.seconds;
+    }
+    EXPECT_EQ(stages["step"].calls, run.progress.step);
+    EXPECT_EQ(stages["step/controls"].calls, run.progress.step);
+    EXPECT_EQ(stages["frame"].calls, 6);
+    EXPECT_EQ(stages["checkpoint"].calls, 6);
+    EXPECT_EQ(stages[stepping == Stepping::kBackwardEuler ? "step/Newton" : "step/elastic force"].calls,
+              run.progress.step);
+    EXPECT_GT(parts, 0.8 * stages["step"].seconds);
+    EXPECT_LE(parts, stages["step"].seconds);
+    EXPECT_GT(profile.cpu_seconds(), 0);
+  }
 }
 
 TEST(SimulationTest, CancelledBetweenTwoSteps) {

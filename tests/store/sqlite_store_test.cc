@@ -87,6 +87,39 @@ TEST_F(SqliteStoreTest, RefusesDataOfANewerVersion) {
   EXPECT_NE(ErrorOf([&] { Open(); }).find("newer version"), std::string::npos);
 }
 
+// control.db as format 1 had it: its jobs have no profile, and get one.
+TEST_F(SqliteStoreTest, JobsOfFormat1AreTakenOver) {
+  static constexpr std::array<const char*, 1> kFormat1 = {
+      R"(CREATE TABLE jobs (id TEXT PRIMARY KEY NOT NULL, request_id TEXT UNIQUE, request_digest BLOB NOT NULL,
+           scene_name TEXT NOT NULL, threads INTEGER NOT NULL, state INTEGER NOT NULL, failure BLOB NOT NULL,
+           attempt INTEGER NOT NULL, generation INTEGER NOT NULL, create_time_us INTEGER NOT NULL,
+           start_time_us INTEGER NOT NULL, end_time_us INTEGER NOT NULL, fraction REAL NOT NULL, time REAL NOT NULL,
+           step INTEGER NOT NULL, frame_count INTEGER NOT NULL, stored_bytes INTEGER NOT NULL) STRICT, WITHOUT ROWID;
+         CREATE TABLE specs (job_id TEXT PRIMARY KEY NOT NULL REFERENCES jobs (id) ON DELETE CASCADE,
+           spec BLOB NOT NULL) STRICT;)"};
+  const std::string id = SampleJob(1).id;
+  {
+    Database old = OpenFormatted(directory_.path() + "/control.db", 0x46534343, kFormat1);
+    old.Execute(("INSERT INTO jobs VALUES ('" + id +
+                 "', 'r', x'01', 'old', 3, 2, x'', 1, 1, 5, 6, 0, 0.5, 0.25, 8, 9, 10);"
+                 "INSERT INTO specs VALUES ('" +
+                 id + "', x'0203')")
+                    .c_str());
+  }
+  {
+    const std::unique_ptr<Store> store = Open();
+    JobRecord job = *store->GetJob(id);
+    EXPECT_EQ(job.scene_name, "old");
+    EXPECT_EQ(job.spec, "\x02\x03");
+    EXPECT_EQ(job.stored_bytes, 10);
+    EXPECT_EQ(job.profile, "");
+    job.profile = "where";
+    store->UpdateJob(job);
+  }
+  EXPECT_EQ(Open()->GetJob(id)->profile, "where");
+  EXPECT_EQ(Open()->ListJobs(1, "", {}).at(0).profile, "where");
+}
+
 TEST_F(SqliteStoreTest, DeletingAJobRemovesItsFile) {
   const std::unique_ptr<Store> store = Open();
   Fill(*store, 1, 2, 1000);

@@ -48,6 +48,7 @@ void ExpectEqual(const JobRecord& a, const JobRecord& b) {
   EXPECT_EQ(a.threads, b.threads);
   EXPECT_EQ(a.state, b.state);
   EXPECT_EQ(a.failure, b.failure);
+  EXPECT_EQ(a.profile, b.profile);
   EXPECT_EQ(a.attempt, b.attempt);
   EXPECT_EQ(a.generation, b.generation);
   EXPECT_EQ(a.create_time_us, b.create_time_us);
@@ -139,6 +140,7 @@ TEST_P(StoreContract, UpdatesWhatARunChangesAndNothingElse) {
   JobRecord changed = job;
   changed.state = JobState::kFailed;
   changed.failure = std::string("why\0not", 7);
+  changed.profile = std::string("where\0to", 8);
   changed.attempt = 2;
   changed.generation = 4;
   changed.start_time_us = 5;

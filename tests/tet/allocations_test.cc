@@ -43,7 +43,8 @@ TEST_P(AllocationsTest, NoneAfterTheFirstStep) {
   const Scene scene = BusyScene(stepping);
   const TetModel model(scene);
   ThreadTeam team(threads);
-  TetSolver solver(model, team);
+  Profile profile;
+  TetSolver solver(model, team, &profile);
   TetState state = solver.InitialState();
   ASSERT_EQ(solver.Advance(state, scene.duration).problem, StepProblem::kNone);
 
