@@ -17,7 +17,10 @@ std::string NewName(const std::string& wanted, std::set<std::string>& taken) {
   }
   if (name.empty() || name == "." || name == "..") name = "part";
   std::string unique = name;
-  for (int k = 2; !taken.insert(unique).second; ++k) unique = name + "_" + std::to_string(k);
+  // Where there are many, numbers go on from their count: no search from 2 for each.
+  for (std::size_t k = taken.size() < 100 ? 2 : taken.size(); !taken.insert(unique).second; ++k) {
+    unique = name + "_" + std::to_string(k);
+  }
   return unique;
 }
 
@@ -78,14 +81,15 @@ std::optional<std::vector<std::int32_t>> NodeSets::Collect(const std::string& ki
   } else if (kind == "elem_set") {
     const std::vector<std::int64_t>* ids = FindElements(mesh_, name);
     if (ids == nullptr) return std::nullopt;
-    const std::unordered_set<std::int64_t> chosen(ids->begin(), ids->end());
-    for (const Part& part : mesh_.parts) {
-      const auto count = static_cast<std::ptrdiff_t>(NodesOf(part.shape));
-      for (std::size_t e = 0; e < part.size(); ++e) {
-        if (!chosen.contains(part.ids[e])) continue;
-        const auto first = part.nodes.begin() + static_cast<std::ptrdiff_t>(e) * count;
-        nodes.insert(nodes.end(), first, first + count);
-      }
+    for (const std::int64_t id : *ids) {
+      const auto found = mesh_.element_index.find(id);
+      if (found == mesh_.element_index.end()) continue;  // told of already
+      const auto& [p, e] = found->second;
+      const Part& part = mesh_.parts[static_cast<std::size_t>(p)];
+      const std::ptrdiff_t count = NodesOf(part.shape);
+      if (e >= static_cast<std::int32_t>(part.size())) continue;  // refused
+      const auto first = part.nodes.begin() + e * count;
+      nodes.insert(nodes.end(), first, first + count);
     }
   } else {
     return std::nullopt;

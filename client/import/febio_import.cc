@@ -78,7 +78,7 @@ class Importer {
     const Tetrahedra all = MakeTetrahedra(model_.mesh);
     const std::vector<MeshBody> bodies = MakeBodies(all);
     TellOfBodies(bodies);
-    if (bodies.empty() || bodies.size() > kMaxBodies) return std::nullopt;
+    if (bodies.size() > kMaxBodies) return std::nullopt;
     std::vector<BodyDraft> drafts = Draft(bodies, result.scene);
     CurveMaker curves(model_, source_);
     for (BodyDraft& draft : drafts) {
@@ -89,6 +89,7 @@ class Importer {
     SetSupports(model_, source_, curves, origins_, drafts);
     SetLoads(model_, all, source_, curves, origins_, drafts);
     SetGravity(curves, result.scene);
+    if (bodies.empty()) return std::nullopt;
     SetMethod(bodies, result.scene);
     std::vector<ImportedFile> meshes;
     for (const BodyDraft& draft : drafts) {

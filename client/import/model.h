@@ -55,7 +55,10 @@ struct Mesh {
   std::vector<std::int64_t> ids;
   std::unordered_map<std::int64_t, std::int32_t> index_of;
   std::vector<Part> parts;
-  std::set<std::string> part_names;  // of all <Elements>, also those that are not taken
+  std::set<std::string> part_names;                         // of all <Elements>, also those that are not taken
+  std::unordered_map<std::string, std::size_t> part_index;  // of those in `parts`, by name
+  // Index of the part and place in it of an element, by its id.
+  std::unordered_map<std::int64_t, std::pair<std::int32_t, std::int32_t>> element_index;
   std::map<std::string, NodeSet> node_sets;
   std::map<std::string, Surface> surfaces;
   std::map<std::string, std::vector<std::int64_t>> element_sets;  // element ids

@@ -63,6 +63,8 @@ class MeshReader {
       }
       const auto id = source_.IntegerAttribute(node, "id");
       const auto position = source_.Vector(node);
+      if (!id) any_unnumbered_ = true;
+      if (id && !position) mesh_.index_of.try_emplace(*id, -1);  // told of once: what names it is not
       if (!id || !position) continue;
       if (mesh_.nodes.size() == kMaxNodes) return source_.Fail(node, "is one node too many", "use a coarser mesh");
       const auto index = static_cast<std::int32_t>(mesh_.nodes.size());
@@ -77,10 +79,11 @@ class MeshReader {
     if (section.attribute("name")) mesh_.node_sets.try_emplace(section.attribute("name").value(), std::move(set));
   }
 
-  // The index of a node, or -1 after a problem.
+  // The index of a node, or -1 after a problem with it.
   std::int32_t Find(std::int64_t id, pugi::xml_node node) {
     const auto found = mesh_.index_of.find(id);
     if (found != mesh_.index_of.end()) return found->second;
+    if (any_unnumbered_) return -1;
     source_.Fail(node, "names node " + std::to_string(id) + ", which does not exist", "is the file complete?");
     return -1;
   }
@@ -117,10 +120,14 @@ class MeshReader {
     part.name = name;
     part.node = section;
     part.shape = *shape;
+    bool empty = true;
     for (const pugi::xml_node node : section.children()) {
-      if (node.type() == pugi::node_element) ReadElement(node, part);
+      if (node.type() != pugi::node_element) continue;
+      ReadElement(node, part);
+      empty = false;
     }
-    if (part.size() == 0) return source_.Fail(section, "has no elements", "is the file complete?");
+    if (empty) return source_.Fail(section, "has no elements", "is the file complete?");
+    mesh_.part_index.try_emplace(part.name, mesh_.parts.size());
     mesh_.parts.push_back(std::move(part));
   }
 
@@ -131,7 +138,8 @@ class MeshReader {
     const auto id = source_.IntegerAttribute(node, "id");
     const auto numbers = source_.Integers(node, count);
     if (!id || !numbers) return;
-    if (!element_ids_.insert(*id).second) {
+    const std::pair place(static_cast<std::int32_t>(mesh_.parts.size()), static_cast<std::int32_t>(part.size()));
+    if (!mesh_.element_index.try_emplace(*id, place).second) {
       return source_.Fail(node, "element " + std::to_string(*id) + " is given twice", "number the elements uniquely");
     }
     auto sorted = *numbers;
@@ -234,7 +242,7 @@ class MeshReader {
     auto numbers = Members(node);
     if (name.empty() || !numbers) return;
     for (const std::int64_t id : *numbers) {
-      if (element_ids_.contains(id)) continue;
+      if (mesh_.element_index.contains(id)) continue;
       source_.Fail(node, "names element " + std::to_string(id) + ", which does not exist", "is the file complete?");
       break;
     }
@@ -247,7 +255,7 @@ class MeshReader {
   XmlSource& source_;
   Mesh& mesh_;
   bool any_elements_ = false;
-  std::unordered_set<std::int64_t> element_ids_;
+  bool any_unnumbered_ = false;  // nodes without a number
 };
 
 // Gives parts their materials, or leaves them out of the model where those are rigid.
@@ -261,15 +269,18 @@ class MaterialAssignment {
     }
   }
 
-  void Assign(const std::string& name, pugi::xml_node node, Part& part) const {
+  // `part` is null where the part is not taken.
+  void Assign(const std::string& name, pugi::xml_node node, Part* part) const {
     const auto found = index_of_.find(name);
     if (found == index_of_.end()) {
       source_.Fail(node, "there is no material " + Quoted(name), "materials of the model: " + Names());
+    } else if (part == nullptr) {
+      return;
     } else if (model_.materials[found->second].rigid) {
       source_.Tell(Notice::Kind::kNotTaken, node,
                    "a rigid body: nodes that it shares with other parts are free, unless a node set holds them");
     } else {
-      part.material = static_cast<std::int32_t>(found->second);
+      part->material = static_cast<std::int32_t>(found->second);
     }
   }
 
@@ -308,10 +319,8 @@ int NodesOf(Shape shape) {
 
 const std::vector<std::int64_t>* FindElements(const Mesh& mesh, const std::string& name) {
   if (const auto set = mesh.element_sets.find(name); set != mesh.element_sets.end()) return &set->second;
-  for (const Part& part : mesh.parts) {
-    if (part.name == name) return &part.ids;
-  }
-  return nullptr;
+  const auto part = mesh.part_index.find(name);
+  return part == mesh.part_index.end() ? nullptr : &mesh.parts[part->second].ids;
 }
 
 void ReadMesh(pugi::xml_node section, bool split_hexahedra, XmlSource& source, Model& model) {
@@ -332,7 +341,7 @@ void ReadMeshDomains(pugi::xml_node section, XmlSource& source, Model& model) {
     }
     const auto part = parts.find(name);
     seen.insert(name);
-    if (part != parts.end() && !material.empty()) materials.Assign(material, node, *part->second);
+    if (!material.empty()) materials.Assign(material, node, part == parts.end() ? nullptr : part->second);
     const std::string_view kind = node.attribute("type").value();
     if (!kind.empty() && kind != "elastic-solid") {
       source.Tell(Notice::Kind::kSetting, node, "the elements are fascicle's own, not " + Quoted(kind));
@@ -342,7 +351,7 @@ void ReadMeshDomains(pugi::xml_node section, XmlSource& source, Model& model) {
     if (seen.contains(part.name)) continue;
     const std::string material = part.node.attribute("mat").value();
     if (!material.empty()) {
-      materials.Assign(material, part.node, part);
+      materials.Assign(material, part.node, &part);
     } else {
       source.Fail(part.node, "no SolidDomain gives this part a material", "add one of its name to MeshDomains");
     }

@@ -1,4 +1,5 @@
 // Supports and loads of the bodies.
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <set>

@@ -1,4 +1,5 @@
 // Laws, density, activation and fibres of a body.
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
 #include <cstdio>

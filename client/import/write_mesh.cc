@@ -35,7 +35,7 @@ bool TellOfInverted(const Model& model, const Tetrahedra& all, const TetMesh& me
     const std::pair element(all.part[t], all.element[t]);
     if (element == last) continue;
     last = element;
-    if (++found > kExamples) continue;
+    if (++found > kExamples || source.failures() > 4 * kExamples) continue;
     source.Fail(ElementNode(model, all, t), "the element is inverted or flat", "mesh the body again");
   }
   if (found > kExamples) {

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/shapes.h"
+
 // Writes models as FEBio reads them, version 3.0 and 4.0, for tests: of the reference problems among others.
 namespace fascicle::testing {
 
@@ -144,6 +146,16 @@ inline std::optional<nlohmann::json> ReadReference(const std::string& name) {
   std::ifstream file(ReferenceFolder() + "/febio/" + name + ".json");
   if (!file) return std::nullopt;
   return nlohmann::json::parse(file);
+}
+
+// The box of the reference problems, with x fastest and hexahedra split around one diagonal.
+inline FebMesh Box(const Vec3& size, const std::array<int, 3>& divisions) {
+  const TetMesh box = MakeBox(Vec3::Zero(), size, divisions);
+  FebMesh mesh;
+  mesh.type = "tet4";
+  for (const Vec3& x : box.nodes) mesh.nodes.push_back({x[0], x[1], x[2]});
+  for (const Tetrahedron& t : box.tetrahedra) mesh.elements.push_back({t[0], t[1], t[2], t[3]});
+  return mesh;
 }
 
 // The mesh of a result with every node.

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "child_process.h"
-#include "core/geometry/shapes.h"
 #include "feb_writer.h"
 
 namespace fascicle::testing {
@@ -15,16 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using ::testing::HasSubstr;
-
-// The box of the reference problems, with x fastest and hexahedra split around one diagonal.
-FebMesh Box(const Vec3& size, const std::array<int, 3>& divisions) {
-  const TetMesh box = MakeBox(Vec3::Zero(), size, divisions);
-  FebMesh mesh;
-  mesh.type = "tet4";
-  for (const Vec3& x : box.nodes) mesh.nodes.push_back({x[0], x[1], x[2]});
-  for (const Tetrahedron& t : box.tetrahedra) mesh.elements.push_back({t[0], t[1], t[2], t[3]});
-  return mesh;
-}
 
 // Problem b between symmetry planes: 10 mm, stretched by half.
 FebWriter StretchedCube(const std::string& version) {

@@ -104,7 +104,7 @@ inline constexpr const char* kRichModel = R"(<febio_spec version="3.0">
     </Nodes>
     <Elements type="hex8" name="belly"><elem id="1">1,2,3,4,5,6,7,8</elem></Elements>
     <Elements type="penta6" name="end"><elem id="2">2,9,3,6,10,7</elem></Elements>
-    <Elements type="tet4" name="tip"><elem id="3">3,9,10,11</elem></Elements>
+    <Elements type="tet4" name="tip"><elem id="3">3,10,9,11</elem></Elements>
     <NodeSet name="left"><n id="1"/><n id="4"/><n id="5"/><n id="8"/></NodeSet>
     <Surface name="below"><quad4 id="1">1,4,3,2</quad4></Surface>
     <ElementSet name="tendons">2,3</ElementSet>
