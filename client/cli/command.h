@@ -85,6 +85,7 @@ CLI::App* AddCommand(CLI::App& app, const std::string& name, const std::string& 
 void AddRun(CLI::App& app, Context& context);
 void AddSubmit(CLI::App& app, Context& context);
 void AddValidate(CLI::App& app, Context& context);
+void AddImport(CLI::App& app, Context& context);
 void AddWatch(CLI::App& app, Context& context);
 void AddList(CLI::App& app, Context& context);
 void AddShow(CLI::App& app, Context& context);

@@ -38,6 +38,7 @@ int Main(int argc, char** argv) {
   AddRun(app, context);
   AddSubmit(app, context);
   AddValidate(app, context);
+  AddImport(app, context);
   AddWatch(app, context);
   AddList(app, context);
   AddShow(app, context);

@@ -276,6 +276,73 @@ class FieldReader {
   Problems& problems_;
 };
 
+using OrderedJson = nlohmann::ordered_json;
+
+// One value of a field; `index` is negative where the field is not repeated.
+OrderedJson ValueOf(const Message& message, const FieldDescriptor& field, int index);
+
+OrderedJson ObjectOf(const Message& message) {
+  OrderedJson object = OrderedJson::object();
+  const Reflection& reflection = *message.GetReflection();
+  std::vector<const FieldDescriptor*> fields;
+  reflection.ListFields(message, &fields);
+  std::sort(fields.begin(), fields.end(), [](const auto* a, const auto* b) { return a->index() < b->index(); });
+  for (const FieldDescriptor* field : fields) {
+    if (!field->is_repeated()) {
+      object[field->name()] = ValueOf(message, *field, -1);
+      continue;
+    }
+    OrderedJson list = OrderedJson::array();
+    for (int i = 0; i < reflection.FieldSize(message, field); ++i) list.push_back(ValueOf(message, *field, i));
+    object[field->name()] = std::move(list);
+  }
+  return object;
+}
+
+OrderedJson ValueOf(const Message& message, const FieldDescriptor& field, int index) {
+  const Reflection& reflection = *message.GetReflection();
+  const bool one = index < 0;
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      return ObjectOf(one ? reflection.GetMessage(message, &field)
+                          : reflection.GetRepeatedMessage(message, &field, index));
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return one ? reflection.GetDouble(message, &field) : reflection.GetRepeatedDouble(message, &field, index);
+    case FieldDescriptor::CPPTYPE_INT32:
+      return one ? reflection.GetInt32(message, &field) : reflection.GetRepeatedInt32(message, &field, index);
+    case FieldDescriptor::CPPTYPE_INT64:
+      return one ? reflection.GetInt64(message, &field) : reflection.GetRepeatedInt64(message, &field, index);
+    case FieldDescriptor::CPPTYPE_BOOL:
+      return one ? reflection.GetBool(message, &field) : reflection.GetRepeatedBool(message, &field, index);
+    case FieldDescriptor::CPPTYPE_ENUM:
+      return ShortName(one ? *reflection.GetEnum(message, &field)
+                           : *reflection.GetRepeatedEnum(message, &field, index));
+    default:
+      return one ? reflection.GetString(message, &field) : reflection.GetRepeatedString(message, &field, index);
+  }
+}
+
+// Indented, but values without parts of their own side by side.
+void Print(const OrderedJson& value, std::size_t indent, std::string& text) {
+  const auto is_flat = [](const OrderedJson& item) { return !item.is_structured(); };
+  if (!value.is_structured() || std::all_of(value.begin(), value.end(), is_flat)) {
+    std::string line = value.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+    if (!value.is_structured() || value.is_array() || line.size() <= 80) {
+      text += line;
+      return;
+    }
+  }
+  const std::string margin(indent + 2, ' ');
+  text += value.is_array() ? "[" : "{";
+  std::size_t count = 0;
+  for (const auto& [key, item] : value.items()) {
+    text += (count++ > 0 ? ",\n" : "\n") + margin;
+    if (value.is_object()) text += OrderedJson(key).dump() + ": ";
+    Print(item, indent + 2, text);
+  }
+  text += "\n" + std::string(indent, ' ') + (value.is_array() ? "]" : "}");
+}
+
 std::vector<std::string> FieldNames(const Descriptor& type) {
   std::vector<std::string> names;
   for (int i = 0; i < type.field_count(); ++i) names.push_back(type.field(i)->name());
@@ -306,6 +373,12 @@ json ParseJson(std::string_view text, Problems& problems) {
     problems.Add("", "JSON error: " + SyntaxMessage(error.what()));
   }
   return json(json::value_t::discarded);
+}
+
+std::string JsonText(const Message& message) {
+  std::string text;
+  Print(ObjectOf(message), 0, text);
+  return text + "\n";
 }
 
 void ReadMessage(const json& value, Message& message, const std::string& path, Problems& problems) {

@@ -25,6 +25,10 @@ nlohmann::json ParseJson(std::string_view text, Problems& problems);
 void ReadMessage(const nlohmann::json& value, google::protobuf::Message& message, const std::string& path,
                  Problems& problems);
 
+// The scene file of a message: every field that is set, in the order of the proto, enum values by their short names,
+// lists of numbers on one line. Read again it gives the same message.
+std::string JsonText(const google::protobuf::Message& message);
+
 }  // namespace fascicle::client
 
 #endif  // FASCICLE_CLIENT_LIB_SCENE_JSON_H_

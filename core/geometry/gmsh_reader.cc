@@ -10,7 +10,7 @@ namespace fascicle {
 namespace {
 
 // Gmsh's element types.
-constexpr std::int64_t kTriangle3 = 2, kTetrahedron4 = 4, kTriangle6 = 9, kTetrahedron10 = 11;
+constexpr std::int64_t kTriangle3 = 2, kTetrahedron4 = 4, kTriangle6 = 9, kTetrahedron10 = 11, kPoint = 15;
 bool IsHigherTetrahedron(std::int64_t type) { return type >= 29 && type <= 31; }
 
 // Physical tags of version 4's entities, by dimension and tag.
@@ -56,6 +56,9 @@ void AddElement(TextScanner& in, std::int64_t type, std::int64_t tag, RawMesh& r
     for (std::int64_t& node : nodes) node = in.Int("a node number");
     for (int middle = 0; type == kTriangle6 && middle < 3; ++middle) in.Int("a node number");
     raw.triangle_tags.push_back(tag);
+  } else if (type == kPoint) {
+    raw.points.push_back({in.Int("a node number")});
+    raw.point_tags.push_back(tag);
   } else {
     ++(IsHigherTetrahedron(type) ? raw.higher_order : raw.others);
     in.Line();

@@ -80,11 +80,16 @@ void CheckIndices(const TetMesh& mesh, Problems& problems) {
   for (std::size_t t = 0; t < mesh.tagged_triangles.size(); ++t) {
     if (!InRange(mesh.tagged_triangles[t], mesh.nodes.size())) triangles.Add(t);
   }
+  Findings points;
+  for (std::size_t p = 0; p < mesh.tagged_nodes.size(); ++p) {
+    if (!InRange(std::array{mesh.tagged_nodes[p]}, mesh.nodes.size())) points.Add(p);
+  }
   const std::string hint = "the mesh has " + std::to_string(mesh.nodes.size()) + " nodes";
   tetrahedra.Report("tetrahedron names a node that does not exist", "tetrahedra name nodes that do not exist", hint,
                     problems);
   triangles.Report("triangle names a node that does not exist", "triangles name nodes that do not exist", hint,
                    problems);
+  points.Report("point names a node that does not exist", "points name nodes that do not exist", hint, problems);
 }
 
 bool IsDegenerate(const TetMesh& mesh, std::size_t t, double volume) {

@@ -109,7 +109,7 @@ std::vector<std::int32_t> NarrowTags(const std::vector<std::int64_t>& tags, Prob
 void ReportNothingToRead(const RawMesh& raw, Problems& problems) {
   std::string left_out;
   if (raw.higher_order > 0) left_out = std::to_string(raw.higher_order) + " of higher order";
-  const std::size_t rest = raw.others + raw.triangles.size();
+  const std::size_t rest = raw.others + raw.triangles.size() + raw.points.size();
   if (rest > 0) left_out += (left_out.empty() ? "" : " and ") + std::to_string(rest) + " cells of other kinds";
   problems.Add("", "the file has no tetrahedra of four or ten nodes" + (left_out.empty() ? "" : ", but " + left_out),
                raw.higher_order > 0 ? "write the mesh with element order 1, or 2 in the formats of Gmsh and VTK"
@@ -176,6 +176,16 @@ void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, TetMes
     return;
   }
   renumber(mesh.tagged_triangles);
+  // The middle of an edge belongs to a part of the mesh when both of its ends do.
+  std::size_t kept = 0;
+  for (std::size_t p = 0; p < mesh.tagged_nodes.size(); ++p) {
+    const std::int32_t node = number[mesh.tagged_nodes[p]];
+    if (node < 0) continue;
+    mesh.tagged_nodes[kept] = node;
+    mesh.node_tags[kept++] = mesh.node_tags[p];
+  }
+  mesh.tagged_nodes.resize(kept);
+  mesh.node_tags.resize(kept);
 }
 
 std::optional<TetMesh> Finish(RawMesh raw, Problems& problems) {
@@ -196,6 +206,12 @@ std::optional<TetMesh> Finish(RawMesh raw, Problems& problems) {
   mesh.tetrahedron_tags = NarrowTags(raw.tetrahedron_tags, problems);
   mesh.triangle_tags = NarrowTags(raw.triangle_tags, problems);
   if (mesh.triangle_tags.empty()) mesh.tagged_triangles.clear();
+  std::vector<std::array<std::int32_t, 1>> points;
+  FindNodes(finder, raw.points, points, "points", problems);
+  mesh.node_tags = NarrowTags(raw.point_tags, problems);
+  if (!mesh.node_tags.empty()) {
+    for (const auto& [node] : points) mesh.tagged_nodes.push_back(node);
+  }
   std::vector<std::array<std::int32_t, 6>> middles;
   if (!raw.middles.empty() && raw.middles.size() != raw.tetrahedra.size()) {
     problems.Add("", "the file mixes tetrahedra of four and of ten nodes", "write the mesh with one element order");

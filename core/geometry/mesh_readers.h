@@ -25,8 +25,10 @@ struct RawMesh {
   std::vector<std::int64_t> tetrahedron_tags;  // as many as tetrahedra, 0 where there is none
   std::vector<std::array<std::int64_t, 3>> triangles;
   std::vector<std::int64_t> triangle_tags;  // as many as triangles
-  std::size_t higher_order = 0;             // tetrahedra of more than ten nodes, left out
-  std::size_t others = 0;                   // cells of other kinds, left out
+  std::vector<std::array<std::int64_t, 1>> points;
+  std::vector<std::int64_t> point_tags;  // as many as points
+  std::size_t higher_order = 0;          // tetrahedra of more than ten nodes, left out
+  std::size_t others = 0;                // cells of other kinds, left out
 };
 
 // Each adds to `problems` what is malformed and then gives something to be thrown away.

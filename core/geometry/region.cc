@@ -70,6 +70,7 @@ struct Select {
     for (std::size_t t = 0; t < mesh.tetrahedron_tags.size(); ++t) {
       if (mesh.tetrahedron_tags[t] == selector.tag) region.tetrahedra.push_back(static_cast<std::int32_t>(t));
     }
+    if (chosen.empty() && region.tetrahedra.empty()) return SelectTaggedNodes(selector.tag);
     if (chosen.empty()) {
       for (const std::int32_t t : region.tetrahedra) {
         AddNodes(mesh.tetrahedra[t], region);
@@ -80,6 +81,19 @@ struct Select {
     std::sort(chosen.begin(), chosen.end());
     for (const Triangle& triangle : surface) {
       if (std::binary_search(chosen.begin(), chosen.end(), Ascending(triangle))) region.triangles.push_back(triangle);
+    }
+  }
+
+  void SelectTaggedNodes(std::int32_t tag) const {
+    std::vector<char> chosen(mesh.nodes.size());
+    for (std::size_t p = 0; p < mesh.node_tags.size(); ++p) {
+      if (mesh.node_tags[p] != tag) continue;
+      region.nodes.push_back(mesh.tagged_nodes[p]);
+      chosen[mesh.tagged_nodes[p]] = 1;
+    }
+    SortNodes(region);
+    for (const Triangle& triangle : surface) {
+      if (chosen[triangle[0]] && chosen[triangle[1]] && chosen[triangle[2]]) region.triangles.push_back(triangle);
     }
   }
 

@@ -41,9 +41,10 @@ struct Region {
 };
 
 // Selects what a selector names; may be empty. Tag: the triangles with the tag, and if there are none the tetrahedra
-// with it; triangles inside of the body give nodes only. Tetrahedra are those with the tag in any case. Side: triangles
-// whose outward normal is within the angle. Round-off allowance of plane, box and sphere: 1e-9 of the mesh's diagonal;
-// of the angle: 1e-9 rad. `surface` must be BoundaryTriangles(mesh).
+// with it, and if there are none of these either the nodes with it and the surface between them; triangles inside of
+// the body give nodes only. Tetrahedra are those with the tag in any case. Side: triangles whose outward normal is
+// within the angle. Round-off allowance of plane, box and sphere: 1e-9 of the mesh's diagonal; of the angle: 1e-9 rad.
+// `surface` must be BoundaryTriangles(mesh).
 Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name,
                     const Selector& selector);
 

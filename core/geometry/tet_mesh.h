@@ -28,6 +28,8 @@ struct TetMesh {
   std::vector<std::int32_t> tetrahedron_tags;  // physical tag of each tetrahedron; empty when the file has none
   std::vector<Triangle> tagged_triangles;      // triangles listed in the file, in its own orientation
   std::vector<std::int32_t> triangle_tags;     // physical tag of each of them
+  std::vector<std::int32_t> tagged_nodes;      // nodes that the file lists by themselves
+  std::vector<std::int32_t> node_tags;         // physical tag of each of them
   std::vector<CurvedEdge> curved_edges;        // for quadratic elements; all other edges are straight
 };
 

@@ -9,7 +9,8 @@ namespace fascicle {
 namespace {
 
 constexpr std::int32_t kNone = -1;
-// A coupling counts as strong above that part of the geometric mean of its two diagonal blocks.
+// A coupling of nodes counts as strong above that part of the geometric mean of its two diagonal blocks; of aggregates,
+// which are round already, any does.
 constexpr double kStrong = 0.02;
 
 // Points that move: a block each on the finest level, a translation with its rotation on all others.
@@ -36,7 +37,7 @@ std::vector<std::vector<std::int32_t>> StrongNeighbours(const BlockPattern& patt
     for (std::int32_t k = pattern.begin[i]; k < pattern.begin[i + 1]; ++k) {
       const std::size_t j = pattern.column[k];
       if (j == i || j % points.blocks_each != 0) continue;
-      if (values[k].norm() > kStrong * std::sqrt(diagonal[i] * diagonal[j])) {
+      if (points.blocks_each > 1 || values[k].norm() > kStrong * std::sqrt(diagonal[i] * diagonal[j])) {
         neighbours[p].push_back(static_cast<std::int32_t>(j / points.blocks_each));
       }
     }

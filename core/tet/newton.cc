@@ -29,7 +29,8 @@ bool AllUpright(const TetModel& model, const NodalVector& x) {
 
 }  // namespace
 
-NewtonSolver::NewtonSolver(const TetModel& model, ThreadTeam& team) : model_(model), team_(team), system_(model) {}
+NewtonSolver::NewtonSolver(const TetModel& model, ThreadTeam& team, Profile* profile)
+    : model_(model), team_(team), system_(model, profile) {}
 
 NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const NodalVector& target,
                                  const NewtonOptions& options, NodalVector& x, std::vector<double>& pressure) {

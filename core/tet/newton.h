@@ -34,8 +34,8 @@ struct NewtonResult {
 // brought in order with UntanglingLaw. One thread at a time.
 class NewtonSolver {
  public:
-  // Model and team must outlive the solver.
-  NewtonSolver(const TetModel& model, ThreadTeam& team);
+  // Model, team and profile must outlive the solver. Stages are timed in `profile` where there is one.
+  NewtonSolver(const TetModel& model, ThreadTeam& team, Profile* profile = nullptr);
 
   // x is where to start and the result; its prescribed components go to those of `target`. `pressure` likewise (one for
   // each patch). On anything but kConverged both are where the iteration ended.

@@ -35,7 +35,7 @@ double ForceFloor(const TetModel& model) {
 
 }  // namespace
 
-NewtonSystem::NewtonSystem(const TetModel& model) : model_(model), assembly_(model), force_floor_(ForceFloor(model)) {
+NewtonSystem::NewtonSystem(const TetModel& model, Profile* profile) : model_(model), profile_(profile), assembly_(model), force_floor_(ForceFloor(model)) {
   unknowns_ = model.patches().size();
   for (const auto& free : assembly_.matrix().free) unknowns_ += std::count(free.begin(), free.end(), true);
   const LinearSolver choice = model.scene().method.linear_solver;
@@ -59,6 +59,7 @@ void NewtonSystem::StartStep() {
 NewtonSystem::Evaluation NewtonSystem::Evaluate(const IncrementalPotential& potential, const NodalVector& x,
                                                 std::span<const double> pressure, ThreadTeam& team,
                                                 NodalVector& force) {
+  const StageTimer timer(profile_, "evaluation");
   forces_.element_forces.resize(model_.nodes_per_element() * model_.tetrahedra());
   const bool patches_valid = UpdatePatches(model_, x, team, forces_);
   Smooth(potential, pressure);
@@ -157,6 +158,7 @@ bool NewtonSystem::FindStep(const IncrementalPotential& potential, const NodalVe
 void NewtonSystem::Assemble(const IncrementalPotential& potential, const NodalVector& x,
                             std::span<const double> pressure, const NodalVector& force, const NodalVector& prescribed,
                             ThreadTeam& team) {
+  const StageTimer timer(profile_, "assembly");
   const VolumePatches& patches = model_.patches();
   Smooth(potential, pressure);
   assembly_.Assemble(potential, x, acting_, forces_.ratio, team);
@@ -180,6 +182,7 @@ void NewtonSystem::Assemble(const IncrementalPotential& potential, const NodalVe
 // Moves the matrix to another part of the projection.
 void NewtonSystem::Project(const IncrementalPotential& potential, const NodalVector& x, double projection,
                            const NodalVector& prescribed, ThreadTeam& team) {
+  const StageTimer timer(profile_, "projection");
   SaddleMatrix& matrix = assembly_.matrix();
   const BlockValues& whole = assembly_.projection();
   if (!has_projected_) {
@@ -208,6 +211,7 @@ bool NewtonSystem::Solve(double tolerance, ThreadTeam& team, NodalVector& dx, st
   const SaddleMatrix& matrix = assembly_.matrix();
   if (is_iterative_) {
     if (!iterative_) iterative_ = std::make_unique<IterativeSaddleSolver>(model_, matrix);
+    const StageTimer timer(profile_, "iterative solve");
     const auto result = iterative_->Solve(matrix, side_, volume_side_, tolerance, team, dx, dp);
     ++solves_.iterative;
     solves_.iterations += result.iterations;
@@ -216,6 +220,7 @@ bool NewtonSystem::Solve(double tolerance, ThreadTeam& team, NodalVector& dx, st
     if (!result.is_minimum && projection_ < 1) return false;
     is_iterative_ = ++solves_.not_converged < kMostFailures;
   }
+  const StageTimer timer(profile_, "direct solve");
   ++solves_.direct;
   if (!direct_) direct_ = std::make_unique<DirectSaddleSolver>(matrix);
   if (!direct_->Factor(matrix)) return false;

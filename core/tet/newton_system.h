@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_TET_NEWTON_SYSTEM_H_
 #define FASCICLE_CORE_TET_NEWTON_SYSTEM_H_
 
+#include "core/base/profile.h"
 #include "core/tet/saddle_solvers.h"
 
 namespace fascicle {
@@ -22,8 +23,8 @@ struct LinearSolves {
 // stiff volume energy's detours. All bits are the same for any number of threads.
 class NewtonSystem {
  public:
-  // Finds the pattern; the model must outlive the system.
-  explicit NewtonSystem(const TetModel& model);
+  // Finds the pattern; model and profile must outlive the system.
+  explicit NewtonSystem(const TetModel& model, Profile* profile = nullptr);
 
   // Force f on all nodes (unknown and prescribed) and the merit function's parts at x with pressures p.
   struct Evaluation {
@@ -69,6 +70,7 @@ class NewtonSystem {
   void Smooth(const IncrementalPotential& potential, std::span<const double> pressure);
 
   const TetModel& model_;
+  Profile* const profile_;
   SaddleAssembly assembly_;
   // The first that is needed of each.
   std::unique_ptr<DirectSaddleSolver> direct_;

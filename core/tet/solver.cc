@@ -31,7 +31,7 @@ TetSolver::TetSolver(const TetModel& model, ThreadTeam& team, Profile* profile)
     : model_(model), team_(team), profile_(profile), method_(model.scene().method) {
   if (!IsImplicit()) return;
   const StageTimer timer(profile_, "matrix pattern");
-  newton_ = std::make_unique<NewtonSolver>(model, team);
+  newton_ = std::make_unique<NewtonSolver>(model, team, profile);
 }
 
 TetState TetSolver::InitialState() {

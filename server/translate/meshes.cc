@@ -48,6 +48,7 @@ bool IsAddressable(const TetMesh& mesh) {
   };
   return !mesh.tetrahedra.empty() && std::all_of(mesh.tetrahedra.begin(), mesh.tetrahedra.end(), in_range) &&
          std::all_of(mesh.tagged_triangles.begin(), mesh.tagged_triangles.end(), in_range) &&
+         in_range(mesh.tagged_nodes) &&
          std::all_of(mesh.nodes.begin(), mesh.nodes.end(), [](const Vec3& x) { return x.allFinite(); });
 }
 

@@ -55,6 +55,7 @@ std::optional<Selector> TranslateSelector(const v1::Region& region, double metre
 std::string TagHint(const TetMesh& mesh, bool from_file) {
   std::set<std::int32_t> tags(mesh.triangle_tags.begin(), mesh.triangle_tags.end());
   tags.insert(mesh.tetrahedron_tags.begin(), mesh.tetrahedron_tags.end());
+  tags.insert(mesh.node_tags.begin(), mesh.node_tags.end());
   if (!from_file) return "built-in shapes have no tags; select by plane, box, sphere or side";
   if (tags.empty()) return "the mesh file has no tags; select by plane, box, sphere or side";
   constexpr std::size_t kMaxListed = 20;

@@ -68,9 +68,11 @@ const std::map<std::string, std::set<std::string>>& AllowedRooms() {
       {"server", {"core/base", "server/jobs", "server/store", "server/translate", "server/rpc"}},
       {"client/lib", {"core/base", "fascicle/v1", "google/rpc", "proto/rules"}},
       {"client/export", {"core/base", "client/lib", "fascicle/v1"}},
+      {"client/import", {"core/base", "core/geometry", "fascicle/v1", "proto/rules"}},
       {"client/render", {"core/base", "client/lib", "fascicle/v1"}},
       {"client/cli",
-       {"core/base", "core/materials", "client/lib", "client/export", "client/render", "fascicle/v1", "proto/rules"}},
+       {"core/base", "core/materials", "client/lib", "client/import", "client/export", "client/render", "fascicle/v1",
+        "proto/rules"}},
   };
   return allowed;
 }

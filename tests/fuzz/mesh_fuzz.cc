@@ -21,6 +21,8 @@ void CheckConsistent(const TetMesh& mesh) {
     for (const std::int32_t n : triangle) check_node(n);
   }
   FASCICLE_CHECK(mesh.tetrahedron_tags.empty() || mesh.tetrahedron_tags.size() == mesh.tetrahedra.size(), "tags");
+  for (const std::int32_t n : mesh.tagged_nodes) check_node(n);
+  FASCICLE_CHECK(mesh.node_tags.size() == mesh.tagged_nodes.size(), "node tags");
   FASCICLE_CHECK(mesh.triangle_tags.size() == mesh.tagged_triangles.size(), "triangle tags");
 }
 

@@ -147,6 +147,27 @@ TEST_F(TagRegionTest, TrianglesAreTurnedOutward) {
   EXPECT_EQ(region.triangles, (std::vector<Triangle>{{0, 3, 2}}));
 }
 
+// Points by themselves, in both versions: their nodes, and the surface between them.
+TEST_F(TagRegionTest, PointsGiveNodesAndTheSurfaceBetweenThem) {
+  Problems problems;
+  const std::string three = Replaced(kGmsh2, "4\n1 15 2 0 1 1\n", "6\n1 15 2 9 1 1\n5 15 2 9 1 3\n6 15 2 9 1 4\n");
+  mesh_ = ReadMesh({"m.msh", three, ""}, problems).value_or(TetMesh());
+  ASSERT_TRUE(problems.empty()) << problems.ToString();
+  const Region region = Select(9);
+  EXPECT_EQ(region.nodes, (std::vector<std::int32_t>{0, 2, 3}));
+  EXPECT_EQ(region.triangles, (std::vector<Triangle>{{0, 3, 2}}));
+  EXPECT_TRUE(region.tetrahedra.empty());
+  const std::string one = Replaced(kGmsh4, "1 0 0 0 0\n", "1 0 0 0 1 9\n");
+  mesh_ = ReadMesh({"m.msh", one, ""}, problems).value_or(TetMesh());
+  ASSERT_TRUE(problems.empty()) << problems.ToString();
+  EXPECT_EQ(Select(9).nodes.size(), 1u);
+  EXPECT_EQ(Select(7).triangles.size(), 1u) << "triangles stay as they are";
+  const std::string missing = Replaced(kGmsh2, "1 15 2 0 1 1", "1 15 2 9 1 8");
+  EXPECT_FALSE(ReadMesh({"m.msh", missing, ""}, problems).has_value());
+  EXPECT_NE(problems.ToString().find("1 points name nodes that do not exist"), std::string::npos)
+      << problems.ToString();
+}
+
 TEST_F(TagRegionTest, TetrahedraGiveNodesAndTheirPartOfTheSurface) {
   const Region region = Select(20);
   EXPECT_EQ(region.nodes, (std::vector<std::int32_t>{1, 2, 3, 4}));

@@ -1,0 +1,166 @@
+#ifndef FASCICLE_CLIENT_IMPORT_MODEL_H_
+#define FASCICLE_CLIENT_IMPORT_MODEL_H_
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <pugixml.hpp>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "client/import/units.h"
+#include "client/import/xml_source.h"
+#include "core/base/types.h"
+#include "core/geometry/tet_mesh.h"
+
+namespace fascicle::client {
+
+// A FEBio model as far as it can become a scene, in its own units. Plain data; sections.h fills it.
+
+enum class Shape { kTet4, kTet10, kHex8, kPenta6, kPyra5 };
+int NodesOf(Shape shape);
+
+// An <Elements> section.
+struct Part {
+  std::string name;
+  pugi::xml_node node;
+  Shape shape = Shape::kTet4;
+  std::vector<std::int64_t> ids;
+  std::vector<std::int32_t> nodes;  // indices, NodesOf(shape) for each element
+  std::int32_t material = -1;       // index, or -1 when the part is not taken
+  std::size_t size() const { return ids.size(); }
+};
+
+struct NodeSet {
+  std::vector<std::int32_t> nodes;  // indices
+  pugi::xml_node node;
+};
+
+struct Facet {
+  int corners = 3;                   // 3 or 4
+  std::array<std::int32_t, 4> node;  // indices, in order around the facet
+};
+
+struct Surface {
+  std::vector<Facet> facets;
+  std::vector<std::int32_t> middles;  // nodes in the middle of edges
+  pugi::xml_node node;
+};
+
+struct Mesh {
+  std::vector<Vec3> nodes;
+  std::vector<std::int64_t> ids;
+  std::unordered_map<std::int64_t, std::int32_t> index_of;
+  std::vector<Part> parts;
+  std::set<std::string> part_names;                         // of all <Elements>, also those that are not taken
+  std::unordered_map<std::string, std::size_t> part_index;  // of those in `parts`, by name
+  // Index of the part and place in it of an element, by its id.
+  std::unordered_map<std::int64_t, std::pair<std::int32_t, std::int32_t>> element_index;
+  std::map<std::string, NodeSet> node_sets;
+  std::map<std::string, Surface> surfaces;
+  std::map<std::string, std::vector<std::int64_t>> element_sets;  // element ids
+};
+
+// A right-handed frame of orthonormal axes, given or by three nodes of each element.
+struct Axes {
+  Mat3 given = Mat3::Identity();
+  std::optional<std::array<int, 3>> local;  // counted from 0
+  pugi::xml_node node;
+};
+
+// Where a material's fibres point in its axes.
+struct FibreSource {
+  enum class Kind { kVector, kLocal, kMap };
+  Kind kind = Kind::kVector;
+  Vec3 vector = Vec3::UnitX();
+  std::array<int, 2> local = {0, 1};  // counted from 0
+  std::string map;
+  pugi::xml_node node;
+};
+
+struct ImportedMaterial {
+  std::string name;
+  std::int64_t id = 0;
+  pugi::xml_node node;
+  bool rigid = false;
+  v1::Material law;  // in SI
+  bool needs_fibres = false;
+  FibreSource fibre;
+  std::vector<Axes> axes;  // outer to inner
+  double density = 0;      // [kg/m^3]; 0 when not given
+  // Activation of the law in [0, 1]: this number, driven.
+  std::optional<Driven> activation;
+};
+
+struct LoadCurve {
+  enum class Interpolation { kLinear, kStep, kSmooth, kSmoothStep };
+  enum class Extension { kConstant, kExtrapolate, kOther };
+  std::vector<double> times, values;
+  Interpolation interpolation = Interpolation::kLinear;
+  Extension extension = Extension::kConstant;
+  std::string refused;  // why it can't be taken; empty when it can
+  pugi::xml_node node;
+};
+
+// A displacement of a set of nodes along one axis; held when there is no motion.
+struct Support {
+  std::string set;
+  int axis = 0;
+  std::optional<Driven> motion;
+  pugi::xml_node node;
+};
+
+struct NodalForces {
+  std::string set;
+  Vec3 each = Vec3::Zero();  // on each node
+  std::optional<std::int64_t> controller;
+  pugi::xml_node node;
+};
+
+struct SurfaceLoad {
+  std::string surface;
+  Vec3 traction = Vec3::Zero();
+  double pressure = 0;  // against the outward normal
+  std::optional<std::int64_t> controller;
+  pugi::xml_node node;
+};
+
+struct BodyForce {
+  Vec3 acceleration = Vec3::Zero();
+  std::optional<std::int64_t> controller;
+  pugi::xml_node node;
+};
+
+struct Control {
+  bool dynamic = false;
+  double steps = 0, step_size = 0, stride = 1;
+  pugi::xml_node node;
+};
+
+// A direction, or a frame, for each element of a set.
+struct ElementData {
+  std::unordered_map<std::int64_t, Vec3> fibres;  // by element id
+  std::unordered_map<std::int64_t, Mat3> axes;
+  std::map<std::string, std::unordered_map<std::int64_t, Vec3>> maps;  // by name
+};
+
+struct Model {
+  UnitSystem units;
+  std::string version;
+  Control control;
+  Mesh mesh;
+  std::vector<ImportedMaterial> materials;
+  ElementData data;
+  std::map<std::int64_t, LoadCurve> curves;
+  std::vector<Support> supports;
+  std::vector<NodalForces> nodal_forces;
+  std::vector<SurfaceLoad> surface_loads;
+  std::vector<BodyForce> body_forces;
+};
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_IMPORT_MODEL_H_

@@ -1,0 +1,381 @@
+// <Material>: laws that fascicle has too, parameter by parameter [FEBio Feature Manual, materials].
+//
+//   FEBio                                                      scene
+//   neo-Hookean                                                neo_hookean
+//   isotropic elastic, St.Venant-Kirchhoff                     st_venant_kirchhoff
+//   Mooney-Rivlin; incomp neo-Hookean (c1 = G/2)               mooney_rivlin
+//   trans iso Mooney-Rivlin                                    trans_iso_mooney_rivlin
+//   uncoupled solid mixture of Mooney-Rivlin and
+//     muscle material with g1 = g2 = g3 = 0                    muscle
+//     tendon material with g1 = g2 = 0                         tendon
+//     uncoupled fiber-exp-linear                               trans_iso_mooney_rivlin
+//   ... and of these with a fibre of Mooney-Rivlin type and
+//     uncoupled prescribed uniaxial active contraction         trans_iso_mooney_rivlin with active_stress
+//
+// Muscle and tendon material by themselves shear by the invariants B1 and B2 [Blemker 2005], which no law here does.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "client/import/sections.h"
+#include "core/geometry/text_scanner.h"
+
+namespace fascicle::client {
+namespace {
+
+constexpr const char* kKnown =
+    "taken are neo-Hookean, isotropic elastic, St.Venant-Kirchhoff, Mooney-Rivlin, incomp neo-Hookean, trans iso "
+    "Mooney-Rivlin, and uncoupled solid mixtures of Mooney-Rivlin with muscle material, tendon material, uncoupled "
+    "fiber-exp-linear or uncoupled prescribed uniaxial active contraction";
+
+// The parameters of one material or solid, each taken once.
+class Parameters {
+ public:
+  Parameters(pugi::xml_node node, XmlSource& source) : node_(node), source_(source) { source.Take(node); }
+
+  pugi::xml_node node() const { return node_; }
+
+  double Get(const char* name) {
+    const pugi::xml_node child = node_.child(name);
+    if (!child) {
+      source_.Fail(node_, "has no " + std::string(name), "give <" + std::string(name) + ">");
+      return 0;
+    }
+    return Value(child);
+  }
+  double GetOr(const char* name, double standard) {
+    const pugi::xml_node child = node_.child(name);
+    return child ? Value(child) : standard;
+  }
+  std::optional<Driven> GetDriven(const char* name) {
+    const pugi::xml_node child = node_.child(name);
+    return child ? std::optional(source_.DrivenNumber(child)) : std::nullopt;
+  }
+  // The first of two names that is there, as a parameter was named differently in different versions.
+  const char* Either(const char* first, const char* second) const { return node_.child(first) ? first : second; }
+
+ private:
+  double Value(pugi::xml_node child) {
+    const Driven driven = source_.DrivenNumber(child);
+    if (driven.controller) {
+      source_.Fail(child, "changes in time", "laws have constant parameters; remove lc");
+    }
+    return driven.value;
+  }
+
+  pugi::xml_node node_;
+  XmlSource& source_;
+};
+
+struct MooneyRivlinPart {
+  double c1 = 0, c2 = 0;
+};
+
+class MaterialReader {
+ public:
+  MaterialReader(pugi::xml_node node, XmlSource& source, const UnitSystem& units, ImportedMaterial& material)
+      : node_(node), source_(source), units_(units), material_(material) {}
+
+  void Read(const std::string& type) {
+    ReadCommon(node_);
+    if (type == "rigid body") {
+      material_.rigid = true;
+      source_.TakeAll(node_);
+    } else if (type == "neo-Hookean") {
+      ReadIsotropic(*material_.law.mutable_neo_hookean());
+    } else if (type == "isotropic elastic" || type == "St.Venant-Kirchhoff") {
+      ReadIsotropic(*material_.law.mutable_st_venant_kirchhoff());
+    } else if (type == "Mooney-Rivlin" || type == "incomp neo-Hookean") {
+      Parameters parameters(node_, source_);
+      const MooneyRivlinPart matrix = ReadMatrix(type, parameters);
+      SetMooneyRivlin(matrix, BulkModulus(parameters));
+    } else if (type == "trans iso Mooney-Rivlin") {
+      ReadTransIso();
+    } else if (type == "uncoupled solid mixture") {
+      ReadMixture();
+    } else {
+      Refuse(type);
+    }
+  }
+
+ private:
+  double Stress(double value) const { return value * units_.pascal; }
+
+  // What any material may have.
+  void ReadCommon(pugi::xml_node node) {
+    if (const pugi::xml_node density = node.child("density")) {
+      const Driven driven = source_.DrivenNumber(density);
+      if (driven.value < 0) source_.Fail(density, "is negative");
+      if (driven.value > 0) material_.density = driven.value * units_.density;
+    }
+    if (const pugi::xml_node axes = node.child("mat_axis")) {
+      if (const auto read = ReadAxes(axes, source_)) material_.axes.push_back(*read);
+    }
+    for (const char* name : {"laugon", "atol", "minaug", "maxaug"}) {
+      if (const pugi::xml_node child = node.child(name)) {
+        source_.Tell(Notice::Kind::kSetting, child, "volumes are kept by K alone, without augmentation");
+      }
+    }
+    if (const pugi::xml_node model = node.child("pressure_model")) {
+      const std::string text = source_.Text(model);
+      if (text != "0" && text != "default") {
+        source_.Fail(model, "the volume energy " + Quoted(text) + " is not taken",
+                     "fascicle has K/2 (ln J)^2, model 0");
+      }
+    }
+  }
+
+  void ReadFibreOf(pugi::xml_node node) {
+    material_.needs_fibres = true;
+    if (const pugi::xml_node fibre = node.child("fiber")) {
+      if (const auto read = ReadFibre(fibre, source_)) material_.fibre = *read;
+    }
+  }
+
+  template <class Law>
+  void ReadIsotropic(Law& law) {
+    Parameters parameters(node_, source_);
+    law.set_young_modulus(Stress(parameters.Get("E")));
+    law.set_poisson_ratio(parameters.Get("v"));
+  }
+
+  static MooneyRivlinPart ReadMatrix(const std::string& type, Parameters& parameters) {
+    if (type == "incomp neo-Hookean") return {0.5 * parameters.Get("G"), 0};
+    return {parameters.Get("c1"), parameters.GetOr("c2", 0)};
+  }
+
+  // Of solids in a mixture only some have one.
+  static double BulkModulus(Parameters& parameters) { return parameters.Get("k"); }
+
+  void SetMooneyRivlin(const MooneyRivlinPart& matrix, double bulk) {
+    v1::MooneyRivlin& law = *material_.law.mutable_mooney_rivlin();
+    law.set_c1(Stress(matrix.c1));
+    law.set_c2(Stress(matrix.c2));
+    law.set_bulk_modulus(Stress(bulk));
+  }
+
+  // Fibres of `fibre`; where it has none, the law is that of the matrix alone.
+  void SetTransIso(const MooneyRivlinPart& matrix, double bulk, Parameters& fibre, const char* lam_max) {
+    const double c5 = fibre.GetOr("c5", 0), c4 = fibre.GetOr("c4", 0);
+    double c3 = fibre.GetOr("c3", 0);
+    if (c3 == 0 && c5 == 0) return SetMooneyRivlin(matrix, bulk);
+    const double transition = fibre.Get(lam_max);
+    // FEBio's rule where the scale is not given: no kink at lam_max.
+    if (c3 == 0 && c4 > 0) c3 = c5 / c4 * std::exp(-c4 * (transition - 1));
+    v1::TransIsoMooneyRivlin& law = *material_.law.mutable_trans_iso_mooney_rivlin();
+    law.set_c1(Stress(matrix.c1));
+    law.set_c2(Stress(matrix.c2));
+    law.set_c3(Stress(c3));
+    law.set_c4(c4);
+    law.set_c5(Stress(c5));
+    law.set_lam_max(transition);
+    law.set_bulk_modulus(Stress(bulk));
+    ReadFibreOf(fibre.node());
+  }
+
+  void ReadTransIso() {
+    Parameters parameters(node_, source_);
+    const MooneyRivlinPart matrix = ReadMatrix("Mooney-Rivlin", parameters);
+    SetTransIso(matrix, BulkModulus(parameters), parameters, "lam_max");
+    if (const pugi::xml_node fibre = node_.child("fiber")) source_.TakeAll(fibre);
+    if (const pugi::xml_node active = node_.child("active_contraction")) {
+      source_.Tell(Notice::Kind::kNotTaken, active,
+                   "its stress depends on the length of sarcomeres, which no law here does; the nearest is the "
+                   "active_stress of trans_iso_mooney_rivlin");
+    }
+  }
+
+  // A mixture: a matrix, and perhaps one fibre and one active contraction.
+  void ReadMixture() {
+    source_.Take(node_);
+    std::map<std::string, pugi::xml_node> solids;
+    double bulk_of_solids = 0;
+    bool good = true;
+    for (const pugi::xml_node solid : node_.children("solid")) {
+      source_.Take(solid);
+      const std::string type = Role(source_.Required(solid, "type"));
+      if (type.empty() || !solids.try_emplace(type, solid).second) {
+        source_.Fail(solid, "a mixture with this solid has no counterpart here", kKnown);
+        source_.TakeAll(solid);
+        good = false;
+        continue;
+      }
+      Parameters parameters(solid, source_);
+      bulk_of_solids += parameters.GetOr("k", 0);
+      if (const pugi::xml_node density = solid.child("density")) source_.TakeAll(density);
+      if (const pugi::xml_node model = solid.child("pressure_model")) source_.TakeAll(model);
+    }
+    if (!good) return;
+    Parameters mixture(node_, source_);
+    const double own = mixture.GetOr("k", 0);
+    if (own > 0 && bulk_of_solids > 0) {
+      source_.Tell(Notice::Kind::kChanged, node_.child("k"),
+                   "the bulk modulus is this one, without those of the solids");
+    }
+    MixSolids(solids, own > 0 ? own : bulk_of_solids);
+  }
+
+  // What a solid is in a mixture; empty when it has no place in one.
+  static std::string Role(const std::string& type) {
+    static const std::map<std::string, std::string> roles = {
+        {"Mooney-Rivlin", "matrix"},
+        {"incomp neo-Hookean", "matrix"},
+        {"muscle material", "muscle"},
+        {"tendon material", "tendon"},
+        {"uncoupled fiber-exp-linear", "fibre"},
+        {"trans iso Mooney-Rivlin", "trans iso"},
+        {"uncoupled prescribed uniaxial active contraction", "active"},
+        {"prescribed uniaxial active contraction uncoupled", "active"}};
+    const auto role = roles.find(type);
+    return role == roles.end() ? "" : role->second;
+  }
+
+  void MixSolids(std::map<std::string, pugi::xml_node>& solids, double bulk) {
+    const auto solid = [&](const char* role) {
+      const auto found = solids.find(role);
+      return found == solids.end() ? pugi::xml_node() : found->second;
+    };
+    const pugi::xml_node matrix_node = solid("trans iso") ? solid("trans iso") : solid("matrix");
+    const int fibres = int(bool(solid("muscle"))) + bool(solid("tendon")) + bool(solid("fibre"));
+    const bool is_trans_iso = solid("trans iso") || solid("fibre");
+    if (!matrix_node || fibres > 1 || (solid("trans iso") && (fibres > 0 || solid("matrix"))) ||
+        (solid("active") && !is_trans_iso)) {
+      return source_.Fail(node_, "a mixture of these solids has no counterpart here", kKnown);
+    }
+    if (!(bulk > 0)) return source_.Fail(node_, "has no k", "give <k>, the bulk modulus");
+    Parameters matrix_parameters(matrix_node, source_);
+    const MooneyRivlinPart matrix = ReadMatrix(matrix_node.attribute("type").value(), matrix_parameters);
+    if (solid("muscle")) {
+      MixMuscle(matrix, bulk, solid("muscle"));
+    } else if (solid("tendon")) {
+      MixTendon(matrix, bulk, solid("tendon"));
+    } else if (solid("fibre")) {
+      Parameters fibre(solid("fibre"), source_);
+      SetTransIso(matrix, bulk, fibre, fibre.Either("lam_max", "lambda"));
+      ReadAxesOf(solid("fibre"));
+    } else if (solid("trans iso")) {
+      SetTransIso(matrix, bulk, matrix_parameters, "lam_max");
+      ReadAxesOf(matrix_node);
+    } else {
+      SetMooneyRivlin(matrix, bulk);
+    }
+    if (solid("active")) MixActive(solid("active"));
+  }
+
+  void ReadAxesOf(pugi::xml_node solid) {
+    if (const pugi::xml_node axes = solid.child("mat_axis")) {
+      if (const auto read = ReadAxes(axes, source_)) material_.axes.push_back(*read);
+    }
+  }
+
+  // True when the shear moduli of a solid are all zero: its fibre is all that it adds.
+  bool IsFibreAlone(Parameters& parameters, const char* law) {
+    for (const char* name : {"g1", "g2", "g3"}) {
+      if (parameters.GetOr(name, 0) == 0) continue;
+      source_.Fail(parameters.node().child(name), "the shear energy of Blemker's invariants is not taken",
+                   "set it to 0 and let Mooney-Rivlin resist shear, as the law " + std::string(law) + " does");
+      return false;
+    }
+    return true;
+  }
+
+  void MixMuscle(const MooneyRivlinPart& matrix, double bulk, pugi::xml_node node) {
+    Parameters parameters(node, source_);
+    if (!IsFibreAlone(parameters, "muscle")) return;
+    v1::Muscle& law = *material_.law.mutable_muscle();
+    law.set_c1(Stress(matrix.c1));
+    law.set_c2(Stress(matrix.c2));
+    law.set_bulk_modulus(Stress(bulk));
+    law.set_peak_stress(Stress(parameters.Get("smax")));
+    const double optimal = parameters.Get("Lofl");
+    law.set_optimal_stretch(optimal);
+    law.set_passive_scale(parameters.GetOr("p1", 0));
+    // Without a scale the exponent means nothing, and some files give none.
+    const double exponent = parameters.GetOr("p2", 0);
+    if (law.passive_scale() != 0 || exponent != 0) law.set_passive_exponent(exponent);
+    const double transition = parameters.Get(parameters.Either("lam_max", "lambda"));
+    if (optimal > 0) law.set_passive_transition(transition / optimal);
+    material_.activation = parameters.GetDriven("activation");
+    ReadFibreOf(node);
+    ReadAxesOf(node);
+  }
+
+  void MixTendon(const MooneyRivlinPart& matrix, double bulk, pugi::xml_node node) {
+    Parameters parameters(node, source_);
+    if (!IsFibreAlone(parameters, "tendon")) return;
+    v1::Tendon& law = *material_.law.mutable_tendon();
+    law.set_c1(Stress(matrix.c1));
+    law.set_c2(Stress(matrix.c2));
+    law.set_bulk_modulus(Stress(bulk));
+    law.set_fibre_scale(Stress(parameters.Get("l1")));
+    law.set_fibre_exponent(parameters.Get("l2"));
+    law.set_transition_stretch(parameters.Get(parameters.Either("lam_max", "lambda")));
+    ReadFibreOf(node);
+    ReadAxesOf(node);
+  }
+
+  // T0 along the first material axis, which must be the fibre's; the law's is T0 alpha.
+  void MixActive(pugi::xml_node node) {
+    Parameters parameters(node, source_);
+    std::optional<Driven> stress = parameters.GetDriven("T0");
+    if (!stress) return source_.Fail(node, "has no T0", "give <T0>");
+    if (const pugi::xml_node axes = node.child("mat_axis")) {
+      source_.Fail(axes, "contracts along axes of its own", "only contraction along the fibres is taken: give none");
+    }
+    // Axes of the fibre alone are the ones inside of those of the mixture.
+    const std::size_t of_mixture = node_.child("mat_axis") ? 1 : 0;
+    if (material_.fibre.kind != FibreSource::Kind::kVector || material_.fibre.vector != Vec3::UnitX() ||
+        material_.axes.size() > of_mixture) {
+      source_.Fail(node, "contracts along the first material axis, where the fibres are not",
+                   "point the fibres along 1,0,0 and turn the mixture's mat_axis");
+    }
+    if (!material_.law.has_trans_iso_mooney_rivlin()) {
+      return source_.Fail(node, "contracts a solid whose fibres have no stiffness", "give c3, c4 and c5 of the fibres");
+    }
+    if (stress->value < 0) return source_.Fail(stress->node, "pushes", "give a T0 that is not negative");
+    material_.law.mutable_trans_iso_mooney_rivlin()->set_active_stress(Stress(stress->value));
+    stress->value = 1;
+    material_.activation = stress;
+  }
+
+  void Refuse(const std::string& type) {
+    source_.TakeAll(node_);
+    if (type == "muscle material" || type == "tendon material") {
+      const std::string law = type.substr(0, 6);
+      return source_.Fail(
+          node_, Quoted(type) + " shears by the invariants B1 and B2, which no law here does; the nearest is " + law,
+          "write an uncoupled solid mixture of Mooney-Rivlin and " + type + " with g1 and g2 of 0: that is the law " +
+              law);
+    }
+    source_.Fail(node_, "the material " + Quoted(type) + " is not taken", kKnown);
+  }
+
+  pugi::xml_node node_;
+  XmlSource& source_;
+  const UnitSystem& units_;
+  ImportedMaterial& material_;
+};
+
+}  // namespace
+
+void ReadMaterials(pugi::xml_node section, XmlSource& source, Model& model) {
+  source.Take(section);
+  std::set<std::string> names;
+  for (const pugi::xml_node node : section.children("material")) {
+    source.Take(node);
+    ImportedMaterial& material = model.materials.emplace_back();
+    material.node = node;
+    material.id = source.IntegerAttribute(node, "id").value_or(0);
+    material.name = node.attribute("name").as_string(node.attribute("id").value());
+    if (!names.insert(material.name).second) {
+      source.Fail(node, "there is a material " + Quoted(material.name) + " before this one", "name them uniquely");
+    }
+    const std::string type = source.Required(node, "type");
+    if (!type.empty()) MaterialReader(node, source, model.units, material).Read(type);
+  }
+  if (model.materials.empty()) source.Fail(section, "has no materials");
+}
+
+}  // namespace fascicle::client

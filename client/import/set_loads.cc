@@ -1,0 +1,328 @@
+// Supports and loads of the bodies.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "client/import/body_draft.h"
+#include "core/geometry/text_scanner.h"
+
+namespace fascicle::client {
+namespace {
+
+constexpr double kMaxFactor = 1000, kMaxDisplacement = 10;  // of a scene's curves
+
+// What may be looked up in all: keeps a file with thousands of loads on a large set from taking hours.
+class Budget {
+ public:
+  explicit Budget(XmlSource& source) : source_(source) {}
+  bool Spend(std::size_t items, std::size_t times, pugi::xml_node node) {
+    const double cost = static_cast<double>(items) * static_cast<double>(times);
+    if (cost <= left_) {
+      left_ -= cost;
+      return true;
+    }
+    if (left_ > 0) source_.Fail(node, "there are too many supports and loads on large sets", "join those of one set");
+    left_ = 0;
+    return false;
+  }
+
+ private:
+  XmlSource& source_;
+  double left_ = 5e8;
+};
+
+// What the supports of one node set ask for.
+struct SetSupport {
+  std::string set;
+  std::array<const Support*, 3> axes = {};
+};
+
+bool SameMotion(const Support& a, const Support& b) {
+  if (a.motion.has_value() != b.motion.has_value()) return false;
+  return !a.motion || (a.motion->value == b.motion->value && a.motion->controller == b.motion->controller);
+}
+
+const char* AxisName(int axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
+
+// Supports of the same set together, in the order in which sets come first.
+std::vector<SetSupport> BySet(const std::vector<Support>& supports, XmlSource& source) {
+  std::vector<SetSupport> sets;
+  std::map<std::string, std::size_t> index_of;
+  for (const Support& support : supports) {
+    const auto [found, is_new] = index_of.try_emplace(support.set, sets.size());
+    if (is_new) sets.push_back({support.set, {}});
+    const Support*& place = sets[found->second].axes[static_cast<std::size_t>(support.axis)];
+    if (place != nullptr && !SameMotion(*place, support)) {
+      source.Fail(support.node,
+                  std::string("moves the set along ") + AxisName(support.axis) + " otherwise than line " +
+                      std::to_string(source.LineOf(place->node)) + " does",
+                  "keep one of them");
+      continue;
+    }
+    if (place == nullptr) place = &support;
+  }
+  return sets;
+}
+
+// Tells of nodes that two sets move in different ways.
+class Conflicts {
+ public:
+  Conflicts(const Model& model, XmlSource& source) : model_(model), source_(source) {}
+
+  void Add(const SetSupport& set, const std::vector<std::int32_t>& nodes) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Support* support = set.axes[axis];
+      if (support == nullptr) continue;
+      for (const std::int32_t n : nodes) {
+        const auto [found, is_new] = holder_[axis].try_emplace(n, support);
+        if (is_new || SameMotion(*found->second, *support)) continue;
+        source_.Fail(support->node,
+                     "moves node " + std::to_string(model_.mesh.ids[static_cast<std::size_t>(n)]) + " along " +
+                         AxisName(static_cast<int>(axis)) + " otherwise than line " +
+                         std::to_string(source_.LineOf(found->second->node)) + " does",
+                     "take the node out of one of the sets");
+        break;
+      }
+    }
+  }
+
+ private:
+  const Model& model_;
+  XmlSource& source_;
+  std::array<std::unordered_map<std::int32_t, const Support*>, 3> holder_;
+};
+
+bool HasAny(const BodyDraft& draft, const std::vector<std::int32_t>& nodes) {
+  return std::any_of(nodes.begin(), nodes.end(), [&](std::int32_t n) { return draft.mesh.HasCorner(n); });
+}
+
+void AddConstraint(const SetSupport& set, const std::vector<std::int32_t>& nodes, const Model& model,
+                   CurveMaker& curves, Origins& origins, BodyDraft& draft) {
+  origins[draft.path + "." + IndexPath("constraints", std::size_t(draft.body.constraints_size()))] =
+      (set.axes[0]   ? set.axes[0]
+       : set.axes[1] ? set.axes[1]
+                     : set.axes[2])
+          ->node;
+  v1::Constraint& constraint = *draft.body.add_constraints();
+  constraint.set_region(draft.NodeRegion(set.set, set.set, nodes));
+  const bool all = set.axes[0] && set.axes[1] && set.axes[2];
+  for (int axis = 0; axis < 3; ++axis) {
+    const Support* support = set.axes[static_cast<std::size_t>(axis)];
+    if (support == nullptr) continue;
+    const auto name = static_cast<v1::Axis>(v1::AXIS_X + axis);
+    if (!all) constraint.add_axes(name);
+    if (!support->motion) continue;
+    const Driven& motion = *support->motion;
+    const auto curve = curves.MakeMotion(motion.value * model.units.metre, motion.controller, -kMaxDisplacement,
+                                         kMaxDisplacement, motion.node);
+    if (!curve) continue;
+    v1::AxisCurve& translation = *constraint.mutable_motion()->add_translation();
+    translation.set_axis(name);
+    *translation.mutable_curve() = *curve;
+  }
+}
+
+// The nodes of quadratic elements that belong to a set, as the tet method has it: its corners, and the middles of edges
+// both of whose ends belong to it and that lie in the surface or in an element of which all corners do.
+std::set<std::int32_t> MembersOf(const std::vector<std::int32_t>& nodes, const Tetrahedra& all, const MeshBody& body) {
+  const std::unordered_set<std::int32_t> chosen(nodes.begin(), nodes.end());
+  std::set<std::array<std::int32_t, 2>> surface_edges;
+  for (const Triangle& t : body.surface) {
+    for (int c = 0; c < 3; ++c) {
+      const auto [i, j] = std::minmax(t[c], t[(c + 1) % 3]);
+      if (chosen.contains(i) && chosen.contains(j)) surface_edges.insert({i, j});
+    }
+  }
+  std::set<std::int32_t> members;
+  for (const std::size_t t : body.tetrahedra) {
+    const Tetrahedron& corners = all.corners[t];
+    int inside = 0;
+    for (const std::int32_t n : corners) {
+      if (!chosen.contains(n)) continue;
+      members.insert(n);
+      ++inside;
+    }
+    for (std::size_t k = 0; k < kTetEdges.size() && inside >= 2; ++k) {
+      const auto [i, j] = std::minmax(corners[kTetEdges[k][0]], corners[kTetEdges[k][1]]);
+      if (!chosen.contains(i) || !chosen.contains(j)) continue;
+      if (inside == 4 || surface_edges.contains({i, j})) members.insert(all.middles[t][k]);
+    }
+  }
+  return members;
+}
+
+class LoadMaker {
+ public:
+  LoadMaker(const Model& model, const Tetrahedra& all, XmlSource& source, CurveMaker& curves, Origins& origins,
+            std::vector<BodyDraft>& drafts)
+      : model_(model), all_(all), source_(source), curves_(curves), origins_(origins), drafts_(drafts) {}
+
+  void AddForces(const NodalForces& forces, const std::vector<std::int32_t>& nodes) {
+    bool any = false;
+    for (BodyDraft& draft : drafts_) {
+      if (!HasAny(draft, nodes)) continue;
+      any = true;
+      double count = 0;
+      for (const std::int32_t n : nodes) count += draft.mesh.local.contains(n) ? 1 : 0;
+      TellOfSharing(forces, nodes, draft);
+      v1::Load* load = NewLoad(draft, forces.controller, forces.node);
+      if (load == nullptr) continue;
+      load->set_region(draft.NodeRegion(forces.set, forces.set, nodes));
+      const Vec3 total = count * model_.units.newton * forces.each;
+      for (const double component : total) load->mutable_nodal_force()->add_total(component);
+    }
+    if (!any) source_.Tell(Notice::Kind::kNotTaken, forces.node, "none of its nodes is a corner of an element taken");
+  }
+
+  void AddSurfaceLoad(const SurfaceLoad& load, const Surface& surface) {
+    std::size_t taken = 0;
+    for (BodyDraft& draft : drafts_) taken += AddSurfaceLoad(load, surface, draft);
+    if (taken == 0) {
+      source_.Tell(Notice::Kind::kNotTaken, load.node, "none of its facets is on the surface of a body that is taken");
+    } else if (taken < surface.facets.size()) {
+      source_.notices.push_back({Notice::Kind::kChanged, source_.LineOf(load.node), source_.Where(load.node),
+                                 std::to_string(surface.facets.size() - taken) + " of " +
+                                     std::to_string(surface.facets.size()) +
+                                     " facets are not on the surface of a body that is taken"});
+    }
+  }
+
+ private:
+  // A load with its factor over time; null after a problem.
+  v1::Load* NewLoad(BodyDraft& draft, const std::optional<std::int64_t>& controller, pugi::xml_node node) {
+    std::optional<v1::Curve> scale;
+    if (controller) {
+      scale = curves_.Make(1, controller, -kMaxFactor, kMaxFactor, node);
+      if (!scale) return nullptr;
+    }
+    origins_[draft.path + "." + IndexPath("loads", std::size_t(draft.body.loads_size()))] = node;
+    v1::Load* load = draft.body.add_loads();
+    if (scale) *load->mutable_scale() = *scale;
+    return load;
+  }
+
+  // The total is kept in any case; whether each node has its part depends on the elements.
+  void TellOfSharing(const NodalForces& forces, const std::vector<std::int32_t>& nodes, const BodyDraft& draft) {
+    const Shape shape = model_.mesh.parts[static_cast<std::size_t>(draft.mesh.parts[0])].shape;
+    bool same = shape == Shape::kTet4;
+    if (draft.mesh.quadratic) {
+      std::set<std::int32_t> own;
+      for (const std::int32_t n : nodes) {
+        if (draft.mesh.local.contains(n)) own.insert(n);
+      }
+      same = own == MembersOf(nodes, all_, draft.mesh);
+    }
+    if (same) return;
+    source_.notices.push_back(
+        {Notice::Kind::kChanged, source_.LineOf(forces.node), source_.Where(forces.node),
+         "the total is shared in equal parts by the set's corners and the middles of edges between "
+         "them, which are other nodes than the set's"});
+  }
+
+  std::size_t AddSurfaceLoad(const SurfaceLoad& load, const Surface& surface, BodyDraft& draft) {
+    std::vector<Triangle> triangles;
+    std::size_t taken = 0;
+    for (const Facet& facet : surface.facets) {
+      std::vector<Triangle> own = TrianglesOf(facet);
+      std::erase_if(own, [&](const Triangle& triangle) { return !draft.mesh.HasSurface(triangle); });
+      taken += own.empty() ? 0 : 1;
+      triangles.insert(triangles.end(), own.begin(), own.end());
+    }
+    if (triangles.empty()) return 0;
+    if (load.pressure != 0) {
+      AddPressure(load, triangles, draft);
+    } else {
+      AddTraction(load, load.surface, load.surface, triangles, load.traction, draft);
+    }
+    return taken;
+  }
+
+  void AddTraction(const SurfaceLoad& source, const std::string& key, const std::string& name,
+                   const std::vector<Triangle>& triangles, const Vec3& traction, BodyDraft& draft) {
+    v1::Load* load = NewLoad(draft, source.controller, source.node);
+    if (load == nullptr) return;
+    load->set_region(draft.SurfaceRegion(key, name, triangles));
+    for (const double component : traction) load->mutable_traction()->add_vector(model_.units.pascal * component);
+  }
+
+  // A traction for each direction that triangles face.
+  void AddPressure(const SurfaceLoad& load, const std::vector<Triangle>& triangles, BodyDraft& draft) {
+    constexpr std::size_t kMaxDirections = 500;
+    constexpr double kSame = 1e6;
+    std::map<std::array<std::int64_t, 3>, std::pair<Vec3, std::vector<Triangle>>> groups;
+    for (const Triangle& triangle : triangles) {
+      const auto x = [&](int c) { return model_.mesh.nodes[static_cast<std::size_t>(triangle[c])]; };
+      const Vec3 normal = (x(1) - x(0)).cross(x(2) - x(0)).stableNormalized();
+      std::array<std::int64_t, 3> key;
+      for (int c = 0; c < 3; ++c) key[c] = std::llround(kSame * normal[c]);
+      groups.try_emplace(key, normal, std::vector<Triangle>()).first->second.second.push_back(triangle);
+      if (groups.size() <= kMaxDirections) continue;
+      source_.Tell(Notice::Kind::kNotTaken, load.node,
+                   "a pressure on a surface that faces more than 500 directions; a load here has one direction");
+      return;
+    }
+    for (const auto& [key, group] : groups) {
+      std::string name = load.surface;
+      if (groups.size() > 1) {
+        for (const std::int64_t part : key) name += "," + std::to_string(part);
+      }
+      AddTraction(load, name, load.surface, group.second, -load.pressure * group.first, draft);
+    }
+  }
+
+  const Model& model_;
+  const Tetrahedra& all_;
+  XmlSource& source_;
+  CurveMaker& curves_;
+  Origins& origins_;
+  std::vector<BodyDraft>& drafts_;
+};
+
+}  // namespace
+
+void SetSupports(const Model& model, XmlSource& source, CurveMaker& curves, Origins& origins,
+                 std::vector<BodyDraft>& drafts) {
+  NodeSets node_sets(model.mesh, source);
+  Conflicts conflicts(model, source);
+  Budget budget(source);
+  for (const SetSupport& set : BySet(model.supports, source)) {
+    const auto of_set = [&](const Support* support) { return support != nullptr; };
+    const Support& first = **std::find_if(set.axes.begin(), set.axes.end(), of_set);
+    const std::vector<std::int32_t>* nodes = node_sets.Find(set.set, first.node);
+    if (nodes == nullptr || !budget.Spend(nodes->size(), 3 + drafts.size(), first.node)) continue;
+    conflicts.Add(set, *nodes);
+    bool any = false;
+    for (BodyDraft& draft : drafts) {
+      if (!HasAny(draft, *nodes)) continue;
+      any = true;
+      AddConstraint(set, *nodes, model, curves, origins, draft);
+    }
+    if (!any) source.Tell(Notice::Kind::kNotTaken, first.node, "none of its nodes is a corner of an element taken");
+  }
+}
+
+void SetLoads(const Model& model, const Tetrahedra& all, XmlSource& source, CurveMaker& curves, Origins& origins,
+              std::vector<BodyDraft>& drafts) {
+  NodeSets node_sets(model.mesh, source);
+  LoadMaker maker(model, all, source, curves, origins, drafts);
+  Budget budget(source);
+  for (const NodalForces& forces : model.nodal_forces) {
+    const std::vector<std::int32_t>* nodes = node_sets.Find(forces.set, forces.node);
+    if (nodes == nullptr || forces.each.isZero(0)) continue;
+    const std::size_t cost = nodes->size() * drafts.size() + all.corners.size();
+    if (budget.Spend(cost, 2, forces.node)) maker.AddForces(forces, *nodes);
+  }
+  for (const SurfaceLoad& load : model.surface_loads) {
+    const auto surface = model.mesh.surfaces.find(load.surface);
+    if (surface == model.mesh.surfaces.end()) {
+      source.Fail(load.node, "there is no surface " + Quoted(load.surface), "name a Surface of the mesh");
+    } else if ((load.pressure != 0 || !load.traction.isZero(0)) &&
+               budget.Spend(surface->second.facets.size(), 5 * drafts.size(), load.node)) {
+      maker.AddSurfaceLoad(load, surface->second);
+    }
+  }
+}
+
+}  // namespace fascicle::client
