@@ -51,7 +51,6 @@ class Meshing {
     ImproveAngles(mesh_, tree, kSweeps, team_);
     Tell(0.7, "fitting the volume");
     if (!Fit(tree)) return std::nullopt;
-    ImproveAngles(mesh_, tree, 0, team_);
     Tell(0.9, "measuring");
     Measure(tree);
     Tell(1, "done");
@@ -77,12 +76,18 @@ class Meshing {
     }
     const auto wanted = static_cast<double>(options_.tetrahedra);
     if (size <= 0) size = std::cbrt(12 * report_.surface_volume / wanted);
+    double least_error = 0;
     for (int round = 0; round < kSizeRounds; ++round) {
       Tell(0.05 + 0.06 * round, "filling with a lattice");
-      mesh_ = StuffLattice(MakeLattice(surface_, tree, size, options_.grading, team_), tree, team_);
-      report_.size = size;
-      const auto count = static_cast<double>(mesh_.tetrahedra.size());
-      if (options_.size > 0 || std::abs(count / wanted - 1) < kCountTolerance) break;
+      TetMesh mesh = StuffLattice(MakeLattice(surface_, tree, size, options_.grading, team_), tree, team_);
+      const auto count = static_cast<double>(mesh.tetrahedra.size());
+      const double error = options_.size > 0 ? 0 : std::abs(count / wanted - 1);
+      if (round == 0 || error < least_error) {
+        mesh_ = std::move(mesh);
+        report_.size = size;
+        least_error = error;
+      }
+      if (error < kCountTolerance) break;
       size *= count > 0 ? std::clamp(std::cbrt(count / wanted), 0.5, 2.0) : 0.5;
     }
     if (!mesh_.tetrahedra.empty()) return true;
@@ -171,15 +176,19 @@ class Meshing {
       points.push_back((mesh_.nodes[t[0]] + mesh_.nodes[t[1]] + mesh_.nodes[t[2]]) / 3);
       for (const std::int32_t n : t) points.push_back(mesh_.nodes[n]);
     }
-    report_.surface_distance = std::max(Furthest(points, tree), Furthest(surface_.nodes, TriangleTree(outside)));
+    KeepFurthest(points, tree);
+    KeepFurthest(surface_.nodes, TriangleTree(outside));
   }
 
-  double Furthest(const std::vector<Vec3>& points, const TriangleTree& tree) {
+  void KeepFurthest(const std::vector<Vec3>& points, const TriangleTree& tree) {
     std::vector<double> distance(points.size());
     team_.For(points.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) distance[i] = tree.Distance(points[i]);
     });
-    return *std::max_element(distance.begin(), distance.end());
+    const auto furthest = std::max_element(distance.begin(), distance.end());
+    if (*furthest < report_.surface_distance) return;
+    report_.surface_distance = *furthest;
+    report_.furthest = points[static_cast<std::size_t>(furthest - distance.begin())];
   }
 
   TriangleMesh& surface_;

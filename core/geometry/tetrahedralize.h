@@ -37,6 +37,7 @@ struct MeshingReport {
   // The largest distance of the mesh's outer nodes and triangle centroids from the surface, and of the surface's nodes
   // from the mesh.
   double surface_distance = 0;
+  Vec3 furthest = Vec3::Zero();  // where that is
 
   double VolumeError() const { return volume / surface_volume - 1; }
 };
