@@ -32,7 +32,7 @@ TriangleMesh Turned(TriangleMesh surface, std::mt19937& random) {
 // [Labelle and Shewchuk 2007, theorem 1].
 TEST(IsosurfaceStuffingTest, AnglesAreBoundedForManyShapesAndSizes) {
   std::mt19937 random(5);
-  ThreadTeam team(2);
+  ThreadTeam team(1);
   const TriangleMesh shapes[] = {SurfaceOf(MakeSphere(1, 12)), SurfaceOf(MakeTorus({1, 0.4, 36, 8})),
                                  SurfaceOf(MakeBox({0, 0, 0}, {1, 0.7, 1.8}, {1, 1, 1})),
                                  SurfaceOf(MakeBox({0, 0, 0}, {0.15, 1, 2}, {1, 1, 1})),
@@ -63,7 +63,7 @@ TEST(IsosurfaceStuffingTest, AnglesAreBoundedForManyShapesAndSizes) {
 
 // Tetrahedra fit together: no side belongs to more than two, and the outside is closed.
 TEST(IsosurfaceStuffingTest, GradedMeshesAreConforming) {
-  ThreadTeam team(2);
+  ThreadTeam team(1);
   const TriangleMesh surface = SurfaceOf(MakeSphere(0.05, 12));
   const TriangleTree tree(surface);
   std::size_t uniform = 0;

@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-MeshingResult Mesh(TriangleMesh surface, std::int64_t tetrahedra, double size = 0, int threads = 2) {
+MeshingResult Mesh(TriangleMesh surface, std::int64_t tetrahedra, double size = 0, int threads = 1) {
   ThreadTeam team(threads);
   Problems problems;
   MeshingOptions options;
@@ -28,7 +28,7 @@ MeshingResult Mesh(TriangleMesh surface, std::int64_t tetrahedra, double size = 
 }
 
 std::string ProblemsOf(TriangleMesh surface, double size = 0) {
-  ThreadTeam team(2);
+  ThreadTeam team(1);
   Problems problems;
   MeshingOptions options;
   options.tetrahedra = 4000;
