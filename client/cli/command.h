@@ -94,6 +94,7 @@ void AddDelete(CLI::App& app, Context& context);
 void AddExport(CLI::App& app, Context& context);
 void AddRender(CLI::App& app, Context& context);
 void AddPlot(CLI::App& app, Context& context);
+void AddMesh(CLI::App& app, Context& context);
 void AddMaterials(CLI::App& app, Context& context);
 void AddSchema(CLI::App& app, Context& context);
 void AddExamples(CLI::App& app, Context& context);

@@ -47,6 +47,7 @@ int Main(int argc, char** argv) {
   AddExport(app, context);
   AddRender(app, context);
   AddPlot(app, context);
+  AddMesh(app, context);
   AddMaterials(app, context);
   AddSchema(app, context);
   AddExamples(app, context);

@@ -220,7 +220,7 @@ void DrawPicture(const v1::Geometry& geometry, const v1::Frame& frame, const Pic
   canvas.window().AddRenderer(overlay);
   if (options.rest_outline) AddRestOutlines(shapes, *renderer, *overlay);
   AddText(options.title, 0.025, 0.965, 22, true, *renderer);
-  AddText(TimeText(frame), 0.025, 0.915, 17, false, *renderer);
+  if (options.time) AddText(TimeText(frame), 0.025, 0.915, 17, false, *renderer);
   AddScale(colouring, *renderer);
   AddLengthBar(canvas, *renderer);
   AddDirections(canvas.window(), *renderer);

@@ -28,6 +28,7 @@ struct PictureOptions {
   std::optional<double> elevation;
   double zoom = 1;
   std::string title;
+  bool time = true;  // below the title
 };
 
 // Draws a frame of all bodies and writes a PNG. Throws std::runtime_error with a message for people.

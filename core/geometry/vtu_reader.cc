@@ -1,4 +1,4 @@
-// VTK XML unstructured grids (.vtu) ["VTK file formats", VTK User's Guide].
+// VTK XML unstructured grids (.vtu) and surfaces (.vtp) ["VTK file formats", VTK User's Guide].
 #include <algorithm>
 #include <optional>
 #include <pugixml.hpp>
@@ -9,6 +9,7 @@
 
 #include "core/geometry/byte_array.h"
 #include "core/geometry/mesh_readers.h"
+#include "core/geometry/surface_readers.h"
 #include "core/geometry/text_scanner.h"
 #include "core/geometry/vtk_cells.h"
 #include "core/geometry/vtu_data.h"
@@ -66,7 +67,8 @@ class VtuReader {
   VtuReader(std::string_view bytes, Problems& problems)
       : problems_(problems), size_(bytes.size()), parts_(Split(bytes)) {}
 
-  RawMesh Read() {
+  // `type` is UnstructuredGrid or PolyData.
+  RawMesh Read(const std::string& type) {
     if (!parts_.complete) {
       Fail("the appended data is not complete", "is the file complete?");
       return {};
@@ -80,17 +82,21 @@ class VtuReader {
       return {};
     }
     const pugi::xml_node file = document.child("VTKFile");
-    if (!file || std::string_view(file.attribute("type").value()) != "UnstructuredGrid") {
-      Fail("the file is not a VTKFile of type UnstructuredGrid", "write the mesh as an unstructured grid");
+    if (!file || file.attribute("type").value() != type) {
+      Fail("the file is not a VTKFile of type " + type,
+           type == "PolyData" ? "write the surface as poly data" : "write the mesh as an unstructured grid");
       return {};
     }
     if (ReadEncoding(file)) {
-      for (const pugi::xml_node piece : file.child("UnstructuredGrid").children("Piece")) {
-        if (!ReadPiece(piece)) break;
+      for (const pugi::xml_node piece : file.child(type.c_str()).children("Piece")) {
+        if (!(type == "PolyData" ? ReadSurfacePiece(piece) : ReadPiece(piece))) break;
       }
     }
     return std::move(raw_);
   }
+
+  // Of a surface.
+  std::vector<std::vector<std::int64_t>> TakePolygons() { return std::move(polygons_); }
 
  private:
   bool Fail(std::string message, std::string hint = {}) {
@@ -137,6 +143,33 @@ class VtuReader {
     }
     const std::string wrong = AddCells(list, points, std::int64_t(raw_.nodes.size()), raw_);
     if (!wrong.empty()) return Fail(wrong);
+    for (std::int64_t n = 0; n < points; ++n) raw_.nodes.emplace_back(coordinates.data() + 3 * n);
+    return true;
+  }
+
+  bool ReadSurfacePiece(pugi::xml_node piece) {
+    std::int64_t points = 0, polygons = 0, strips = 0;
+    if (!ReadCount(piece, "NumberOfPoints", points) || !ReadCount(piece, "NumberOfPolys", polygons)) return false;
+    if (piece.attribute("NumberOfStrips") && !ReadCount(piece, "NumberOfStrips", strips)) return false;
+    if (strips > 0) return Fail("the surface is made of strips", "write it as triangles");
+    std::vector<double> coordinates;
+    std::vector<std::int64_t> ends, nodes;
+    const pugi::xml_node cells = piece.child("Polys");
+    if (!ReadDoubles(piece.child("Points").child("DataArray"), "Points", 3 * points, coordinates) ||
+        !ReadInts(Named(cells, "offsets"), "offsets", polygons, ends) ||
+        !ReadInts(Named(cells, "connectivity"), "connectivity", ends.empty() ? 0 : ends.back(), nodes)) {
+      return false;
+    }
+    const auto first = std::int64_t(raw_.nodes.size());
+    std::int64_t begin = 0;
+    for (const std::int64_t end : ends) {
+      if (end < begin || end > std::int64_t(nodes.size())) return Fail("the offsets of the polygons do not ascend");
+      auto& polygon = polygons_.emplace_back();
+      for (; begin < end; ++begin) {
+        const bool exists = nodes[begin] >= 0 && nodes[begin] < points;
+        polygon.push_back(exists ? first + nodes[begin] : -1);
+      }
+    }
     for (std::int64_t n = 0; n < points; ++n) raw_.nodes.emplace_back(coordinates.data() + 3 * n);
     return true;
   }
@@ -236,10 +269,21 @@ class VtuReader {
   std::optional<VtuDecoder> decoder_;
   bool big_endian_ = false;
   RawMesh raw_;
+  std::vector<std::vector<std::int64_t>> polygons_;
 };
 
 }  // namespace
 
-RawMesh ReadVtu(std::string_view bytes, Problems& problems) { return VtuReader(bytes, problems).Read(); }
+RawMesh ReadVtu(std::string_view bytes, Problems& problems) {
+  return VtuReader(bytes, problems).Read("UnstructuredGrid");
+}
+
+RawSurface ReadVtp(std::string_view bytes, Problems& problems) {
+  VtuReader reader(bytes, problems);
+  RawSurface raw;
+  raw.nodes = reader.Read("PolyData").nodes;
+  raw.polygons = reader.TakePolygons();
+  return raw;
+}
 
 }  // namespace fascicle

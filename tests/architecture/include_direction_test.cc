@@ -67,12 +67,13 @@ const std::map<std::string, std::set<std::string>>& AllowedRooms() {
        {"core/base", "fascicle/v1", "google/rpc", "server/jobs", "server/store", "server/translate", "proto/rules"}},
       {"server", {"core/base", "server/jobs", "server/store", "server/translate", "server/rpc"}},
       {"client/lib", {"core/base", "fascicle/v1", "google/rpc", "proto/rules"}},
+      {"client/image", {"core/base", "core/geometry"}},
       {"client/export", {"core/base", "client/lib", "fascicle/v1"}},
       {"client/import", {"core/base", "core/geometry", "fascicle/v1", "proto/rules"}},
       {"client/render", {"core/base", "client/lib", "fascicle/v1"}},
       {"client/cli",
-       {"core/base", "core/materials", "client/lib", "client/import", "client/export", "client/render", "fascicle/v1",
-        "proto/rules"}},
+       {"core/base", "core/geometry", "core/materials", "client/lib", "client/import", "client/export", "client/image",
+        "client/render", "fascicle/v1", "proto/rules"}},
   };
   return allowed;
 }
@@ -108,7 +109,7 @@ TEST(IncludeDirection, LibrariesStayInTheirRooms) {
       {"Protobuf", std::regex("^google/protobuf/|\\.pb\\.h$"),
        std::regex("^(proto/rules|server/translate|server/rpc|server|client/.*)$")},
       {"SQLite", std::regex("^sqlite3\\.h$"), std::regex("^server/store$")},
-      {"VTK", std::regex("^vtk[A-Z]"), std::regex("^client/(export|render)$")},
+      {"VTK", std::regex("^vtk[A-Z]"), std::regex("^client/(export|image|render)$")},
       {"CLI11", std::regex("^CLI/"), std::regex("^(client/cli|server)$")},
       {"JSON", std::regex("^nlohmann/"), std::regex("^client/(lib|cli|export)$")},
   };

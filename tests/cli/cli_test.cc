@@ -66,7 +66,7 @@ TEST_F(CliTest, HelpTellsExitCodesAndExamples) {
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.out, AllOf(HasSubstr("Exit codes:"), HasSubstr("3  no server")));
   for (const char* command : {"run", "submit", "validate", "watch", "list", "show", "cancel", "delete", "export",
-                              "render", "plot", "materials", "schema", "examples", "completion"}) {
+                              "render", "plot", "mesh", "materials", "schema", "examples", "completion"}) {
     EXPECT_THAT(help.out, HasSubstr(command));
     const Finished own = Fascicle({command, "--help"});
     EXPECT_EQ(own.exit_code, 0) << command;

@@ -1,0 +1,299 @@
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include "client/cli/command.h"
+#include "client/cli/input_file.h"
+#include "client/cli/mesh_picture.h"
+#include "client/cli/mesh_regions.h"
+#include "client/cli/stage_progress.h"
+#include "client/image/label_surface.h"
+#include "client/lib/replace_file.h"
+#include "core/geometry/mesh_writer.h"
+#include "core/geometry/tetrahedralize.h"
+
+namespace fascicle::client {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExamples =
+    R"(  fascicle mesh muscle.stl --out muscle.msh                   about 50,000 tetrahedra
+  fascicle mesh muscle.stl --out muscle.msh --size 2.5        edges of about 2.5 at the surface, in its own unit
+  fascicle mesh muscle.stl --out muscle.msh --region origin=near:femur.stl:3 --region insertion=near:tibia.stl:3 \
+    --scene muscle.json --picture muscle.png                  attachments, a scene to begin with, and a picture
+  fascicle mesh muscle.stl --out muscle.msh --region top=side:0,0,1:30
+  fascicle mesh labels.mha --label 2 --out triceps.msh        the voxels of a segmentation that have the value 2
+
+Reads .stl, .obj, .ply and .vtp. Small holes are closed; larger ones, surfaces that cut themselves and surfaces around
+several bodies are refused with the place. Regions become physical tags, which scenes name.
+)";
+
+struct Options {
+  std::string surface;
+  std::string out;
+  std::string unit = "mm";
+  double size = 0;
+  std::int64_t tetrahedra = 50000;
+  double grading = MeshingOptions().grading;
+  double largest_hole = -1;
+  std::vector<std::string> regions;
+  std::string scene;
+  std::string picture;
+  std::optional<int> label;
+  double smoothing = 1;
+  int threads = 1;
+};
+
+double MetresIn(const std::string& unit) { return unit == "mm" ? 1e-3 : unit == "cm" ? 1e-2 : 1; }
+
+double Degrees(double radians) { return radians * 180 / std::numbers::pi; }
+
+Json PlaceJson(const SurfacePlace& place) {
+  return {{"centre", {place.centre.x(), place.centre.y(), place.centre.z()}}, {"extent", place.extent}};
+}
+
+double AreaOf(const TetMesh& mesh, const Region& region) { return Area({mesh.nodes, region.triangles}); }
+
+Json ReportJson(const Options& options, const MeshingResult& result, const std::vector<Region>& regions) {
+  const MeshingReport& report = result.report;
+  Json holes = Json::array(), cuts = Json::array(), tags = Json::array();
+  for (const SurfacePlace& hole : report.surface.holes) {
+    holes.push_back(PlaceJson(hole));
+    holes.back()["boundary_length"] = hole.length;
+  }
+  for (const SurfacePlace& cut : report.surface.cuts) {
+    cuts.push_back(PlaceJson(cut));
+    cuts.back()["pairs"] = cut.count;
+  }
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    tags.push_back({{"name", regions[i].name},
+                    {"physical_tag", i + 1},
+                    {"triangles", regions[i].triangles.size()},
+                    {"area", AreaOf(result.mesh, regions[i])}});
+  }
+  return {{"mesh", options.out},
+          {"unit", options.unit},
+          {"tetrahedra", result.mesh.tetrahedra.size()},
+          {"nodes", result.mesh.nodes.size()},
+          {"size", report.size},
+          {"smallest_dihedral_angle", Degrees(report.angles.smallest)},
+          {"median_dihedral_angle", Degrees(report.angles.median)},
+          {"largest_dihedral_angle", Degrees(report.angles.largest)},
+          {"volume", report.volume},
+          {"volume_error", report.VolumeError()},
+          {"lost_volume", report.lost_volume},
+          {"surface_distance", report.surface_distance},
+          {"surface_distance_at", {report.furthest.x(), report.furthest.y(), report.furthest.z()}},
+          {"removed_triangles", report.surface.removed_triangles},
+          {"turned_triangles", report.surface.turned_triangles},
+          {"filled_holes", std::move(holes)},
+          {"cuts", std::move(cuts)},
+          {"regions", std::move(tags)}};
+}
+
+void PrintReport(const Options& options, const MeshingResult& result, const std::vector<Region>& regions) {
+  const MeshingReport& report = result.report;
+  const char* unit = options.unit.c_str();
+  for (const SurfacePlace& hole : report.surface.holes) {
+    std::printf("closed a hole at %s, with a boundary %.4g %s long\n", PlaceText(hole).c_str(), hole.length, unit);
+  }
+  for (const SurfacePlace& cut : report.surface.cuts) {
+    std::printf("the surface cuts itself at %s (%lld pairs of triangles): meshed as one body\n", PlaceText(cut).c_str(),
+                static_cast<long long>(cut.count));
+  }
+  if (report.surface.removed_triangles > 0) {
+    std::printf("left out %lld triangles without area, or that stood twice\n",
+                static_cast<long long>(report.surface.removed_triangles));
+  }
+  if (report.surface.turned_triangles > 0) {
+    std::printf("turned %lld triangles outward\n", static_cast<long long>(report.surface.turned_triangles));
+  }
+  std::printf("tetrahedra          %zu\nnodes               %zu\nsize                %.4g %s\n",
+              result.mesh.tetrahedra.size(), result.mesh.nodes.size(), report.size, unit);
+  std::printf("dihedral angles     %.1f to %.1f degrees; median of the smallest %.1f\n",
+              Degrees(report.angles.smallest), Degrees(report.angles.largest), Degrees(report.angles.median));
+  std::printf("volume              %.6g %s^3, %+.3f %% of the surface's\n", report.volume, unit,
+              100 * report.VolumeError());
+  if (report.lost_volume > 0) {
+    std::printf("left out            %.3g %% of the volume, in crumbs that hang on nothing\n",
+                100 * report.lost_volume / report.surface_volume);
+  }
+  std::printf("surface distance    at most %.3g %s, at (%.4g, %.4g, %.4g)\n", report.surface_distance, unit,
+              report.furthest.x(), report.furthest.y(), report.furthest.z());
+  if (report.surface_distance > 1.5 * report.size) {
+    std::printf("                    the surface is thinner than the mesh there: a smaller --size keeps more of it\n");
+  }
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    std::printf("region %-12s physical tag %zu: %zu triangles, %.4g %s^2\n", regions[i].name.c_str(), i + 1,
+                regions[i].triangles.size(), AreaOf(result.mesh, regions[i]), unit);
+  }
+  for (const std::string& file : {options.out, options.scene, options.picture}) {
+    if (!file.empty()) std::cout << "written to " << file << '\n';
+  }
+}
+
+// A muscle between its first two regions, in equilibrium at growing activation.
+Json SceneJson(const Options& options, const std::vector<Region>& regions) {
+  Json list = Json::array(), constraints = Json::array();
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    list.push_back({{"name", regions[i].name}, {"physical_tag", i + 1}});
+    if (i < 2) constraints.push_back({{"region", regions[i].name}});
+  }
+  const fs::path folder = fs::absolute(options.scene).parent_path();
+  const std::string name = fs::path(options.out).stem().string();
+  Json body = {{"name", "muscle"},
+               {"unit", options.unit},
+               {"mesh", {{"file", {{"path", fs::absolute(options.out).lexically_relative(folder).string()}}}}},
+               {"material", {{"muscle", {{"bulk_modulus", 1e6}, {"optimal_stretch", 1}}}}},
+               {"regions", std::move(list)},
+               {"fibres", {{"harmonic", {{"origin", regions[0].name}, {"insertion", regions[1].name}}}}},
+               {"constraints", std::move(constraints)},
+               {"activation", {{"times", {0, 1}}, {"values", {0, 0.3}}}}};
+  return {{"name", name},
+          {"bodies", Json::array({std::move(body)})},
+          {"duration", 1},
+          {"output", {{"frame_interval", 0.5}, {"fields", {"fibre_stretch", "volume_ratio"}}}},
+          {"tet", {{"stepping", "quasi_static"}}}};
+}
+
+// The problems of a file or the command line as an error with all of them.
+void FailOn(const Problems& problems, const std::string& file) {
+  if (problems.empty()) return;
+  Error error{Error::Kind::kInvalid, "the surface " + file + " can't be meshed", "INVALID_SURFACE", {}};
+  for (const Problem& problem : problems.kept()) {
+    error.problems.Add(problem.path.empty() ? file : problem.path, problem.message, problem.hint);
+  }
+  throw CommandError(std::move(error));
+}
+
+struct Input {
+  TriangleMesh surface;
+  std::optional<double> voxel_volume;  // of a label image
+};
+
+Input ReadInput(const Options& options, Problems& problems) {
+  Input input;
+  const bool is_image = IsImageName(options.surface);
+  if (is_image && !options.label) {
+    problems.Add("--label", "is required for an image", "give the value of the voxels that are the body");
+  }
+  if (!is_image && options.label) {
+    problems.Add("--label", options.surface + " is no label image", "images end in .mha, .mhd, .nii or .nii.gz");
+  }
+  const std::optional<std::string> bytes = ReadInputFile(options.surface, problems);
+  if (!bytes) return input;
+  if (!is_image) {
+    if (auto surface = ReadSurface(options.surface, *bytes, problems)) input.surface = std::move(*surface);
+  } else if (options.label) {
+    auto label = ReadLabelSurface(options.surface, *options.label, options.smoothing, problems);
+    if (!label) return input;
+    input.surface = std::move(label->surface);
+    input.voxel_volume = label->voxel_volume;
+  }
+  return input;
+}
+
+int MakeMesh(const Options& options, const Context& context) {
+  Problems problems;
+  Input input = ReadInput(options, problems);
+  const std::vector<RegionRequest> requests = ReadRegionRequests(options.regions, problems);
+  if (fs::path(options.out).extension() != ".msh") {
+    problems.Add("--out", "expects a file that ends in .msh", "the mesh is written in Gmsh's format");
+  }
+  if (!options.scene.empty() && requests.size() < 2) {
+    problems.Add("--scene", "a muscle needs two attachments", "give --region twice: the origin, then the insertion");
+  }
+  FailOn(problems, options.surface);
+
+  ThreadTeam team(options.threads);
+  MeshingOptions meshing;
+  meshing.size = options.size;
+  meshing.tetrahedra = options.tetrahedra;
+  meshing.grading = options.grading;
+  meshing.largest_hole = options.largest_hole;
+  std::optional<MeshingResult> result;
+  {
+    StageProgress bar;
+    result = Tetrahedralize(input.surface, meshing, team, problems,
+                            [&](double part, const char* stage) { bar.Show(part, stage); });
+  }
+  FailOn(problems, options.surface);
+  const std::vector<Region> regions = MarkRegions(requests, result->mesh, problems);
+  FailOn(problems, options.surface);
+
+  std::vector<TagName> names;
+  for (const Region& region : regions) names.push_back({2, static_cast<std::int32_t>(names.size() + 1), region.name});
+  names.push_back({3, static_cast<std::int32_t>(names.size() + 1), "body"});
+  ReplaceFile(options.out, GmshText(result->mesh, names));
+  if (!options.scene.empty()) ReplaceFile(options.scene, SceneJson(options, regions).dump(2) + "\n");
+  if (!options.picture.empty()) {
+    DrawMesh(result->mesh, regions, MetresIn(options.unit), fs::path(options.out).stem().string(), options.picture);
+  }
+  if (context.json) {
+    Json report = ReportJson(options, *result, regions);
+    if (input.voxel_volume) report["voxel_volume"] = *input.voxel_volume;
+    PrintJson(report);
+  } else {
+    if (input.voxel_volume) {
+      std::printf("label %d: smoothing changed its volume by %+.3f %%\n", *options.label,
+                  100 * (result->report.surface_volume / *input.voxel_volume - 1));
+    }
+    PrintReport(options, *result, regions);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddMesh(CLI::App& app, Context& context) {
+  CLI::App* command = AddCommand(app, "mesh", "Fill a closed surface with tetrahedra", kExamples);
+  const auto options = std::make_shared<Options>();
+  command
+      ->add_option("SURFACE", options->surface,
+                   "The surface: .stl, .obj, .ply or .vtp; or a label image: .mha, .mhd, .nii or .nii.gz")
+      ->required();
+  command->add_option("--out", options->out, "The mesh, for scenes to name")->required()->type_name("FILE.msh");
+  command->add_option("--unit", options->unit, "Unit of the surface's lengths, and of all lengths here")
+      ->check(CLI::IsMember({"m", "cm", "mm"}));
+  CLI::Option* size = command->add_option("--size", options->size, "Length of edges at the surface")
+                          ->check(CLI::PositiveNumber)
+                          ->type_name("LENGTH");
+  command->add_option("--tets", options->tetrahedra, "About how many tetrahedra, when no --size is given; 50000")
+      ->check(CLI::Range(std::int64_t{100}, std::int64_t{20'000'000}))
+      ->excludes(size);
+  command
+      ->add_option("--grading", options->grading,
+                   "How much edges may grow for each length of distance from the surface; 0: not at all")
+      ->check(CLI::Range(0.0, 2.0));
+  command
+      ->add_option("--max-hole", options->largest_hole, "Holes up to this far across are closed; a tenth of the whole")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("LENGTH");
+  command
+      ->add_option(
+          "--region", options->regions,
+          "Name a part of the mesh's surface: what faces a direction, or is near another surface; may be repeated")
+      ->type_name("NAME=side:X,Y,Z[:DEGREES]|NAME=near:SURFACE:DISTANCE")
+      ->allow_extra_args(false);
+  command->add_option("--scene", options->scene, "Write a scene: a muscle between the first two regions")
+      ->type_name("FILE.json");
+  command->add_option("--picture", options->picture, "Draw the mesh, coloured by its regions")->type_name("FILE.png");
+  command->add_option("--label", options->label, "Of an image: the value of the voxels that are the body");
+  command
+      ->add_option("--smooth", options->smoothing,
+                   "Of an image: how far its stairs are smoothed, as the standard deviation of a Gaussian [voxel]")
+      ->check(CLI::Range(0.3, 10.0));
+  command->add_option("--threads", options->threads, "Threads that work; the mesh does not depend on it")
+      ->check(CLI::Range(1, 256));
+  command->callback(
+      [options, &context] { context.action = [options, &context] { return MakeMesh(*options, context); }; });
+}
+
+}  // namespace fascicle::client

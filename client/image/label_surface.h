@@ -1,0 +1,31 @@
+#ifndef FASCICLE_CLIENT_IMAGE_LABEL_SURFACE_H_
+#define FASCICLE_CLIENT_IMAGE_LABEL_SURFACE_H_
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/base/problems.h"
+#include "core/geometry/triangle_mesh.h"
+
+namespace fascicle::client {
+
+// A label of an image as a closed surface, in the image's unit, mostly mm.
+struct LabelSurface {
+  TriangleMesh surface;
+  double voxel_volume = 0;    // of all voxels of the label
+  double surface_volume = 0;  // enclosed
+};
+
+// Whether a file's extension is that of an image: .mha, .mhd, .nii or .nii.gz.
+bool IsImageName(const std::string& name);
+
+// Reads an image of one component a voxel, and makes a surface of the voxels whose value is `label`, smoothed by a
+// Gaussian of `smoothing` voxels (standard deviation, 0.3 to 10) so that the volume stays. Adds to `problems` (with
+// empty paths) what is wrong with the file, or the labels that there are when this one is none of them.
+std::optional<LabelSurface> ReadLabelSurface(const std::filesystem::path& path, int label, double smoothing,
+                                             Problems& problems);
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_IMAGE_LABEL_SURFACE_H_

@@ -1,0 +1,32 @@
+#ifndef FASCICLE_CORE_GEOMETRY_MESH_QUALITY_H_
+#define FASCICLE_CORE_GEOMETRY_MESH_QUALITY_H_
+
+#include <utility>
+#include <vector>
+
+#include "core/geometry/tet_mesh.h"
+
+namespace fascicle {
+
+// The smallest and the largest cosine of the six angles between a tetrahedron's sides; of one that is flat or inverted
+// at least one is beyond [-1, 1].
+struct Cosines {
+  double lowest, highest;
+};
+Cosines DihedralCosines(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+// Angles between sides of tetrahedra [rad].
+struct AngleFigures {
+  double smallest = 0;
+  double largest = 0;
+  double median = 0;  // of each tetrahedron's smallest
+};
+AngleFigures MeasureAngles(const TetMesh& mesh);
+
+// Of each tetrahedron the face-connected part that it belongs to, counted from 0 in the order of their lowest
+// tetrahedra.
+std::vector<std::int32_t> FaceConnectedParts(const TetMesh& mesh);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_GEOMETRY_MESH_QUALITY_H_

@@ -1,0 +1,19 @@
+#ifndef FASCICLE_CORE_GEOMETRY_NEAR_REGION_H_
+#define FASCICLE_CORE_GEOMETRY_NEAR_REGION_H_
+
+#include <string>
+#include <vector>
+
+#include "core/geometry/region.h"
+#include "core/geometry/triangle_tree.h"
+
+namespace fascicle {
+
+// The triangles of a mesh's surface whose corners are all no further than `distance` from another surface, and their
+// nodes. `surface` must be BoundaryTriangles(mesh); all lengths are in one unit.
+Region SelectNear(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name,
+                  const TriangleTree& other, double distance);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_GEOMETRY_NEAR_REGION_H_

@@ -1,0 +1,80 @@
+// Wavefront OBJ: positions and faces [Wavefront, "Advanced Visualizer Manual", appendix B1].
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "core/geometry/surface_readers.h"
+#include "core/geometry/text_scanner.h"
+
+namespace fascicle {
+namespace {
+
+// The next word of a line; empty at its end.
+std::string_view Word(std::string_view& line) {
+  const std::size_t begin = std::min(line.find_first_not_of(" \t\r"), line.size());
+  line.remove_prefix(begin);
+  const std::string_view word = line.substr(0, line.find_first_of(" \t\r"));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+class ObjReader {
+ public:
+  explicit ObjReader(Problems& problems) : problems_(problems) {}
+
+  RawSurface Read(std::string_view bytes) {
+    while (!bytes.empty() && !failed_) {
+      ++line_;
+      const std::size_t end = std::min(bytes.find('\n'), bytes.size());
+      ReadLine(bytes.substr(0, std::min(end, bytes.find('#'))));
+      bytes.remove_prefix(std::min(end + 1, bytes.size()));
+    }
+    return std::move(raw_);
+  }
+
+ private:
+  void Fail(const std::string& message) {
+    problems_.Add("", "line " + std::to_string(line_) + ": " + message, "is the file complete?");
+    failed_ = true;
+  }
+
+  void ReadLine(std::string_view line) {
+    const std::string_view keyword = Word(line);
+    if (keyword == "v") ReadNode(line);
+    if (keyword == "f") ReadFace(line);
+  }
+
+  void ReadNode(std::string_view line) {
+    Vec3 node;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string_view word = Word(line);
+      if (!ParseDouble(word, node[axis])) return Fail("expected a coordinate but found " + Quoted(word));
+    }
+    raw_.nodes.push_back(node);
+  }
+
+  // Corners are node/texture/normal; nodes count from 1, or backwards from the last one when negative.
+  void ReadFace(std::string_view line) {
+    std::vector<std::int64_t> polygon;
+    for (std::string_view word = Word(line); !word.empty(); word = Word(line)) {
+      std::int64_t number = 0;
+      if (!ParseInt(word.substr(0, word.find('/')), number) || number == 0) {
+        return Fail("expected a node number but found " + Quoted(word));
+      }
+      polygon.push_back(number > 0 ? number - 1 : static_cast<std::int64_t>(raw_.nodes.size()) + number);
+    }
+    if (polygon.size() < 3) return Fail("a face of " + std::to_string(polygon.size()) + " nodes");
+    raw_.polygons.push_back(std::move(polygon));
+  }
+
+  Problems& problems_;
+  int line_ = 0;
+  bool failed_ = false;
+  RawSurface raw_;
+};
+
+}  // namespace
+
+RawSurface ReadObj(std::string_view bytes, Problems& problems) { return ObjReader(problems).Read(bytes); }
+
+}  // namespace fascicle

@@ -1,0 +1,27 @@
+#ifndef FASCICLE_CORE_GEOMETRY_SURFACE_READERS_H_
+#define FASCICLE_CORE_GEOMETRY_SURFACE_READERS_H_
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "core/base/problems.h"
+#include "core/base/types.h"
+
+namespace fascicle {
+
+// A surface as its file has it, before node numbers are checked. The readers fill one.
+struct RawSurface {
+  std::vector<Vec3> nodes;
+  std::vector<std::vector<std::int64_t>> polygons;  // node indices from 0, three or more; anything else is malformed
+};
+
+// Each adds to `problems` what is malformed and then gives something to be thrown away.
+RawSurface ReadStl(std::string_view bytes, Problems& problems);
+RawSurface ReadObj(std::string_view bytes, Problems& problems);
+RawSurface ReadPly(std::string_view bytes, Problems& problems);
+RawSurface ReadVtp(std::string_view bytes, Problems& problems);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_GEOMETRY_SURFACE_READERS_H_

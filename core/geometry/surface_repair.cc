@@ -1,0 +1,431 @@
+// Reference: Barequet and Sharir 1995, "Filling gaps in the boundary of a polyhedron", Computer Aided Geometric
+// Design 12(2).
+#include "core/geometry/surface_repair.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "core/geometry/faces.h"
+#include "core/geometry/triangle_tree.h"
+
+namespace fascicle {
+namespace {
+
+// Triangles of least area take the cube of the number of edges: longer boundaries get a fan from their middle.
+constexpr std::size_t kLongestBoundary = 300;
+constexpr std::size_t kPlacesTold = 5;
+
+using Loop = std::vector<std::int32_t>;
+
+// An edge as one triangle has it.
+struct Side {
+  std::int32_t low, high;  // nodes
+  std::int32_t triangle;
+  bool ascending;  // the triangle goes from low to high
+  auto Key() const { return std::pair(low, high); }
+};
+
+std::vector<Side> SortedSides(const std::vector<Triangle>& triangles) {
+  std::vector<Side> sides;
+  sides.reserve(3 * triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(t), a < b});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  });
+  return sides;
+}
+
+// Calls visit(first, last) for the sides of each edge.
+template <class Visit>
+void ForEachEdge(const std::vector<Side>& sides, const Visit& visit) {
+  for (std::size_t first = 0; first < sides.size();) {
+    std::size_t last = first + 1;
+    while (last < sides.size() && sides[last].Key() == sides[first].Key()) ++last;
+    visit(first, last);
+    first = last;
+  }
+}
+
+// Sets of numbers that are joined step by step; the lowest number stands for each.
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
+  std::int32_t Root(std::int32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void Join(std::int32_t i, std::int32_t j) {
+    const std::int32_t a = Root(i), b = Root(j);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::int32_t> parent_;
+};
+
+template <class Nodes>
+SurfacePlace PlaceOf(const std::vector<Vec3>& x, const Nodes& nodes) {
+  Vec3 lowest = x[*nodes.begin()], highest = lowest;
+  for (const std::int32_t n : nodes) {
+    lowest = lowest.cwiseMin(x[n]);
+    highest = highest.cwiseMax(x[n]);
+  }
+  SurfacePlace place;
+  place.centre = 0.5 * (lowest + highest);
+  place.extent = (highest - lowest).norm();
+  return place;
+}
+
+// The first few places, as part of a sentence.
+std::string PlacesText(const std::vector<SurfacePlace>& places) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(places.size(), kPlacesTold); ++i) {
+    text += (i > 0 ? "; " : "") + PlaceText(places[i]);
+  }
+  return text + (places.size() > kPlacesTold ? "; ..." : "");
+}
+
+void JoinNodes(TriangleMesh& surface) {
+  const std::vector<Vec3>& x = surface.nodes;
+  std::vector<std::int32_t> order(x.size()), joined(x.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return std::tuple(x[a].x(), x[a].y(), x[a].z(), a) < std::tuple(x[b].x(), x[b].y(), x[b].z(), b);
+  });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    joined[order[i]] = i > 0 && x[order[i]] == x[order[i - 1]] ? joined[order[i - 1]] : order[i];
+  }
+  for (Triangle& triangle : surface.triangles) {
+    for (std::int32_t& n : triangle) n = joined[n];
+  }
+}
+
+// Nodes that no triangle has any more go.
+void DropUnusedNodes(TriangleMesh& surface) {
+  std::vector<std::int32_t> number(surface.nodes.size(), -1);
+  for (const Triangle& triangle : surface.triangles) {
+    for (const std::int32_t n : triangle) number[n] = 0;
+  }
+  std::int32_t count = 0;
+  for (std::size_t n = 0; n < number.size(); ++n) {
+    if (number[n] < 0) continue;
+    surface.nodes[count] = surface.nodes[n];
+    number[n] = count++;
+  }
+  surface.nodes.resize(count);
+  for (Triangle& triangle : surface.triangles) {
+    for (std::int32_t& n : triangle) n = number[n];
+  }
+}
+
+// Whether two triangles of the same nodes go round the same way.
+bool SameWay(const Triangle& a, const Triangle& b) {
+  const auto at = std::find(b.begin(), b.end(), a[0]) - b.begin();
+  return b[(at + 1) % 3] == a[1];
+}
+
+// Triangles without area go, and those that stand twice; two that stand back to back go both.
+void RemoveTriangles(TriangleMesh& surface, SurfaceReport& report) {
+  const std::size_t before = surface.triangles.size();
+  std::erase_if(surface.triangles, [&](const Triangle& t) {
+    const Vec3 ab = surface.nodes[t[1]] - surface.nodes[t[0]], ac = surface.nodes[t[2]] - surface.nodes[t[0]];
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || ab.cross(ac).isZero(0);
+  });
+  std::map<Triangle, std::vector<std::size_t>> same;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) same[Ascending(surface.triangles[t])].push_back(t);
+  std::vector<char> gone(surface.triangles.size());
+  for (const auto& [nodes, triangles] : same) {
+    std::int64_t net = 0;  // those like the first less those against it
+    for (const std::size_t t : triangles) {
+      net += SameWay(surface.triangles[triangles[0]], surface.triangles[t]) ? 1 : -1;
+    }
+    bool kept = net == 0;
+    for (const std::size_t t : triangles) {
+      const bool like_most = SameWay(surface.triangles[triangles[0]], surface.triangles[t]) == (net > 0);
+      gone[t] = kept || !like_most;
+      kept = kept || like_most;
+    }
+  }
+  std::size_t t = 0;
+  std::erase_if(surface.triangles, [&](const Triangle&) { return gone[t++] != 0; });
+  report.removed_triangles = static_cast<std::int64_t>(before - surface.triangles.size());
+}
+
+// Neighbours over an edge of two triangles go along it in opposite directions: turns those round that don't, beginning
+// at the lowest triangle of each part. Says where that can't be done.
+void OrientNeighbours(TriangleMesh& surface, SurfaceReport& report, Problems& problems) {
+  struct Neighbour {
+    std::int32_t triangle;
+    bool against;
+  };
+  std::vector<std::vector<Neighbour>> neighbours(surface.triangles.size());
+  const std::vector<Side> sides = SortedSides(surface.triangles);
+  ForEachEdge(sides, [&](std::size_t first, std::size_t last) {
+    if (last - first != 2) return;
+    const Side &a = sides[first], &b = sides[first + 1];
+    neighbours[a.triangle].push_back({b.triangle, a.ascending == b.ascending});
+    neighbours[b.triangle].push_back({a.triangle, a.ascending == b.ascending});
+  });
+  std::vector<signed char> turn(surface.triangles.size(), -1);
+  std::vector<SurfacePlace> one_sided;
+  for (std::size_t start = 0; start < turn.size(); ++start) {
+    if (turn[start] >= 0) continue;
+    std::vector<std::int32_t> part = {static_cast<std::int32_t>(start)};
+    turn[start] = 0;
+    std::optional<std::int32_t> conflict;
+    std::size_t turned = 0;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      turned += turn[part[i]];
+      for (const auto& [next, against] : neighbours[part[i]]) {
+        const auto wanted = static_cast<signed char>(turn[part[i]] ^ (against ? 1 : 0));
+        if (turn[next] < 0) {
+          turn[next] = wanted;
+          part.push_back(next);
+        } else if (turn[next] != wanted && !conflict) {
+          conflict = next;
+        }
+      }
+    }
+    if (conflict) one_sided.push_back(PlaceOf(surface.nodes, surface.triangles[*conflict]));
+    // The majority stays.
+    const signed char change = 2 * turned > part.size() ? 0 : 1;
+    for (const std::int32_t t : part) {
+      if (turn[t] != change) continue;
+      std::swap(surface.triangles[t][1], surface.triangles[t][2]);
+      ++report.turned_triangles;
+    }
+  }
+  if (one_sided.empty()) return;
+  problems.Add("", "the surface is one-sided (a Moebius strip) at " + PlacesText(one_sided),
+               "remove the triangles there, so that the hole can be filled");
+}
+
+// Boundaries of holes, in the direction of the triangles that would fill them.
+std::vector<Loop> Boundaries(const TriangleMesh& surface, Problems& problems) {
+  std::multimap<std::int32_t, std::int32_t> next;
+  std::vector<SurfacePlace> crowded;
+  const std::vector<Side> sides = SortedSides(surface.triangles);
+  ForEachEdge(sides, [&](std::size_t first, std::size_t last) {
+    std::int64_t net = 0;
+    for (std::size_t i = first; i < last; ++i) net += sides[i].ascending ? 1 : -1;
+    const auto [low, high] = sides[first].Key();
+    if (net == 0) return;
+    if (last - first > 2) {
+      crowded.push_back(PlaceOf(surface.nodes, std::array{low, high}));
+    } else {
+      net > 0 ? next.emplace(high, low) : next.emplace(low, high);
+    }
+  });
+  if (!crowded.empty()) {
+    problems.Add("",
+                 std::to_string(crowded.size()) + " edges have three or more triangles that close nothing, at " +
+                     PlacesText(crowded),
+                 "remove sheets that hang on the surface or stand inside of it");
+    return {};
+  }
+  std::vector<Loop> loops;
+  while (!next.empty()) {
+    // Where boundaries touch, each return to a node ends a loop.
+    Loop path = {next.begin()->first};
+    while (!path.empty()) {
+      const auto step = next.find(path.back());
+      if (step == next.end()) break;
+      const std::int32_t to = step->second;
+      next.erase(step);
+      const auto met = std::find(path.begin(), path.end(), to);
+      if (met == path.end()) {
+        path.push_back(to);
+        continue;
+      }
+      loops.emplace_back(met, path.end());
+      path.erase(met + 1, path.end());
+      if (path.size() == 1 && next.find(path.back()) == next.end()) break;
+    }
+  }
+  return loops;
+}
+
+// Triangles of least total area over a boundary, by dynamic programming over its parts.
+void FillWithLeastArea(const Loop& loop, TriangleMesh& surface) {
+  const std::size_t n = loop.size();
+  const auto area = [&](std::size_t i, std::size_t j, std::size_t k) {
+    const Vec3 &a = surface.nodes[loop[i]], &b = surface.nodes[loop[j]], &c = surface.nodes[loop[k]];
+    return (b - a).cross(c - a).norm();
+  };
+  std::vector<double> least(n * n, 0);
+  std::vector<std::size_t> middle(n * n, 0);
+  for (std::size_t span = 2; span < n; ++span) {
+    for (std::size_t i = 0; i + span < n; ++i) {
+      const std::size_t k = i + span;
+      double best = std::numeric_limits<double>::infinity();
+      for (std::size_t j = i + 1; j < k; ++j) {
+        const double sum = least[i * n + j] + least[j * n + k] + area(i, j, k);
+        if (!(sum < best)) continue;
+        best = sum;
+        middle[i * n + k] = j;
+      }
+      least[i * n + k] = best;
+    }
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> parts = {{0, n - 1}};
+  while (!parts.empty()) {
+    const auto [i, k] = parts.back();
+    parts.pop_back();
+    if (k - i < 2) continue;
+    const std::size_t j = middle[i * n + k];
+    surface.triangles.push_back({loop[i], loop[j], loop[k]});
+    parts.push_back({i, j});
+    parts.push_back({j, k});
+  }
+}
+
+void FillWithFan(const Loop& loop, TriangleMesh& surface) {
+  Vec3 middle = Vec3::Zero();
+  for (const std::int32_t n : loop) middle += surface.nodes[n] / static_cast<double>(loop.size());
+  const auto node = static_cast<std::int32_t>(surface.nodes.size());
+  surface.nodes.push_back(middle);
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    surface.triangles.push_back({loop[i], loop[(i + 1) % loop.size()], node});
+  }
+}
+
+void FillHoles(TriangleMesh& surface, double largest_hole, SurfaceReport& report, Problems& problems) {
+  std::vector<SurfacePlace> too_large;
+  for (const Loop& loop : Boundaries(surface, problems)) {
+    SurfacePlace place = PlaceOf(surface.nodes, loop);
+    place.count = static_cast<std::int64_t>(loop.size());
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      place.length += (surface.nodes[loop[(i + 1) % loop.size()]] - surface.nodes[loop[i]]).norm();
+    }
+    if (place.extent > largest_hole) {
+      too_large.push_back(place);
+      continue;
+    }
+    report.holes.push_back(place);
+    loop.size() <= kLongestBoundary ? FillWithLeastArea(loop, surface) : FillWithFan(loop, surface);
+  }
+  for (std::size_t i = 0; i < too_large.size() && i < kPlacesTold; ++i) {
+    char text[160];
+    std::snprintf(text, sizeof(text), ", with a boundary of %lld edges, %.4g long; holes up to %.4g across are filled",
+                  static_cast<long long>(too_large[i].count), too_large[i].length, largest_hole);
+    problems.Add("", "the surface has a hole at " + PlaceText(too_large[i]) + text,
+                 "close it, or let larger holes be filled");
+  }
+  if (too_large.size() > kPlacesTold) {
+    problems.Add("", "and " + std::to_string(too_large.size() - kPlacesTold) + " more holes of that kind",
+                 "is this a surface around a body, and is the file complete?");
+  }
+}
+
+// The parts that edges connect, ordered by their lowest triangle.
+std::vector<std::vector<std::int32_t>> Parts(const TriangleMesh& surface) {
+  UnionFind joined(surface.triangles.size());
+  const std::vector<Side> sides = SortedSides(surface.triangles);
+  ForEachEdge(sides, [&](std::size_t first, std::size_t last) {
+    // Where two bodies touch along an edge they stay two.
+    if (last - first == 2) joined.Join(sides[first].triangle, sides[first + 1].triangle);
+  });
+  std::map<std::int32_t, std::vector<std::int32_t>> parts;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    parts[joined.Root(static_cast<std::int32_t>(t))].push_back(static_cast<std::int32_t>(t));
+  }
+  std::vector<std::vector<std::int32_t>> list;
+  for (auto& [root, triangles] : parts) list.push_back(std::move(triangles));
+  return list;
+}
+
+TriangleMesh PartOf(const TriangleMesh& surface, const std::vector<std::int32_t>& triangles) {
+  TriangleMesh part;
+  part.nodes = surface.nodes;
+  for (const std::int32_t t : triangles) part.triangles.push_back(surface.triangles[t]);
+  return part;
+}
+
+// A part that is inside out is a cavity when it lies inside of another part, and else is turned round.
+void OrientParts(TriangleMesh& surface, SurfaceReport& report) {
+  const std::vector<std::vector<std::int32_t>> parts = Parts(surface);
+  report.parts = static_cast<std::int64_t>(parts.size());
+  const auto turn = [&](const std::vector<std::int32_t>& triangles) {
+    for (const std::int32_t t : triangles) std::swap(surface.triangles[t][1], surface.triangles[t][2]);
+    report.turned_triangles += static_cast<std::int64_t>(triangles.size());
+  };
+  if (EnclosedVolume(surface) < 0) {
+    for (const auto& part : parts) turn(part);
+  }
+  if (parts.size() == 1) return;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (EnclosedVolume(PartOf(surface, parts[i])) > 0) continue;
+    const Vec3& point = surface.nodes[surface.triangles[parts[i][0]][0]];
+    bool is_cavity = false;
+    for (std::size_t j = 0; j < parts.size() && !is_cavity; ++j) {
+      if (j == i) continue;
+      const TriangleMesh other = PartOf(surface, parts[j]);
+      is_cavity = TriangleTree(other).IsInside(point);
+    }
+    if (!is_cavity) turn(parts[i]);
+  }
+}
+
+// Pairs that cut each other, gathered to places where they hang together.
+void FindCuts(const TriangleMesh& surface, SurfaceReport& report) {
+  const auto pairs = TriangleTree(surface).CuttingPairs();
+  UnionFind joined(surface.nodes.size());
+  const auto node = [&](std::int32_t t) { return surface.triangles[t][0]; };
+  for (const auto& [s, t] : pairs) {
+    for (const std::int32_t n : surface.triangles[s]) joined.Join(node(s), n);
+    for (const std::int32_t n : surface.triangles[t]) joined.Join(node(s), n);
+  }
+  std::map<std::int32_t, std::pair<std::vector<std::int32_t>, std::int64_t>> places;
+  for (const auto& [s, t] : pairs) {
+    auto& [nodes, count] = places[joined.Root(node(s))];
+    nodes.insert(nodes.end(), surface.triangles[s].begin(), surface.triangles[s].end());
+    nodes.insert(nodes.end(), surface.triangles[t].begin(), surface.triangles[t].end());
+    ++count;
+  }
+  for (const auto& [root, found] : places) {
+    SurfacePlace place = PlaceOf(surface.nodes, found.first);
+    place.count = found.second;
+    report.cuts.push_back(place);
+  }
+}
+
+}  // namespace
+
+std::string PlaceText(const SurfacePlace& place) {
+  char text[128];
+  std::snprintf(text, sizeof(text), "(%.4g, %.4g, %.4g), %.3g across", place.centre.x(), place.centre.y(),
+                place.centre.z(), place.extent);
+  return text;
+}
+
+SurfaceReport RepairSurface(TriangleMesh& surface, double largest_hole, Problems& problems) {
+  SurfaceReport report;
+  const std::size_t before = problems.count();
+  JoinNodes(surface);
+  RemoveTriangles(surface, report);
+  DropUnusedNodes(surface);
+  if (surface.triangles.empty()) {
+    problems.Add("", "the surface has no triangles with an area", "is it flat, or scaled to nothing?");
+    return report;
+  }
+  OrientNeighbours(surface, report, problems);
+  FillHoles(surface, largest_hole, report, problems);
+  if (problems.count() > before) return report;
+  OrientParts(surface, report);
+  FindCuts(surface, report);
+  return report;
+}
+
+}  // namespace fascicle

@@ -1,0 +1,1 @@
+fascicle_fuzz(surface_fuzz SOURCES surface_fuzz.cc DEPS core/geometry)

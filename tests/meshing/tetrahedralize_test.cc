@@ -1,0 +1,134 @@
+#include "core/geometry/tetrahedralize.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/geometry/mesh_checks.h"
+#include "surface_samples.h"
+
+namespace fascicle {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+MeshingResult Mesh(TriangleMesh surface, std::int64_t tetrahedra, double size = 0, int threads = 1) {
+  ThreadTeam team(threads);
+  Problems problems;
+  MeshingOptions options;
+  options.tetrahedra = tetrahedra;
+  options.size = size;
+  auto result = Tetrahedralize(surface, options, team, problems);
+  EXPECT_TRUE(result) << problems.ToString();
+  return result ? std::move(*result) : MeshingResult{};
+}
+
+std::string ProblemsOf(TriangleMesh surface, double size = 0) {
+  ThreadTeam team(1);
+  Problems problems;
+  MeshingOptions options;
+  options.tetrahedra = 4000;
+  options.size = size;
+  EXPECT_FALSE(Tetrahedralize(surface, options, team, problems));
+  return problems.ToString();
+}
+
+struct ClosedForm {
+  std::string name;
+  TriangleMesh surface;
+  double volume;
+};
+
+class ClosedForms : public testing::TestWithParam<ClosedForm> {};
+
+TEST_P(ClosedForms, HaveTheirVolumeAndGoodAngles) {
+  const ClosedForm& form = GetParam();
+  const MeshingResult result = Mesh(form.surface, 6000);
+  const MeshingReport& report = result.report;
+  // Between two counts of a box nothing lies that a lattice could have.
+  EXPECT_NEAR(static_cast<double>(result.mesh.tetrahedra.size()) / 6000, 1, form.name == "box" ? 0.1 : 0.05);
+  EXPECT_GT(report.angles.smallest, 14 * kDegree);
+  EXPECT_GT(report.angles.median, 40 * kDegree);
+  EXPECT_LT(report.angles.largest, 165 * kDegree);
+  // The surface's triangles themselves lie 0.3 % below the round shapes.
+  EXPECT_NEAR(report.volume / form.volume, 1, 5e-3);
+  EXPECT_NEAR(report.VolumeError(), 0, 1e-4);
+  EXPECT_LT(report.surface_distance, 0.5 * report.size);
+  Problems problems;
+  CheckMesh(result.mesh, problems);
+  EXPECT_TRUE(problems.empty()) << problems.ToString();
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, ClosedForms,
+                         testing::Values(ClosedForm{"sphere", SurfaceOf(MakeSphere(1, 24)), 4 * std::numbers::pi / 3},
+                                         ClosedForm{"torus", SurfaceOf(MakeTorus({1, 0.4, 96, 16})),
+                                                    2 * std::numbers::pi* std::numbers::pi * 0.16},
+                                         ClosedForm{"box", SurfaceOf(MakeBox({0, 0, 0}, {1, 0.6, 0.8}, {1, 1, 1})),
+                                                    0.48}),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(TetrahedralizeTest, TheSameBitsForAnyNumberOfThreads) {
+  const TriangleMesh surface = SurfaceOf(MakeTorus({1, 0.4, 36, 8}));
+  const MeshingResult one = Mesh(surface, 5000, 0, 1), three = Mesh(surface, 5000, 0, 3);
+  EXPECT_EQ(one.mesh.nodes, three.mesh.nodes);
+  EXPECT_EQ(one.mesh.tetrahedra, three.mesh.tetrahedra);
+}
+
+// Both error measures fall with the square of the size.
+TEST(TetrahedralizeTest, DistanceFromTheSurfaceFallsWithTheSize) {
+  const TriangleMesh surface = SurfaceOf(MakeSphere(1, 32));
+  const double coarse = Mesh(surface, 0, 0.36).report.surface_distance;
+  const double fine = Mesh(surface, 0, 0.12).report.surface_distance;
+  EXPECT_LT(coarse, 0.04);
+  EXPECT_LT(fine, coarse / 4.5);
+}
+
+TEST(TetrahedralizeTest, ProgressGoesFromNothingToAll) {
+  TriangleMesh surface = SurfaceOf(MakeSphere(1, 8));
+  ThreadTeam team(1);
+  Problems problems;
+  MeshingOptions options;
+  options.size = 0.3;
+  std::vector<double> parts;
+  ASSERT_TRUE(
+      Tetrahedralize(surface, options, team, problems, [&](double part, const char*) { parts.push_back(part); }));
+  EXPECT_EQ(parts.front(), 0);
+  EXPECT_EQ(parts.back(), 1);
+  EXPECT_TRUE(std::is_sorted(parts.begin(), parts.end()));
+}
+
+TEST(TetrahedralizeTest, CavitiesStayEmpty) {
+  TriangleMesh small = SurfaceOf(MakeSphere(0.5, 16));
+  const MeshingResult result = Mesh(Joined(SurfaceOf(MakeSphere(1, 24)), InsideOut(small)), 10000);
+  EXPECT_NEAR(result.report.volume / (4 * std::numbers::pi / 3 * 0.875), 1, 0.01);
+  for (std::size_t t = 0; t < result.mesh.tetrahedra.size(); ++t) {
+    EXPECT_GT(Centroid(result.mesh, t).norm(), 0.48);
+  }
+}
+
+TEST(TetrahedralizeTest, RefusesSeveralBodies) {
+  const TriangleMesh sphere = SurfaceOf(MakeSphere(1, 8));
+  EXPECT_THAT(ProblemsOf(Joined(sphere, Moved(sphere, {3, 0, 0}))), HasSubstr("more than one body"));
+}
+
+// Two bodies that overlap: what lies inside of both counts twice.
+TEST(TetrahedralizeTest, RefusesSurfacesThatCutThemselvesDeeply) {
+  const TriangleMesh sphere = SurfaceOf(MakeSphere(1, 8));
+  const std::string problems = ProblemsOf(Joined(sphere, Moved(sphere, {1.03, 0.02, 0.01})));
+  EXPECT_THAT(problems, HasSubstr("the surface cuts itself at (0.5"));
+  EXPECT_THAT(problems, HasSubstr("pairs of triangles"));
+}
+
+TEST(TetrahedralizeTest, RefusesSizesThatMakeNoSense) {
+  const TriangleMesh sphere = SurfaceOf(MakeSphere(1, 8));
+  EXPECT_THAT(ProblemsOf(sphere, 1e-4), HasSubstr("is the unit right?"));
+  EXPECT_THAT(ProblemsOf(sphere, 1e4), HasSubstr("too large for this surface"));
+  EXPECT_THAT(ProblemsOf({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}}}), HasSubstr("hole at"));
+}
+
+}  // namespace
+}  // namespace fascicle
