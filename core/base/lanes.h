@@ -72,27 +72,46 @@ struct BitsOf<float> {
   static constexpr int kLogTerms = 4, kExpTerms = 7;
 };
 
+// Which lanes: all bits of a true one set, as comparisons of vectors say it.
+template <class Integer, class Set, int kWidth, int kBytes>
+struct LaneMask {
+  typedef Integer Integers __attribute__((vector_size(kBytes)));
+  Integers bits;
+  friend LaneMask operator&(LaneMask a, LaneMask b) { return {a.bits & b.bits}; }
+  friend LaneMask operator|(LaneMask a, LaneMask b) { return {a.bits | b.bits}; }
+  friend LaneMask operator!(LaneMask a) { return {~a.bits}; }
+  bool operator[](int lane) const { return bits[lane] != 0; }
+  bool Any() const {
+    bool any = false;
+    for (int k = 0; k < kWidth; ++k) any |= bits[k] != 0;
+    return any;
+  }
+};
+#if defined(__AVX512F__)
+// In a mask register: what these vectors are compared to.
+template <class Integer, class Set, int kWidth>
+struct LaneMask<Integer, Set, kWidth, 64> {
+  static constexpr unsigned kAll = (1u << kWidth) - 1;
+  unsigned bits;
+  friend LaneMask operator&(LaneMask a, LaneMask b) { return {a.bits & b.bits}; }
+  friend LaneMask operator|(LaneMask a, LaneMask b) { return {a.bits | b.bits}; }
+  friend LaneMask operator!(LaneMask a) { return {~a.bits & kAll}; }
+  bool operator[](int lane) const { return (bits >> lane & 1) != 0; }
+  bool Any() const { return bits != 0; }
+};
+#endif
+
 template <class S, class Set, int kWidth = Set::kBytes / static_cast<int>(sizeof(S))>
 struct Lanes {
   using Scalar = S;
   using Bits = BitsOf<S>;
   static constexpr int kLanes = kWidth;
+  static constexpr int kBytes = kWidth * static_cast<int>(sizeof(S));
   typedef S Vector __attribute__((vector_size(kWidth * sizeof(S))));
   typedef typename Bits::Signed Integers __attribute__((vector_size(kWidth * sizeof(S))));
   typedef typename Bits::Unsigned Naturals __attribute__((vector_size(kWidth * sizeof(S))));
 
-  // True lanes have all bits set.
-  struct Mask {
-    Integers bits;
-    friend Mask operator&(Mask a, Mask b) { return {a.bits & b.bits}; }
-    friend Mask operator|(Mask a, Mask b) { return {a.bits | b.bits}; }
-    friend Mask operator!(Mask a) { return {~a.bits}; }
-    bool Any() const {
-      typename Bits::Signed any = 0;
-      for (int k = 0; k < kWidth; ++k) any |= bits[k];
-      return any != 0;
-    }
-  };
+  using Mask = LaneMask<typename Bits::Signed, Set, kWidth, kBytes>;
 
   Lanes() = default;
   Lanes(double x) : v(Vector{} + static_cast<S>(x)) {}  // NOLINT: numbers in formulas are numbers in every lane
@@ -117,26 +136,35 @@ struct Lanes {
   Lanes& operator+=(Lanes b) { return *this = *this + b; }
   Lanes& operator-=(Lanes b) { return *this = *this - b; }
   Lanes& operator*=(Lanes b) { return *this = *this * b; }
-  friend Mask operator<(Lanes a, Lanes b) { return {a.v < b.v}; }
-  friend Mask operator>(Lanes a, Lanes b) { return {a.v > b.v}; }
-  friend Mask operator<=(Lanes a, Lanes b) { return {a.v <= b.v}; }
-  friend Mask operator>=(Lanes a, Lanes b) { return {a.v >= b.v}; }
-  friend Mask operator==(Lanes a, Lanes b) { return {a.v == b.v}; }
+  friend Mask operator<(Lanes a, Lanes b) { return Compared<kLess>(a, b); }
+  friend Mask operator>(Lanes a, Lanes b) { return Compared<kLess>(b, a); }
+  friend Mask operator<=(Lanes a, Lanes b) { return Compared<kLessOrEqual>(a, b); }
+  friend Mask operator>=(Lanes a, Lanes b) { return Compared<kLessOrEqual>(b, a); }
+  friend Mask operator==(Lanes a, Lanes b) { return Compared<kEqual>(a, b); }
 
-  friend Lanes Select(Mask m, Lanes yes, Lanes no) { return Of(m.bits ? yes.v : no.v); }
+  friend Lanes Select(Mask m, Lanes yes, Lanes no) {
+#if defined(__AVX512F__)
+    if constexpr (kBytes == 64 && sizeof(S) == 8) {
+      return Of((Vector)_mm512_mask_blend_pd(static_cast<__mmask8>(m.bits), (__m512d)no.v, (__m512d)yes.v));
+    } else if constexpr (kBytes == 64) {
+      return Of((Vector)_mm512_mask_blend_ps(static_cast<__mmask16>(m.bits), (__m512)no.v, (__m512)yes.v));
+    } else
+#endif
+      return Of(m.bits ? yes.v : no.v);
+  }
 
   friend Lanes Sqrt(Lanes x) {
 #if defined(__AVX512F__)
-    if constexpr (sizeof(Vector) == 64 && sizeof(S) == 8) return Of((Vector)_mm512_sqrt_pd((__m512d)x.v));
-    if constexpr (sizeof(Vector) == 64 && sizeof(S) == 4) return Of((Vector)_mm512_sqrt_ps((__m512)x.v));
+    if constexpr (kBytes == 64 && sizeof(S) == 8) return Of((Vector)_mm512_sqrt_pd((__m512d)x.v));
+    if constexpr (kBytes == 64 && sizeof(S) == 4) return Of((Vector)_mm512_sqrt_ps((__m512)x.v));
 #endif
 #if defined(__AVX__)
-    if constexpr (sizeof(Vector) == 32 && sizeof(S) == 8) return Of((Vector)_mm256_sqrt_pd((__m256d)x.v));
-    if constexpr (sizeof(Vector) == 32 && sizeof(S) == 4) return Of((Vector)_mm256_sqrt_ps((__m256)x.v));
+    if constexpr (kBytes == 32 && sizeof(S) == 8) return Of((Vector)_mm256_sqrt_pd((__m256d)x.v));
+    if constexpr (kBytes == 32 && sizeof(S) == 4) return Of((Vector)_mm256_sqrt_ps((__m256)x.v));
 #endif
 #if defined(__SSE2__)
-    if constexpr (sizeof(Vector) == 16 && sizeof(S) == 8) return Of((Vector)_mm_sqrt_pd((__m128d)x.v));
-    if constexpr (sizeof(Vector) == 16 && sizeof(S) == 4) return Of((Vector)_mm_sqrt_ps((__m128)x.v));
+    if constexpr (kBytes == 16 && sizeof(S) == 8) return Of((Vector)_mm_sqrt_pd((__m128d)x.v));
+    if constexpr (kBytes == 16 && sizeof(S) == 4) return Of((Vector)_mm_sqrt_ps((__m128)x.v));
 #endif
     Vector root{};
     for (int k = 0; k < kWidth; ++k) root[k] = static_cast<S>(__builtin_sqrt(x.v[k]));
@@ -194,6 +222,22 @@ struct Lanes {
   Vector v;
 
  private:
+  enum Comparison { kLess, kLessOrEqual, kEqual };  // false where one is not a number
+  template <Comparison kComparison>
+  static Mask Compared(Lanes a, Lanes b) {
+#if defined(__AVX512F__)
+    constexpr int kCode = kComparison == kLess ? _CMP_LT_OQ : kComparison == kLessOrEqual ? _CMP_LE_OQ : _CMP_EQ_OQ;
+    if constexpr (kBytes == 64 && sizeof(S) == 8) {
+      return {_mm512_cmp_pd_mask((__m512d)a.v, (__m512d)b.v, kCode)};
+    } else if constexpr (kBytes == 64) {
+      return {_mm512_cmp_ps_mask((__m512)a.v, (__m512)b.v, kCode)};
+    } else
+#endif
+      return {kComparison == kLess          ? Integers(a.v < b.v)
+              : kComparison == kLessOrEqual ? Integers(a.v <= b.v)
+                                            : Integers(a.v == b.v)};
+  }
+
   // exp x = 2 scale (1 + rest), 2 scale = 2^k, rest = exp r - 1 with |r| <= ln 2 / 2. (Half of 2^k can be written also
   // where the result is nearly too large.)
   struct PowerOfE {

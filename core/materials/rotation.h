@@ -19,7 +19,7 @@ inline void TakeRotationBySvd(bool todo, const Matrix3<double>& F, Matrix3<doubl
 template <class T>
 void TakeRotationBySvd(const typename T::Mask& todo, const Matrix3<T>& F, Matrix3<T>& R) {
   for (int lane = 0; lane < T::kLanes; ++lane) {
-    if (!todo.bits[lane]) continue;
+    if (!todo[lane]) continue;
     double f[9], r[9];
     for (int k = 0; k < 9; ++k) f[k] = F.m[k][lane];
     NearestRotationBySvd(f, r);

@@ -25,6 +25,7 @@ class TangentMatrix {
   // Place of (row, column), row <= column.
   static constexpr int At(int row, int column) { return 9 * row - row * (row - 1) / 2 + column - row; }
   const T& operator[](int place) const { return h_[place]; }
+  void Set(int place, const T& value) { h_[place] = value; }
 
   void Diagonal(const T& s) {
     for (int i = 0; i < 9; ++i) h_[At(i, i)] += s;

@@ -102,11 +102,13 @@ enum class ElementOrder { kLinear, kQuadratic };
 // Where the volume energy of nearly incompressible laws acts: on averages around nodes, or in each element by itself,
 // which locks.
 enum class VolumeForm { kNodal, kElement };
+enum class Precision { kDouble, kSingle };
 
 struct TetMethod {
   Stepping stepping = Stepping::kExplicit;
   ElementOrder element = ElementOrder::kLinear;
   VolumeForm volume = VolumeForm::kNodal;
+  Precision precision = Precision::kDouble;
   std::optional<double> time_step;  // [s]; automatic when absent
   double newton_tolerance = 1e-8;   // relative force at which the iterations of implicit steps end
   double safety = 0.9;

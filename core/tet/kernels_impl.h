@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_TET_KERNELS_IMPL_H_
 
 #include "core/base/lanes.h"
+#include "core/geometry/quadratic_tetrahedron.h"
 #include "core/materials/material.h"
 #include "core/tet/kernels.h"
 
@@ -74,7 +75,8 @@ struct LawOnBlocks {
     return {LoadVector<L>(at.fibres->direction, lane), L::Load(&at.activation[lane]),
             L::Load(&at.previous_stretch[lane]), at.inverse_step};
   }
-  static void Stress(const void* law, const PointBlock<S>& at, BlockMatrix<S>& P) {
+  // Inlined to the last call: vectors stay in registers.
+  [[gnu::flatten]] static void Stress(const void* law, const PointBlock<S>& at, BlockMatrix<S>& P) {
     for (int k = 0; k < kBlock; k += L::kLanes) {
       StoreMatrix(static_cast<const Law*>(law)->StressAt(LoadMatrix<L>(at.F.m, k), FibreOf(at, k)), k, P.m);
     }
@@ -84,7 +86,7 @@ struct LawOnBlocks {
       static_cast<const Law*>(law)->EnergyAt(LoadMatrix<L>(at.F.m, k), FibreOf(at, k)).Store(&density[k]);
     }
   }
-  static void Product(const void* law, const PointBlock<S>& at, const BlockMatrix<S>& dF, BlockMatrix<S>& dP) {
+  [[gnu::flatten]] static void Product(const void* law, const PointBlock<S>& at, const BlockMatrix<S>& dF, BlockMatrix<S>& dP) {
     for (int k = 0; k < kBlock; k += L::kLanes) {
       TangentProduct<L> terms(LoadMatrix<L>(dF.m, k));
       static_cast<const Law*>(law)->AddTangentAt(LoadMatrix<L>(at.F.m, k), FibreOf(at, k), terms);
@@ -273,6 +275,17 @@ struct ChunkKernels {
     return sum;
   }
 
+  // Asks for the next block while this one is worked on: the memory of a busy machine is far away.
+  static void Prefetch(const ChunkTask<S>& task, std::size_t b) {
+    if (b * kBlock >= task.elements) return;
+    const auto fetch = [](const void* begin, std::size_t bytes) {
+      for (std::size_t at = 0; at < bytes; at += 64) __builtin_prefetch(static_cast<const char*>(begin) + at);
+    };
+    fetch(task.points + kPoints * b, kPoints * sizeof(RestPoint<S>));
+    fetch(task.fibres + b, sizeof(BlockFibres<S>));
+    fetch(task.local + b * kNodes * kBlock, kNodes * kBlock * sizeof(std::uint16_t));
+  }
+
   static void SetActivation(const ChunkTask<S>& task, const BlockFibres<S>& fibres, PointBlock<S>& point) {
     point.fibres = &fibres;
     point.inverse_step = task.inverse_step;
@@ -315,7 +328,7 @@ struct ChunkKernels {
     }
   };
 
-  static ChunkReport Forces(const ChunkTask<S>& task) {
+  [[gnu::flatten]] static ChunkReport Forces(const ChunkTask<S>& task) {
     NodeRows x, other, sums;
     const bool needs_previous = HasRate(task) || (IsViscous(task) && task.v == nullptr);
     const bool viscous = IsViscous(task);
@@ -326,7 +339,7 @@ struct ChunkKernels {
     if (viscous && task.v != nullptr) LoadVectors(task, task.v, nullptr, velocity);
     for (std::size_t i = 0; i < 4 * task.node_count; ++i) sums.at[i] = 0;
 
-    LaneSums power, energy, squares;
+    LaneSums power, energy, squares, not_finite;
     alignas(64) S smallest[kBlock];
     for (S& s : smallest) s = 1;
     NodeValues positions, previous, rates, forces;
@@ -336,6 +349,7 @@ struct ChunkKernels {
     const std::size_t blocks = (task.elements + kBlock - 1) / kBlock;
     const LawKernels<S>& law = LawList<L, Material>::kKernels[task.law_kind];
     for (std::size_t b = 0; b < blocks; ++b) {
+      Prefetch(task, b + 1);
       const std::uint16_t* local = task.local + b * kNodes * kBlock;
       Gather(x, local, positions);
       if (needs_previous) Gather(before, local, previous);
@@ -355,8 +369,8 @@ struct ChunkKernels {
             const Matrix3<L> cofactor = Cofactor(F);
             const L J = DeterminantOf(F, cofactor);
             const L least = L::Load(&smallest[k]);
-            const auto keep = !(J < least) & (J == J);
-            Select(keep | !(least == least), least, J).Store(&smallest[k]);
+            Select(J < least, J, least).Store(&smallest[k]);
+            not_finite.Add(k, J * 0);
             total = LoadMatrix<L>(P.m, k);
             if (task.pressure != nullptr) total = total + FourthAt(positions, q, k) * cofactor;
           }
@@ -377,9 +391,9 @@ struct ChunkKernels {
     ChunkReport report;
     report.finite = WriteVectors(task, sums);
     for (const S s : smallest) {
-      if (!(s >= report.smallest_ratio)) report.smallest_ratio = s;
-      if (s != s) break;
+      if (s < report.smallest_ratio) report.smallest_ratio = s;
     }
+    if (not_finite.Total() != 0) report.smallest_ratio = not_finite.Total();
     report.dissipated_power = power.Total();
     report.energy = energy.Total() + (task.with_energy ? 0.5 * report.dissipated_power : 0);
     report.squares = squares.Total();
@@ -446,7 +460,7 @@ struct ChunkKernels {
   // A point's part of the volume is det Ds / 6 times its weight.
   static constexpr double kVolumePerEdges = 1.0 / (6 * kPoints);
 
-  static void CornerVolumes(const ChunkTask<S>& task) {
+  [[gnu::flatten]] static void CornerVolumes(const ChunkTask<S>& task) {
     NodeRows x;
     alignas(64) S sums[kChunkNodes];
     LoadPositions(task, task.x, nullptr, x);
@@ -461,7 +475,7 @@ struct ChunkKernels {
     WriteNumbers(task, sums);
   }
 
-  static void CornerVolumeChanges(const ChunkTask<S>& task) {
+  [[gnu::flatten]] static void CornerVolumeChanges(const ChunkTask<S>& task) {
     NodeRows x, p;
     alignas(64) S sums[kChunkNodes];
     LoadPositions(task, task.x, nullptr, x);
@@ -486,7 +500,7 @@ struct ChunkKernels {
     return F + kHair * ::fascicle::Outer(F * a0, a0);
   }
 
-  static void StiffnessProduct(const ChunkTask<S>& task) {
+  [[gnu::flatten]] static void StiffnessProduct(const ChunkTask<S>& task) {
     NodeRows x, p, sums;
     LoadPositions(task, task.x, task.pressure, x);
     LoadVectors(task, task.p, task.pressure_change, p);
@@ -496,6 +510,7 @@ struct ChunkKernels {
     BlockMatrix<S> dF, dP;
     const LawKernels<S>& law = LawList<L, Material>::kKernels[task.law_kind];
     for (std::size_t b = 0; b * kBlock < task.elements; ++b) {
+      Prefetch(task, b + 1);
       const std::uint16_t* local = task.local + b * kNodes * kBlock;
       Gather(x, local, positions);
       Gather(p, local, changes);
@@ -524,12 +539,219 @@ struct ChunkKernels {
     }
     WriteVectors(task, sums);
   }
+
+  // How a node's value enters the corners of the linear tetrahedra: of a corner node one, of the middle of an edge two.
+  struct Parts {
+    int count = 0;
+    int corner[2] = {};
+    double factor[kPoints][2] = {};
+  };
+  struct PartTable {
+    constexpr PartTable() {
+      for (int a = 0; a < kNodes; ++a) {
+        Parts& parts = of[a];
+        parts.count = a < 4 ? 1 : 2;
+        for (int i = 0; i < parts.count; ++i) {
+          parts.corner[i] = a < 4 ? a : kEdgeEnds[a - 4][i];
+          for (int q = 0; q < kPoints; ++q) {
+            parts.factor[q][i] = kNodes == 4 ? 1
+                                 : a < 4     ? 4 * Barycentric(q, a) - 1
+                                             : 4 * Barycentric(q, kEdgeEnds[a - 4][1 - i]);
+          }
+        }
+      }
+    }
+    Parts of[kNodes];
+  };
+  static constexpr int kPairs = kNodes * (kNodes + 1) / 2;
+  static constexpr int PairOf(int a, int b) { return a * (a + 1) / 2 + b; }
+
+  // The entries of a block's matrices, element beside element.
+  struct alignas(64) MatrixEntries {
+    S blocks[kPairs][9][kBlock];
+    S volumes[4][kNodes][3][kBlock];
+  };
+
+  // H of a point under the whole potential.
+  static TangentMatrix<L> TangentAt(const ChunkTask<S>& task, const S (*H)[kBlock], const Matrix3<L>& F,
+                                    const NodeValues& positions, const NodeValues& previous, const RestPoint<S>& rest,
+                                    int q, int k) {
+    TangentMatrix<L> terms;
+    for (int i = 0; i < TangentMatrix<L>::kEntries; ++i) terms.Set(i, L::Load(&H[i][k]));
+    if (task.pressure != nullptr) terms.CofactorTerm(FourthAt(positions, q, k), F);
+    if (IsViscous(task)) {
+      terms.Square(task.lambda, F);
+      terms.Right(ViscousStress(task, StrainOf(task, F, previous, rest, q, k)));
+      terms.Transposed(task.mu, F);
+      terms.Left(task.mu * (F * ::fascicle::Transpose(F)));
+    }
+    return terms;
+  }
+
+  // The blocks of the linear tetrahedron of one point: of corners c >= d at PairOf(c, d).
+  static void SetCornerBlocks(const TangentMatrix<L>& H, const L& volume, const Matrix3<L>& Dm_inverse,
+                              Matrix3<L> (&blocks)[10]) {
+    for (int d = 1; d < 4; ++d) {
+      // Change of P with each component of corner d.
+      Matrix3<L> change[3];
+      for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 3; ++i) {
+          for (int k = 0; k < 3; ++k) {
+            L sum = 0.0;
+            for (int l = 0; l < 3; ++l) {
+              const int row = 3 * j + i, column = 3 * l + k;
+              sum += H[row <= column ? H.At(row, column) : H.At(column, row)] * Dm_inverse(d - 1, l);
+            }
+            change[j](i, k) = volume * sum;
+          }
+        }
+      }
+      for (int c = d; c < 4; ++c) {
+        blocks[PairOf(c, d)] =
+            Dm_inverse(c - 1, 0) * change[0] + Dm_inverse(c - 1, 1) * change[1] + Dm_inverse(c - 1, 2) * change[2];
+      }
+    }
+    // The gradients of all four corners sum to zero.
+    for (int c = 1; c < 4; ++c) {
+      Matrix3<L> sum = blocks[PairOf(c, c)];
+      for (int d = 1; d < 4; ++d) {
+        if (d != c) sum = sum + (d < c ? blocks[PairOf(c, d)] : ::fascicle::Transpose(blocks[PairOf(d, c)]));
+      }
+      blocks[PairOf(c, 0)] = -1 * sum;
+    }
+    blocks[0] = -1 * (blocks[PairOf(1, 0)] + blocks[PairOf(2, 0)] + blocks[PairOf(3, 0)]);
+  }
+
+  static void Clear(MatrixEntries& entries) {
+    for (int i = 0; i < kPairs; ++i) {
+      for (int m = 0; m < 9; ++m) {
+        for (int k = 0; k < kBlock; k += L::kLanes) L(0.0).Store(&entries.blocks[i][m][k]);
+      }
+    }
+    for (int i = 0; i < 12 * kNodes; ++i) {
+      for (int k = 0; k < kBlock; k += L::kLanes) L(0.0).Store(&entries.volumes[0][0][0][kBlock * i + k]);
+    }
+  }
+  static void AddBlocks(const Matrix3<L> (&corner_blocks)[10], int q, int k, MatrixEntries& entries) {
+    static constexpr PartTable kParts;
+    if constexpr (kNodes == 4) {
+      for (int pair = 0; pair < kPairs; ++pair) {
+        for (int m = 0; m < 9; ++m) corner_blocks[pair].m[m].Store(&entries.blocks[pair][m][k]);
+      }
+      return;
+    }
+    for (int a = 0; a < kNodes; ++a) {
+      for (int b = 0; b <= a; ++b) {
+        S(*block)[kBlock] = entries.blocks[PairOf(a, b)];
+        const Parts &of_a = kParts.of[a], &of_b = kParts.of[b];
+        for (int i = 0; i < of_a.count; ++i) {
+          for (int j = 0; j < of_b.count; ++j) {
+            const int c = of_a.corner[i], d = of_b.corner[j];
+            const L factor = of_a.factor[q][i] * of_b.factor[q][j];
+            const Matrix3<L>& part = corner_blocks[c >= d ? PairOf(c, d) : PairOf(d, c)];
+            for (int m = 0; m < 9; ++m) {
+              const L& value = part.m[c >= d ? m : 3 * (m % 3) + m / 3];
+              (L::Load(&block[m][k]) + factor * value).Store(&block[m][k]);
+            }
+          }
+        }
+      }
+    }
+  }
+
+  // Derivatives of the integrals of L_c J.
+  static void AddVolumes(const Matrix3<L>& F, const L& volume, const Matrix3<L>& Dm_inverse, int q, int k,
+                         MatrixEntries& entries) {
+    static constexpr PartTable kParts;
+    const Matrix3<L> h = volume * (Cofactor(F) * ::fascicle::Transpose(Dm_inverse));
+    for (int i = 0; i < 3; ++i) {
+      const L of_corner[4] = {-(h(i, 0) + h(i, 1) + h(i, 2)), h(i, 0), h(i, 1), h(i, 2)};
+      for (int a = 0; a < kNodes; ++a) {
+        const Parts& parts = kParts.of[a];
+        L change = 0.0;
+        for (int p = 0; p < parts.count; ++p) change += parts.factor[q][p] * of_corner[parts.corner[p]];
+        for (int c = 0; c < 4; ++c) {
+          S* to = &entries.volumes[c][a][i][k];
+          const L before = kNodes == 4 ? L(0.0) : L::Load(to);
+          (before + Barycentric(q, c) * change).Store(to);
+        }
+      }
+    }
+  }
+
+  // `count` entries of each of `elements` elements, from side by side to one element after another.
+  static void Separate(const S (*entries)[kBlock], int count, int elements, double* out) {
+    for (int first = 0; first < elements; first += 4) {
+      int entry = 0;
+      if constexpr (sizeof(S) == 8) {
+        for (; first + 4 <= elements && entry + 4 <= count; entry += 4) {
+          Row r[4];
+          for (int i = 0; i < 4; ++i) r[i] = R::Load(&entries[entry + i][first]);
+          R::Transpose(r);
+          for (int i = 0; i < 4; ++i) R::Store(r[i], reinterpret_cast<S*>(out) + count * (first + i) + entry);
+        }
+      }
+      for (; entry < count; ++entry) {
+        for (int i = first; i < elements && i < first + 4; ++i) out[count * i + entry] = entries[entry][i];
+      }
+    }
+  }
+
+  [[gnu::flatten]] static void Matrices(const ChunkTask<S>& task, std::size_t b, const BlockMatrices& out) {
+    NodeValues positions, previous;
+    const std::uint16_t* local = task.local + b * kNodes * kBlock;
+    const bool needs_previous = HasRate(task) || IsViscous(task);
+    LoadElements(task, task.x, task.pressure, local, positions);
+    if (needs_previous) LoadElements(task, task.previous, nullptr, local, previous);
+    MatrixEntries entries;
+    if (kNodes != 4) Clear(entries);
+    PointBlock<S> point;
+    alignas(64) S H[TangentMatrix<L>::kEntries][kBlock];
+    SetActivation(task, task.fibres[b], point);
+    for (int q = 0; q < kPoints; ++q) {
+      const RestPoint<S>& rest = task.points[kPoints * b + q];
+      for (int k = 0; k < kBlock; k += L::kLanes) StoreMatrix(Gradient(positions, rest, q, k), k, point.F.m);
+      if (HasRate(task)) SetPreviousStretch(previous, rest, q, point);
+      LawList<L, Material>::kKernels[task.law_kind].tangent(task.law, point, H);
+      for (int k = 0; k < kBlock; k += L::kLanes) {
+        const Matrix3<L> F = LoadMatrix<L>(point.F.m, k), Dm_inverse = LoadMatrix<L>(rest.Dm_inverse, k);
+        const L volume = L::Load(&rest.volume[k]);
+        Matrix3<L> corner_blocks[10];
+        SetCornerBlocks(TangentAt(task, H, F, positions, previous, rest, q, k), volume, Dm_inverse, corner_blocks);
+        AddBlocks(corner_blocks, q, k, entries);
+        AddVolumes(F, volume, Dm_inverse, q, k, entries);
+      }
+    }
+    const int elements = ElementsOf(task, b);
+    Separate(&entries.blocks[0][0], 9 * kPairs, elements, out.blocks);
+    Separate(&entries.volumes[0][0][0], 12 * kNodes, elements, out.volumes);
+  }
+
+  // The values of the nodes of a block's elements straight from all nodes.
+  static void LoadElements(const ChunkTask<S>& task, const double* values, const double* of_patch,
+                           const std::uint16_t* local, NodeValues& to) {
+    const double* origin = values + 3 * task.nodes[0];
+    for (int a = 0; a < kNodes; ++a) {
+      for (int k = 0; k < kBlock; ++k) {
+        const int node = local[a * kBlock + k];
+        const double* value = values + 3 * task.nodes[node];
+        for (int c = 0; c < 3; ++c) {
+          to.at[a][c][k] = static_cast<S>(sizeof(S) == 4 ? value[c] - origin[c] : value[c]);
+        }
+        const bool has_patch = of_patch != nullptr && task.patch[node] != Sharing::kNone;
+        to.at[a][3][k] = has_patch ? static_cast<S>(of_patch[task.patch[node]]) : S(0);
+      }
+    }
+  }
 };
 
 template <class L, class Shape>
 constexpr ElementKernels<typename L::Scalar> ElementKernelsOf() {
   using K = ChunkKernels<L, Shape>;
-  return {&K::Forces, &K::CornerVolumes, &K::CornerVolumeChanges, &K::StiffnessProduct, nullptr};
+  using S = typename L::Scalar;
+  void (*matrices)(const ChunkTask<S>&, std::size_t, const BlockMatrices&) = nullptr;
+  if constexpr (sizeof(S) == 8) matrices = &K::Matrices;
+  return {&K::Forces, &K::CornerVolumes, &K::CornerVolumeChanges, &K::StiffnessProduct, matrices};
 }
 
 template <class L>

@@ -182,6 +182,7 @@ TetMethod TranslateMethod(const v1::Scene& scene) {
   method.stepping = ToStepping(scene.tet().stepping());
   method.element = ToElement(scene.tet().element(), method.stepping);
   if (scene.tet().volume() == v1::VOLUME_FORM_ELEMENT) method.volume = VolumeForm::kElement;
+  if (scene.tet().precision() == v1::PRECISION_SINGLE) method.precision = Precision::kSingle;
   method.newton_tolerance = scene.tet().newton_tolerance();
   if (scene.tet().has_time_step()) method.time_step = scene.tet().time_step();
   method.safety = scene.tet().safety();
