@@ -30,8 +30,7 @@ struct ActiveCurve {
     // Integral over one of the outer parabolas, and from 0 to the middle.
     constexpr double kOuter = 3 * 0.2 * 0.2 * 0.2;
     constexpr double kHalf = kOuter + 0.4 - 4 * 0.4 * 0.4 * 0.4 / 3;
-    const T inner =
-        Select(r <= 1.4, kHalf + (r - 1) - 4.0 / 3.0 * Cube<T>(r - 1), 2 * kHalf + 3 * Cube<T>(r - 1.6));
+    const T inner = Select(r <= 1.4, kHalf + (r - 1) - 4.0 / 3.0 * Cube<T>(r - 1), 2 * kHalf + 3 * Cube<T>(r - 1.6));
     const T below = Select(r < 0.6, 3 * Cube<T>(r - 0.4), inner);
     return Select(r <= 0.4, 0, Select(r >= 1.6, 2 * kHalf, below));
   }

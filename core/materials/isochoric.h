@@ -112,8 +112,8 @@ Matrix3<T> FibreWeight(double c1, const T& W4, const Vector3<T>& a0) {
 
 // Adds the tangent with fibres: N held fixed, and the curvature of F2.
 template <class T, class Terms>
-void AddFibreTangent(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const MatrixModuli& m,
-                     const Vector3<T>& a0, const FibreDerivatives<T>& d, Terms& terms) {
+void AddFibreTangent(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const MatrixModuli& m, const Vector3<T>& a0,
+                     const FibreDerivatives<T>& d, Terms& terms) {
   AddNearlyIncompressibleTangent(F, k, FibreWeight(m.c1, d.W4, a0), m.c2, m.bulk, terms);
   terms.Square(d.W44, FibreStretchSquaredGradient(F, k, a0));
 }

@@ -98,9 +98,7 @@ class TangentProduct {
 
   void Diagonal(const T& s) { dP_ = dP_ + s * dF_; }
   void Square(const T& s, const Matrix3<T>& a) { dP_ = dP_ + (s * Contract(a, dF_)) * a; }
-  void Pair(const Matrix3<T>& a, const Matrix3<T>& b) {
-    dP_ = dP_ + Contract(b, dF_) * a + Contract(a, dF_) * b;
-  }
+  void Pair(const Matrix3<T>& a, const Matrix3<T>& b) { dP_ = dP_ + Contract(b, dF_) * a + Contract(a, dF_) * b; }
   void Right(const Matrix3<T>& N) { dP_ = dP_ + dF_ * N; }
   void Left(const Matrix3<T>& M) { dP_ = dP_ + M * dF_; }
   void Transposed(const T& s, const Matrix3<T>& A) { dP_ = dP_ + s * (A * (Transpose(dF_) * A)); }

@@ -2,7 +2,8 @@
 
 namespace fascicle {
 
-Sharing::Sharing(std::span<const std::int32_t> of_local, std::size_t places) : target(of_local.begin(), of_local.end()) {
+Sharing::Sharing(std::span<const std::int32_t> of_local, std::size_t places)
+    : target(of_local.begin(), of_local.end()) {
   std::vector<std::int32_t> uses(places, 0);
   for (const std::int32_t place : of_local) {
     if (place != kNone) ++uses[place];

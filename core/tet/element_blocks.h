@@ -35,7 +35,7 @@ struct alignas(64) BlockFibres {
 
 template <class S>
 struct BlockArrays {
-  std::vector<RestPoint<S>> points;     // of point q of block b: points[points of an element * b + q]
+  std::vector<RestPoint<S>> points;    // of point q of block b: points[points of an element * b + q]
   std::vector<BlockFibres<S>> fibres;  // of each block
 };
 
@@ -66,7 +66,7 @@ struct ElementChunks {
   std::vector<std::int32_t> nodes;  // of each chunk, in the order in which its elements first name them
   // In its chunk's nodes: node a of lane k of block b is local[(nodes of an element * b + a) * kBlock + k].
   std::vector<std::uint16_t> local;
-  std::vector<std::int32_t> slot;  // of each element: kBlock * block + lane
+  std::vector<std::int32_t> slot;   // of each element: kBlock * block + lane
   std::vector<std::int32_t> patch;  // of each entry of `nodes`; Sharing::kNone without
   Sharing node_sums, patch_sums;
 };

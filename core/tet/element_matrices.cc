@@ -72,7 +72,8 @@ ChunkReport PlainForces(const TetModel& model, const IncrementalPotential& poten
   for (std::size_t i = chunk.node_begin; i < chunk.node_end; ++i) {
     const Vec3& sum = sums[i - chunk.node_begin];
     const std::int32_t target = chunks.node_sums.target[i];
-    std::copy_n(sum.data(), 3, target >= 0 ? force + 3 * std::ptrdiff_t{target} : slot_sums + 3 * std::ptrdiff_t{~target});
+    std::copy_n(sum.data(), 3,
+                target >= 0 ? force + 3 * std::ptrdiff_t{target} : slot_sums + 3 * std::ptrdiff_t{~target});
     report.finite &= std::isfinite(sum.sum());
   }
   return report;
@@ -106,8 +107,8 @@ void SetPlainMatrices(const TetModel& model, const IncrementalPotential& potenti
           change *= volume;
           for (int a = b; a < kNodes; ++a) {
             Eigen::Map<Mat3>(blocks + 9 * (a * (a + 1) / 2 + b)) += G(0, a) * change.template topRows<3>() +
-                                                                     G(1, a) * change.template middleRows<3>(3) +
-                                                                     G(2, a) * change.template bottomRows<3>();
+                                                                    G(1, a) * change.template middleRows<3>(3) +
+                                                                    G(2, a) * change.template bottomRows<3>();
           }
           const Vec3 volume_change = volume * (cofactor * G.col(b));
           for (int c = 0; c < 4; ++c) {
@@ -230,7 +231,8 @@ void AddStiffness(const TetModel& model, const IncrementalPotential& potential, 
       team.For(parts, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t part = begin; part < end; ++part) {
           const auto low = static_cast<std::int32_t>(std::int64_t{blocks} * static_cast<std::int64_t>(part) / parts);
-          const auto high = static_cast<std::int32_t>(std::int64_t{blocks} * static_cast<std::int64_t>(part + 1) / parts);
+          const auto high =
+              static_cast<std::int32_t>(std::int64_t{blocks} * static_cast<std::int64_t>(part + 1) / parts);
           for (std::size_t c = 0; c < count; ++c) {
             const Chunk& chunk = chunks[first + c];
             AddBlocks<Element>({chunk.tet_begin, chunk.tet_end - chunk.tet_begin, Element::kNodes, &kept[c * of_chunk]},

@@ -13,10 +13,10 @@ namespace fascicle {
 
 // Of all elements, without patches, loads, inertia and floors.
 struct ElementEvaluation {
-  double energy = 0;            // [J]
-  double smallest_ratio = 1;    // least J of all points, at most 1; NaN where one is
-  double squares = 0;           // sum of the squares of all element forces [N^2]
-  bool finite = true;           // all forces
+  double energy = 0;          // [J]
+  double smallest_ratio = 1;  // least J of all points, at most 1; NaN where one is
+  double squares = 0;         // sum of the squares of all element forces [N^2]
+  bool finite = true;         // all forces
 };
 // Sets `force` on all nodes [N]: -d/dx of the elements' energy, less that of the patches' pressures.
 ElementEvaluation EvaluateElements(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
@@ -48,8 +48,8 @@ void ForElementMatrices(const TetModel& model, const IncrementalPotential& poten
 inline constexpr std::int32_t kNoBlock = INT32_MAX;
 
 // Adds all blocks to a matrix of 3x3 blocks, each nine numbers column by column: that of pair k of element e to
-// values[9 place ..] with place = places[pairs * e + k], transposed where place is negative, to block ~place; not at all
-// for kNoBlock. Blocks are added in the order of the elements.
+// values[9 place ..] with place = places[pairs * e + k], transposed where place is negative, to block ~place; not at
+// all for kNoBlock. Blocks are added in the order of the elements.
 void AddStiffness(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
                   std::span<const double> acting, double projection, std::span<const std::int32_t> places,
                   ThreadTeam& team, ForceWorkspace& workspace, std::span<double> values);

@@ -48,8 +48,8 @@ struct ChunkTask {
   const double* pressure_change = nullptr;
 
   bool with_energy = false;
-  double* sums = nullptr;        // where no other chunk has part; null for reports alone
-  double* slot_sums = nullptr;   // of shared places
+  double* sums = nullptr;       // where no other chunk has part; null for reports alone
+  double* slot_sums = nullptr;  // of shared places
 };
 
 struct ChunkReport {

@@ -86,7 +86,8 @@ struct LawOnBlocks {
       static_cast<const Law*>(law)->EnergyAt(LoadMatrix<L>(at.F.m, k), FibreOf(at, k)).Store(&density[k]);
     }
   }
-  [[gnu::flatten]] static void Product(const void* law, const PointBlock<S>& at, const BlockMatrix<S>& dF, BlockMatrix<S>& dP) {
+  [[gnu::flatten]] static void Product(const void* law, const PointBlock<S>& at, const BlockMatrix<S>& dF,
+                                       BlockMatrix<S>& dP) {
     for (int k = 0; k < kBlock; k += L::kLanes) {
       TangentProduct<L> terms(LoadMatrix<L>(dF.m, k));
       static_cast<const Law*>(law)->AddTangentAt(LoadMatrix<L>(at.F.m, k), FibreOf(at, k), terms);
@@ -125,15 +126,19 @@ struct Rows {
 
   static void Transpose(Row r[4]) {
     if constexpr (sizeof(S) == 8) {
-      const Row a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6), b = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
-      const Row c = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6), d = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+      const Row a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6),
+                b = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+      const Row c = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6),
+                d = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
       r[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
       r[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
       r[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
       r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
     } else {
-      const Row a = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5), b = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5);
-      const Row c = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7), d = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
+      const Row a = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5),
+                b = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5);
+      const Row c = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7),
+                d = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
       r[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
       r[1] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
       r[2] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
@@ -775,8 +780,8 @@ template <class Set>
 constexpr Kernels KernelsOf() {
   using D = Lanes<double, Set>;
   using F = Lanes<float, Set>;
-  return {ElementKernelsOf<D, LinearShape>(), ElementKernelsOf<D, QuadraticShape>(),
-          ElementKernelsOf<F, LinearShape>(), ElementKernelsOf<F, QuadraticShape>(), &PatchPressures<D>};
+  return {ElementKernelsOf<D, LinearShape>(), ElementKernelsOf<D, QuadraticShape>(), ElementKernelsOf<F, LinearShape>(),
+          ElementKernelsOf<F, QuadraticShape>(), &PatchPressures<D>};
 }
 
 }  // namespace fascicle

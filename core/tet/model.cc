@@ -111,7 +111,8 @@ TetModel::TetModel(const Scene& scene) : scene_(&scene) {
   // What grew one by one has room for as much again.
   const auto shrink = [](auto&... vectors) { (vectors.shrink_to_fit(), ...); };
   shrink(rest_positions_, tetrahedra_, edge_nodes_, source_tetrahedron_, law_of_, mass_, mass_damping_);
-  shrink(patches_.of_element, patches_.rest_volume, patches_.modulus, patches_.row, patches_.neighbour, patches_.weight);
+  shrink(patches_.of_element, patches_.rest_volume, patches_.modulus, patches_.row, patches_.neighbour,
+         patches_.weight);
   shrink(chunks_.chunks, chunks_.nodes, chunks_.local, chunks_.slot, chunks_.patch);
   FindCurvesEnd();
 }
@@ -152,7 +153,8 @@ void TetModel::AddNodes(const Body& body, TetBody& entry) {
       std::array<std::int32_t, 6>& edges = edge_nodes_.emplace_back();
       for (int k = 0; k < 6; ++k) {
         const std::int32_t i = first + tet[kTetEdges[k][0]], j = first + tet[kTetEdges[k][1]];
-        const auto [place, is_new] = building_.middles.try_emplace(std::minmax(i, j), static_cast<std::int32_t>(nodes()));
+        const auto [place, is_new] =
+            building_.middles.try_emplace(std::minmax(i, j), static_cast<std::int32_t>(nodes()));
         if (is_new) rest_positions_.push_back(0.5 * (rest_positions_[i] + rest_positions_[j]));
         edges[k] = place->second;
       }
@@ -465,7 +467,8 @@ std::map<std::int32_t, Vec3> TetModel::TractionForces(const Region& region, cons
     const Vec3& X0 = rest_positions_[n[0]];
     const double area = 0.5 * (rest_positions_[n[1]] - X0).cross(rest_positions_[n[2]] - X0).norm();
     for (int c = 0; c < 3; ++c) {
-      const std::int32_t at = order() == ElementOrder::kLinear ? n[c] : building_.middles.at(std::minmax(n[c], n[(c + 1) % 3]));
+      const std::int32_t at =
+          order() == ElementOrder::kLinear ? n[c] : building_.middles.at(std::minmax(n[c], n[(c + 1) % 3]));
       forces.try_emplace(at, Vec3::Zero()).first->second += area / 3 * traction;
     }
   }
@@ -519,7 +522,8 @@ void TetModel::AddContactNodes(const TetBody& body) {
     const double corner = order() == ElementOrder::kLinear ? 1. / 3 : 1. / 12;
     for (int c = 0; c < 3; ++c) {
       areas[n[c]] += corner * area;
-      if (order() == ElementOrder::kQuadratic) areas[building_.middles.at(std::minmax(n[c], n[(c + 1) % 3]))] += area / 4;
+      if (order() == ElementOrder::kQuadratic)
+        areas[building_.middles.at(std::minmax(n[c], n[(c + 1) % 3]))] += area / 4;
     }
   }
   const double modulus =

@@ -34,9 +34,7 @@ struct VolumePatches {
   std::vector<double> weight;
 
   // out = W in; both of size(), not the same.
-  void Smooth(std::span<const double> in, std::span<double> out) const {
-    SmoothRows(0, size(), in, out);
-  }
+  void Smooth(std::span<const double> in, std::span<double> out) const { SmoothRows(0, size(), in, out); }
   // Of patches [begin, end) alone.
   void SmoothRows(std::size_t begin, std::size_t end, std::span<const double> in, std::span<double> out) const {
     for (std::size_t n = begin; n < end; ++n) out[n] = row.empty() ? in[n] : RowOf(n, in);

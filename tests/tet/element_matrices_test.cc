@@ -74,8 +74,7 @@ TEST_P(ElementMatricesTest, EvaluationIsThatOfThePotentialAtEveryPoint) {
                 const PointPotential<Element, Law> point(s_.potential, model, body, laws[model.law_of()[e]], e, q);
                 energy += model.rest_volume()[at] * point.Energy(F);
                 smallest = std::min(smallest, Determinant(F));
-                const Mat3 P =
-                    point.Stress(F) + PatchPressure<Element>(model.patches(), s_.acting, e, q) * Cofactor(F);
+                const Mat3 P = point.Stress(F) + PatchPressure<Element>(model.patches(), s_.acting, e, q) * Cofactor(F);
                 CornerValues corners;
                 SetCornerForces(P, model.Dm_inverse()[at], model.rest_volume()[at], corners);
                 Element::AddCorners(corners, q, forces);

@@ -33,8 +33,8 @@ struct PlainForces {
         const double J = Determinant(GradientAt<Element>(model, e, ValuesOf<Element>(model, e, s.x), q));
         for (int c = 0; c < 4; ++c) {
           const std::int32_t n = patches.of_element[e][c];
-          theta[n] += Element::Barycentric(q, c) * model.rest_volume()[Element::kPoints * e + q] * J /
-                      patches.rest_volume[n];
+          theta[n] +=
+              Element::Barycentric(q, c) * model.rest_volume()[Element::kPoints * e + q] * J / patches.rest_volume[n];
         }
       }
     }
@@ -200,7 +200,8 @@ INSTANTIATE_TEST_SUITE_P(Laws, SingleTest,
 // A muscle between fixed ends that contracts to full activation and swings: single precision against double.
 TEST(SingleTest, ContractionFollowsDouble) {
   const auto run = [](Precision precision) {
-    Body body = BoxBody(Vec3(0.04, 0.01, 0.01), {12, 3, 3}, Muscle(std::array{5e2, 5e2, 1e6, 3e5, 1.2, 0.05, 6.6, 1.4}));
+    Body body =
+        BoxBody(Vec3(0.04, 0.01, 0.01), {12, 3, 3}, Muscle(std::array{5e2, 5e2, 1e6, 3e5, 1.2, 0.05, 6.6, 1.4}));
     body.fibres = ConstantFibres(body.mesh, Vec3(1, 0.2, 0));
     body.constraints = {Fix(kX0), Fix(kX1)};
     body.activation = Curve{{0, 0.02}, {0, 1}, Curve::Interpolation::kSmooth};
