@@ -32,7 +32,7 @@ struct ChunkTask {
   const void* law = nullptr;  // null for none
   int law_kind = 0;           // index in Material
   const double* x = nullptr;  // positions [m]
-  const double* activation = nullptr;
+  const double* activation = nullptr;  // of each curve; with a law
   // Of each patch [Pa]; null for none.
   const double* pressure = nullptr;
   // Positions a step ago [m], for laws that depend on rate where inverse_step [1/s] is not zero, and for the strain

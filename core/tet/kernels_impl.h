@@ -360,7 +360,7 @@ struct ChunkKernels {
       if (needs_previous) Gather(before, local, previous);
       if (viscous && task.v != nullptr) Gather(velocity, local, rates);
       if (kNodes != 4) Clear(forces);
-      SetActivation(task, task.fibres[b], point);
+      if (task.law != nullptr) SetActivation(task, task.fibres[b], point);
       for (int q = 0; q < kPoints; ++q) {
         const RestPoint<S>& rest = task.points[kPoints * b + q];
         for (int k = 0; k < kBlock; k += L::kLanes) StoreMatrix(Gradient(positions, rest, q, k), k, point.F.m);

@@ -87,7 +87,7 @@ TEST_P(EveryLawTest, NoResultant) {
   }
 }
 
-// K p against a difference of forces; K is kept in float.
+// K p against a difference of forces, to the error of the difference.
 TEST_P(EveryLawTest, StiffnessIsDerivativeOfForce) {
   TetStiffness stiffness;
   stiffness.Set(model_, activation_, x_, loaded_.team, loaded_.corners);
