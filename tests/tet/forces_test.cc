@@ -234,7 +234,7 @@ TEST(BadElementsTest, NamesThem) {
   EXPECT_TRUE(bad.inverted);
   ASSERT_FALSE(bad.elements.empty());
   for (const std::int64_t e : bad.elements) {
-    const Tetrahedron& tet = loaded.model.corners()[static_cast<std::size_t>(e)];
+    const Tetrahedron& tet = loaded.scene.bodies[0].mesh.tetrahedra[static_cast<std::size_t>(e)];
     EXPECT_NE(std::find(tet.begin(), tet.end(), 0), tet.end());
   }
 }
