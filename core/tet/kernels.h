@@ -29,9 +29,9 @@ struct ChunkTask {
   const std::int32_t* patch = nullptr;   // of each node of the chunk; null without patches
   const std::int32_t* target = nullptr;  // of each sum, see Sharing
 
-  const void* law = nullptr;  // null for none
-  int law_kind = 0;           // index in Material
-  const double* x = nullptr;  // positions [m]
+  const void* law = nullptr;           // null for none
+  int law_kind = 0;                    // index in Material
+  const double* x = nullptr;           // positions [m]
   const double* activation = nullptr;  // of each curve; with a law
   // Of each patch [Pa]; null for none.
   const double* pressure = nullptr;
