@@ -145,14 +145,28 @@ template <class Element>
 void AddBlocks(const ElementMatrices& matrices, std::span<const std::int32_t> places, std::int32_t low,
                std::int32_t high, std::span<double> values) {
   constexpr std::size_t kPairs = Element::kNodes * (Element::kNodes + 1) / 2;
+  constexpr std::size_t kAhead = 32;  // blocks whose places are asked for meanwhile
+  const std::size_t count = kPairs * matrices.count;
   const std::int32_t* place = &places[kPairs * matrices.begin];
+  const auto block_of = [](std::int32_t p) { return p < 0 ? ~p : p; };
   const double* block = matrices.blocks;
-  for (std::size_t i = 0; i < kPairs * matrices.count; ++i, ++place, block += 9) {
-    const bool transposed = *place < 0;
-    const std::int32_t at = transposed ? ~*place : *place;
+  for (std::size_t i = 0; i < count; ++i, block += 9) {
+    if (i + kAhead < count) {
+      const std::int32_t ahead = block_of(place[i + kAhead]);
+      if (ahead >= low && ahead < high) {
+        const double* line = &values[9 * static_cast<std::size_t>(ahead)];
+        __builtin_prefetch(line, 1);
+        __builtin_prefetch(line + 8, 1);
+      }
+    }
+    const std::int32_t at = block_of(place[i]);
     if (at < low || at >= high) continue;
     double* to = &values[9 * static_cast<std::size_t>(at)];
-    for (int k = 0; k < 9; ++k) to[k] += block[transposed ? 3 * (k % 3) + k / 3 : k];
+    if (place[i] >= 0) {
+      for (int k = 0; k < 9; ++k) to[k] += block[k];
+    } else {
+      for (int k = 0; k < 9; ++k) to[k] += block[3 * (k % 3) + k / 3];
+    }
   }
 }
 
