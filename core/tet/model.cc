@@ -176,7 +176,9 @@ void TetModel::AddElements(const Body& body, TetBody& entry) {
   // AddNodes left the edges in the mesh's order.
   std::vector<std::size_t> kinds(count);
   for (std::size_t t = 0; t < count; ++t) kinds[t] = MaterialOf(body, t).index();
-  const std::vector<std::uint64_t> curve = PlacesOnCurve(body.mesh);
+  // One chunk is near in any order.
+  const std::vector<std::uint64_t> curve =
+      count > kChunkElements ? PlacesOnCurve(body.mesh) : std::vector<std::uint64_t>(count, 0);
   const auto key = [&](std::int32_t t) {
     return std::tuple{kinds[t], body.material_of.empty() ? 0 : body.material_of[t], curve[t]};
   };
