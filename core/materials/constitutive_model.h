@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "core/base/matrix3.h"
 #include "core/base/types.h"
 
 namespace fascicle {
@@ -17,6 +18,41 @@ struct FibreState {
   // of that step [1/s], zero for a fibre that is held.
   double previous_stretch = 1;
   double inverse_step = 0;
+};
+
+// The same for numbers or Lanes of them.
+template <class T>
+struct Fibre {
+  Vector3<T> direction;
+  T activation;
+  T previous_stretch;
+  double inverse_step;
+};
+
+inline Matrix3<double> ToNumbers(const Mat3& a) {
+  Matrix3<double> r;
+  for (int k = 0; k < 9; ++k) r.m[k] = a.data()[k];
+  return r;
+}
+inline Mat3 ToEigen(const Matrix3<double>& a) { return Mat3(a.m); }
+inline Fibre<double> ToNumbers(const FibreState& f) {
+  return {{{f.direction[0], f.direction[1], f.direction[2]}}, f.activation, f.previous_stretch, f.inverse_step};
+}
+
+// What every law offers for one F, made of what it is: a class whose members
+//
+//   template <class T> T EnergyAt(const Matrix3<T>& F, const Fibre<T>& fibre) const;
+//   template <class T> Matrix3<T> StressAt(const Matrix3<T>& F, const Fibre<T>& fibre) const;
+//   template <class T, class Terms> void AddTangentAt(const Matrix3<T>& F, const Fibre<T>& fibre, Terms& terms) const;
+//
+// are its formulas, once for numbers and for many elements side by side (see numbers.h and tangent_terms.h). Defined
+// for the laws of the list in material.cc.
+template <class Law>
+class LawFunctions {
+ public:
+  double Energy(const Mat3& F, const FibreState& fibre) const;
+  Mat3 Stress(const Mat3& F, const FibreState& fibre) const;
+  Mat9 Tangent(const Mat3& F, const FibreState& fibre) const;
 };
 
 // A parameter of a law, as in the message of the same name in scene.proto.

@@ -5,13 +5,13 @@
 
 #include "core/materials/isotropic_moduli.h"
 #include "core/materials/rotation.h"
-#include "core/materials/tensor_algebra.h"
+#include "core/materials/tangent_terms.h"
 
 namespace fascicle {
 
 // W = mu |F - R|^2 + lambda/2 tr(R^T F - I)^2 with R the rotation nearest to F. Finite for every finite F; where two of
 // the singular values (the least taken with the sign of J) sum to zero R is not unique and the tangent is not finite.
-class CorotatedLinear {
+class CorotatedLinear : public LawFunctions<CorotatedLinear> {
  public:
   static constexpr const char* kName = "corotated_linear";
   static constexpr const char* kTitle = "Corotated linear";
@@ -21,33 +21,37 @@ class CorotatedLinear {
 
   explicit CorotatedLinear(std::span<const double> values) : moduli_(values) {}
 
-  double Energy(const Mat3& F, const FibreState&) const {
-    const Mat3 R = NearestRotation(F);
-    const double trace = Contract(R, F) - 3;
-    return moduli_.mu * (F - R).squaredNorm() + 0.5 * moduli_.lambda * trace * trace;
+  template <class T>
+  T EnergyAt(const Matrix3<T>& F, const Fibre<T>&) const {
+    const Matrix3<T> R = NearestRotation(F);
+    const T trace = Contract(R, F) - 3;
+    return moduli_.mu * SquaredNorm(F - R) + 0.5 * moduli_.lambda * trace * trace;
   }
 
-  Mat3 Stress(const Mat3& F, const FibreState&) const {
-    const Mat3 R = NearestRotation(F);
+  template <class T>
+  Matrix3<T> StressAt(const Matrix3<T>& F, const Fibre<T>&) const {
+    const Matrix3<T> R = NearestRotation(F);
     return 2 * moduli_.mu * (F - R) + (moduli_.lambda * (Contract(R, F) - 3)) * R;
   }
 
   // dP = 2 mu (dF - dR) + lambda (R:dF) R + lambda tr(S - I) dR; with S = R^T F, E_k the cross product with axis k:
   // dR = sum_kl (R E_k) [(tr(S) I - S)^-1]_kl (R E_l : dF), from the skew part of R^T dF = R^T dR S + dS.
-  Mat9 Tangent(const Mat3& F, const FibreState&) const {
-    const Mat3 R = NearestRotation(F);
-    const Mat3 S = R.transpose() * F;
-    const double trace = S.trace();
-    const Mat3 spin = trace * Mat3::Identity() - 0.5 * (S + S.transpose());
-    const Mat3 spin_cofactor = Cofactor(spin);
-    const Mat3 spin_inverse = spin_cofactor / DeterminantOf(spin, spin_cofactor);
-    Eigen::Matrix<double, 9, 3> turned;  // column k: R E_k, with E_k x = e_k cross x
-    turned << Vec3::Zero(), -R.col(2), R.col(1), R.col(2), Vec3::Zero(), -R.col(0), -R.col(1), R.col(0), Vec3::Zero();
-    const Vec9 r = Flatten(R);
-    Mat9 tangent = moduli_.lambda * r * r.transpose();
-    tangent.diagonal().array() += 2 * moduli_.mu;
-    tangent += (moduli_.lambda * (trace - 3) - 2 * moduli_.mu) * (turned * spin_inverse * turned.transpose());
-    return tangent;
+  template <class T, class Terms>
+  void AddTangentAt(const Matrix3<T>& F, const Fibre<T>&, Terms& terms) const {
+    const Matrix3<T> R = NearestRotation(F);
+    const Matrix3<T> S = SymmetricPart(Transpose(R) * F);
+    const T trace = Trace(S);
+    const Matrix3<T> spin = PlusDiagonal(T(-1.0) * S, trace);
+    const Matrix3<T> cofactor = Cofactor(spin);
+    const T scale = (moduli_.lambda * (trace - 3) - 2 * moduli_.mu) / DeterminantOf(spin, cofactor);
+    terms.Diagonal(2 * moduli_.mu);
+    terms.Square(moduli_.lambda, R);
+    const Matrix3<T> turned[3] = {Turned(R, 0), Turned(R, 1), Turned(R, 2)};
+    for (int k = 0; k < 3; ++k) {
+      terms.Square(scale * cofactor(k, k), turned[k]);
+      const int l = (k + 1) % 3;
+      terms.Pair((scale * cofactor(k, l)) * turned[k], turned[l]);
+    }
   }
 
   double ShearModulus() const { return moduli_.mu; }
@@ -56,6 +60,19 @@ class CorotatedLinear {
   CorotatedLinear WithVolumeModulus(double) const { return *this; }
 
  private:
+  // R E_k, with E_k x = e_k cross x.
+  template <class T>
+  static Matrix3<T> Turned(const Matrix3<T>& R, int k) {
+    const int l = (k + 1) % 3, m = (k + 2) % 3;
+    Matrix3<T> turned;
+    for (int i = 0; i < 3; ++i) {
+      turned(i, k) = T(0.0);
+      turned(i, l) = R(i, m);
+      turned(i, m) = -R(i, l);
+    }
+    return turned;
+  }
+
   IsotropicModuli moduli_;
 };
 static_assert(ConstitutiveModel<CorotatedLinear>);

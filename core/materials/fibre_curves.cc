@@ -1,6 +1,7 @@
 #include "core/materials/fibre_curves.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/materials/gauss_integral.h"
 
@@ -15,12 +16,14 @@ ExponentialToeCurve::ExponentialToeCurve(double scale, double exponent, double t
       transition_(transition),
       value_(scale * std::expm1(exponent * (transition - 1))),
       slope_(slope),
-      integral_(ToeIntegral(transition)),
+      integral_(scale / exponent * (std::expm1(exponent * (transition - 1)) - exponent * (transition - 1))),
       integral_over_length_(ToeIntegralOverLength(transition)) {}
 
-double ExponentialToeCurve::ToeIntegral(double x) const {
-  const double u = exponent_ * (x - 1);
-  return scale_ / exponent_ * (std::expm1(u) - u);
+double ExponentialToeCurve::IntegralOverLengthOf(double x) const {
+  if (x <= 1) return 0;
+  if (x < transition_) return ToeIntegralOverLength(x);
+  const double beyond = x - transition_;
+  return integral_over_length_ + slope_ * beyond + (value_ - slope_ * transition_) * std::log1p(beyond / transition_);
 }
 
 double ExponentialToeCurve::ToeIntegralOverLength(double x) const {

@@ -1,7 +1,7 @@
 #ifndef FASCICLE_CORE_MATERIALS_FIBRE_CURVES_H_
 #define FASCICLE_CORE_MATERIALS_FIBRE_CURVES_H_
 
-#include <cmath>
+#include "core/base/numbers.h"
 
 namespace fascicle {
 
@@ -12,32 +12,34 @@ namespace fascicle {
 // Active stress over peak stress as a function of the normalized length r [1]: a hump of height 1 at r = 1 that
 // vanishes outside (0.4, 1.6). Continuous; the slope jumps at 0.6 (3.6 to 3.2) and 1.4, as published.
 struct ActiveCurve {
-  static double Value(double r) {
-    if (r <= 0.4 || r >= 1.6) return 0;
-    if (r < 0.6) return 9 * (r - 0.4) * (r - 0.4);
-    if (r <= 1.4) return 1 - 4 * (r - 1) * (r - 1);
-    return 9 * (r - 1.6) * (r - 1.6);
+  template <class T>
+  static T Value(const T& r) {
+    const T inner = Select(r <= 1.4, 1 - 4 * (r - 1) * (r - 1), 9 * (r - 1.6) * (r - 1.6));
+    const T below = Select(r < 0.6, 9 * (r - 0.4) * (r - 0.4), inner);
+    return Select(r <= 0.4, 0, Select(r >= 1.6, 0, below));
   }
-  static double Derivative(double r) {
-    if (r <= 0.4 || r >= 1.6) return 0;
-    if (r < 0.6) return 18 * (r - 0.4);
-    if (r <= 1.4) return -8 * (r - 1);
-    return 18 * (r - 1.6);
+  template <class T>
+  static T Derivative(const T& r) {
+    const T inner = Select(r <= 1.4, -8 * (r - 1), 18 * (r - 1.6));
+    const T below = Select(r < 0.6, 18 * (r - 0.4), inner);
+    return Select(r <= 0.4, 0, Select(r >= 1.6, 0, below));
   }
   // Integral from 0 to r.
-  static double Integral(double r) {
+  template <class T>
+  static T Integral(const T& r) {
     // Integral over one of the outer parabolas, and from 0 to the middle.
     constexpr double kOuter = 3 * 0.2 * 0.2 * 0.2;
     constexpr double kHalf = kOuter + 0.4 - 4 * 0.4 * 0.4 * 0.4 / 3;
-    if (r <= 0.4) return 0;
-    if (r < 0.6) return 3 * Cube(r - 0.4);
-    if (r <= 1.4) return kHalf + (r - 1) - 4 * Cube(r - 1) / 3;
-    if (r < 1.6) return 2 * kHalf + 3 * Cube(r - 1.6);
-    return 2 * kHalf;
+    const T inner = Select(r <= 1.4, kHalf + (r - 1) - 4.0 / 3.0 * Cube<T>(r - 1), 2 * kHalf + 3 * Cube<T>(r - 1.6));
+    const T below = Select(r < 0.6, 3 * Cube<T>(r - 0.4), inner);
+    return Select(r <= 0.4, 0, Select(r >= 1.6, 2 * kHalf, below));
   }
 
  private:
-  static double Cube(double x) { return x * x * x; }
+  template <class T>
+  static T Cube(const T& x) {
+    return x * x * x;
+  }
 };
 
 // scale (exp(exponent (x - 1)) - 1) for 1 < x < transition, zero before, and beyond it the straight line that goes on
@@ -49,36 +51,36 @@ class ExponentialToeCurve {
   // With a line of another slope: then the curve's own slope jumps at the transition.
   ExponentialToeCurve(double scale, double exponent, double transition, double slope);
 
-  double Value(double x) const {
-    if (x <= 1) return 0;
-    if (x < transition_) return scale_ * std::expm1(exponent_ * (x - 1));
-    return value_ + slope_ * (x - transition_);
+  template <class T>
+  T Value(const T& x) const {
+    const T toe = scale_ * Expm1(exponent_ * (x - 1));
+    return Select(x <= 1, 0, Select(x < transition_, toe, value_ + slope_ * (x - transition_)));
   }
-  double Derivative(double x) const {
-    if (x <= 1) return 0;
-    if (x < transition_) return scale_ * exponent_ * std::exp(exponent_ * (x - 1));
-    return slope_;
+  template <class T>
+  T Derivative(const T& x) const {
+    const T toe = scale_ * exponent_ * Exp(exponent_ * (x - 1));
+    return Select(x <= 1, 0, Select(x < transition_, toe, slope_));
   }
   // Integral from 1 to x.
-  double Integral(double x) const {
-    if (x <= 1) return 0;
-    if (x < transition_) return ToeIntegral(x);
-    const double beyond = x - transition_;
-    return integral_ + beyond * (value_ + 0.5 * slope_ * beyond);
+  template <class T>
+  T Integral(const T& x) const {
+    const T u = exponent_ * (x - 1);
+    const T toe = scale_ / exponent_ * (Expm1(u) - u);
+    const T beyond = x - transition_;
+    const T line = integral_ + beyond * (value_ + 0.5 * slope_ * beyond);
+    return Select(x <= 1, 0, Select(x < transition_, toe, line));
   }
   // Integral of Value(s)/s from 1 to x. In the toe this is an exponential integral, exp(-b) (Ei(b x) - Ei(b)) - ln x,
   // which overflows for a large exponent b and cancels for x near 1. Gauss quadrature of the positive integrand has
   // neither fault and is exact to round-off.
-  double IntegralOverLength(double x) const {
-    if (x <= 1) return 0;
-    if (x < transition_) return ToeIntegralOverLength(x);
-    const double beyond = x - transition_;
-    return integral_over_length_ + slope_ * beyond + (value_ - slope_ * transition_) * std::log1p(beyond / transition_);
+  template <class T>
+  T IntegralOverLength(const T& x) const {
+    return Map([&](double s) { return IntegralOverLengthOf(s); }, x);
   }
 
  private:
-  // The integrals for 1 < x <= transition.
-  double ToeIntegral(double x) const;
+  double IntegralOverLengthOf(double x) const;
+  // For 1 < x <= transition.
   double ToeIntegralOverLength(double x) const;
 
   double scale_, exponent_, transition_;

@@ -1,6 +1,8 @@
 #ifndef FASCICLE_CORE_MATERIALS_FORCE_VELOCITY_H_
 #define FASCICLE_CORE_MATERIALS_FORCE_VELOCITY_H_
 
+#include "core/base/numbers.h"
+
 namespace fascicle {
 
 // Active stress over isometric active stress as a function of the normalized velocity v [1]: the rate of the normalized
@@ -20,16 +22,18 @@ class ForceVelocityCurve {
   ForceVelocityCurve(double curvature, double plateau)
       : curvature_(curvature), excess_(plateau - 1), pole_(excess_ * curvature / (1 + curvature)) {}
 
-  double Value(double v) const {
-    if (v > 0) return 1 + excess_ * v / (v + pole_);
-    if (v < -1) return 0;
-    return (1 + v) / (1 - v / curvature_);
+  template <class T>
+  T Value(const T& v) const {
+    const T lengthening = 1 + excess_ * v / (v + pole_);
+    const T shortening = (1 + v) / (1 - v / curvature_);
+    return Select(v > 0, lengthening, Select(v < -1, 0, shortening));
   }
-  double Derivative(double v) const {
-    if (v > 0) return excess_ * pole_ / ((v + pole_) * (v + pole_));
-    if (v < -1) return 0;
-    const double denominator = 1 - v / curvature_;
-    return (1 + 1 / curvature_) / (denominator * denominator);
+  template <class T>
+  T Derivative(const T& v) const {
+    const T denominator = 1 - v / curvature_;
+    const T lengthening = excess_ * pole_ / ((v + pole_) * (v + pole_));
+    const T shortening = (1 + 1 / curvature_) / (denominator * denominator);
+    return Select(v > 0, lengthening, Select(v < -1, 0, shortening));
   }
 
   // Integral of f_act(r) f_v(velocity_per_length (r - from)) over r between `from` and `to`, f_act the ActiveCurve: the

@@ -1,10 +1,9 @@
 #ifndef FASCICLE_CORE_MATERIALS_ISOCHORIC_H_
 #define FASCICLE_CORE_MATERIALS_ISOCHORIC_H_
 
-#include <cmath>
-
+#include "core/base/numbers.h"
 #include "core/materials/constitutive_model.h"
-#include "core/materials/tensor_algebra.h"
+#include "core/materials/tangent_terms.h"
 
 // The nearly incompressible energy that Mooney-Rivlin, muscle and tendon share:
 //
@@ -26,98 +25,97 @@ struct MatrixModuli {
 };
 
 // What the terms need of one F. Where J <= 0 `log_J` and all that follows from it are not finite.
+template <class T>
 struct IsochoricKinematics {
-  explicit IsochoricKinematics(const Mat3& F)
-      : C(F.transpose() * F), I1(C.trace()), I2(0.5 * (I1 * I1 - C.squaredNorm())) {
-    const Mat3 cofactor = Cofactor(F);
-    const double J = DeterminantOf(F, cofactor);
+  explicit IsochoricKinematics(const Matrix3<T>& F)
+      : C(Transpose(F) * F), I1(Trace(C)), I2(0.5 * (I1 * I1 - SquaredNorm(C))) {
+    const Matrix3<T> cofactor = Cofactor(F);
+    const T J = DeterminantOf(F, cofactor);
     inverse_transpose = (1 / J) * cofactor;
-    log_J = std::log(J);
-    scale = std::exp(-2.0 / 3.0 * log_J);
+    log_J = Log(J);
+    scale = Exp(-2.0 / 3.0 * log_J);
   }
 
   // Isochoric fibre stretch.
-  double FibreStretch(const Vec3& a0) const { return std::sqrt(scale * a0.dot(C * a0)); }
+  T FibreStretch(const Vector3<T>& a0) const { return Sqrt(scale * Dot(a0, C * a0)); }
 
-  Mat3 C;
-  double I1, I2;
-  Mat3 inverse_transpose;  // F^-T
-  double log_J;            // ln J
-  double scale;            // J^(-2/3)
+  Matrix3<T> C;
+  T I1, I2;
+  Matrix3<T> inverse_transpose;  // F^-T
+  T log_J;                       // ln J
+  T scale;                       // J^(-2/3)
 };
 
 // The energy without the fibres' [J/m^3].
-inline double MatrixEnergy(const MatrixModuli& m, const IsochoricKinematics& k) {
+template <class T>
+T MatrixEnergy(const MatrixModuli& m, const IsochoricKinematics<T>& k) {
   return m.c1 * (k.scale * k.I1 - 3) + m.c2 * (k.scale * k.scale * k.I2 - 3) + 0.5 * m.bulk * k.log_J * k.log_J;
 }
 
 // P = 2 J^(-2/3) F N + 2 c2 J^(-4/3) F (I1 I - C) + [K ln J - 2/3 J^(-2/3) C:N - 4/3 c2 J^(-4/3) I2] F^-T.
-inline Mat3 NearlyIncompressibleStress(const Mat3& F, const IsochoricKinematics& k, const Mat3& N, double c2,
-                                       double bulk) {
-  const double s1 = 2 * k.scale;
-  const double s2 = 2 * c2 * k.scale * k.scale;
-  Mat3 S = s1 * N - s2 * k.C;
-  S.diagonal().array() += s2 * k.I1;
-  const double pressure = bulk * k.log_J - (s1 * Contract(k.C, N) + 2 * s2 * k.I2) / 3;
+template <class T>
+Matrix3<T> NearlyIncompressibleStress(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const Matrix3<T>& N,
+                                      double c2, double bulk) {
+  const T s1 = 2 * k.scale;
+  const T s2 = 2 * c2 * k.scale * k.scale;
+  const Matrix3<T> S = PlusDiagonal(s1 * N - s2 * k.C, s2 * k.I1);
+  const T pressure = bulk * k.log_J - (1.0 / 3.0) * (s1 * Contract(k.C, N) + 2 * s2 * k.I2);
   return F * S + pressure * k.inverse_transpose;
 }
 
-// d/dF of the stress above with N held fixed; symmetric.
-inline Mat9 NearlyIncompressibleTangent(const Mat3& F, const IsochoricKinematics& k, const Mat3& N, double c2,
-                                        double bulk) {
-  const double s1 = 2 * k.scale;
-  const double s2 = 2 * c2 * k.scale * k.scale;
-  const double contraction = Contract(k.C, N);
-  const double pressure = bulk * k.log_J - (s1 * contraction + 2 * s2 * k.I2) / 3;
-  const Vec9 f = Flatten(F);
-  const Vec9 h = Flatten(k.inverse_transpose);
+// Adds d/dF of the stress above with N held fixed; symmetric.
+template <class T, class Terms>
+void AddNearlyIncompressibleTangent(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const Matrix3<T>& N,
+                                    double c2, double bulk, Terms& terms) {
+  const T s1 = 2 * k.scale;
+  const T s2 = 2 * c2 * k.scale * k.scale;
+  const T contraction = Contract(k.C, N);
+  const T pressure = bulk * k.log_J - (1.0 / 3.0) * (s1 * contraction + 2 * s2 * k.I2);
+  const Matrix3<T>& h = k.inverse_transpose;
 
   // Both isochoric terms are a power of J times a function g of C; the cross terms are dg x dJ + dJ x dg.
-  Mat3 S = s2 * (k.I1 * Mat3::Identity() - k.C);
-  const Vec9 cross = (-2.0 / 3.0) * Flatten(F * (s1 * N + 2 * S));
-  const double volumetric = bulk + (2.0 / 9.0) * s1 * contraction + (8.0 / 9.0) * s2 * k.I2;
-  S += s1 * N;
+  const Matrix3<T> S2 = PlusDiagonal(-s2 * k.C, s2 * k.I1);
+  const Matrix3<T> cross = (-2.0 / 3.0) * (F * (s1 * N + 2 * S2));
+  const T volumetric = bulk + (2.0 / 9.0) * s1 * contraction + (8.0 / 9.0) * s2 * k.I2;
 
-  Mat9 tangent = (2 * s2) * f * f.transpose();
-  tangent += cross * h.transpose();
-  tangent += h * (cross + volumetric * h).transpose();
-  AddRightProduct(1, S, tangent);
-  AddTransposedProduct(-s2, F, tangent);
-  AddLeftProduct(-s2, F * F.transpose(), tangent);
-  AddTransposedProduct(-pressure, k.inverse_transpose, tangent);
-  return tangent;
+  terms.Square(2 * s2, F);
+  terms.Pair(cross + (0.5 * volumetric) * h, h);
+  terms.Right(S2 + s1 * N);
+  terms.Transposed(-s2, F);
+  terms.Left(-s2 * (F * Transpose(F)));
+  terms.Transposed(-pressure, h);
 }
 
-// d(lambda^2)/dF = 2 J^(-2/3) (F a0 a0^T - |F a0|^2/3 F^-T), flattened.
-inline Vec9 FibreStretchSquaredGradient(const Mat3& F, const IsochoricKinematics& k, const Vec3& a0) {
-  const Vec3 a = F * a0;
-  return Flatten(2 * k.scale * (a * a0.transpose() - (a.squaredNorm() / 3) * k.inverse_transpose));
+// d(lambda^2)/dF = 2 J^(-2/3) (F a0 a0^T - |F a0|^2/3 F^-T).
+template <class T>
+Matrix3<T> FibreStretchSquaredGradient(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const Vector3<T>& a0) {
+  const Vector3<T> a = F * a0;
+  return (2 * k.scale) * (Outer(a, a0) - (1.0 / 3.0 * Dot(a, a)) * k.inverse_transpose);
 }
 
 // Derivatives of the fibre energy F2 by lambda^2.
+template <class T>
 struct FibreDerivatives {
   // `slope` = F2'(lambda) and `curvature` = F2''(lambda) at `stretch` = lambda.
-  FibreDerivatives(double stretch, double slope, double curvature)
+  FibreDerivatives(const T& stretch, const T& slope, const T& curvature)
       : W4(slope / (2 * stretch)), W44((0.5 * curvature - W4) / (2 * stretch * stretch)) {}
 
-  double W4;   // F2' / (2 lambda) [Pa]
-  double W44;  // (lambda F2'' - F2') / (4 lambda^3) [Pa]
+  T W4;   // F2' / (2 lambda) [Pa]
+  T W44;  // (lambda F2'' - F2') / (4 lambda^3) [Pa]
 };
 
 // N = c1 I + W4 a0 a0^T.
-inline Mat3 FibreWeight(double c1, double W4, const Vec3& a0) {
-  Mat3 N = W4 * a0 * a0.transpose();
-  N.diagonal().array() += c1;
-  return N;
+template <class T>
+Matrix3<T> FibreWeight(double c1, const T& W4, const Vector3<T>& a0) {
+  return PlusDiagonal(ScaledSquare(W4, a0), c1);
 }
 
-// The tangent with fibres: N held fixed, and the curvature of F2.
-inline Mat9 FibreTangent(const Mat3& F, const IsochoricKinematics& k, const MatrixModuli& m, const Vec3& a0,
-                         const FibreDerivatives& d) {
-  Mat9 tangent = NearlyIncompressibleTangent(F, k, FibreWeight(m.c1, d.W4, a0), m.c2, m.bulk);
-  const Vec9 gradient = FibreStretchSquaredGradient(F, k, a0);
-  tangent += (d.W44 * gradient) * gradient.transpose();
-  return tangent;
+// Adds the tangent with fibres: N held fixed, and the curvature of F2.
+template <class T, class Terms>
+void AddFibreTangent(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const MatrixModuli& m, const Vector3<T>& a0,
+                     const FibreDerivatives<T>& d, Terms& terms) {
+  AddNearlyIncompressibleTangent(F, k, FibreWeight(m.c1, d.W4, a0), m.c2, m.bulk, terms);
+  terms.Square(d.W44, FibreStretchSquaredGradient(F, k, a0));
 }
 
 }  // namespace fascicle

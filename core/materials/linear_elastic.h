@@ -4,13 +4,13 @@
 #include <span>
 
 #include "core/materials/isotropic_moduli.h"
-#include "core/materials/tensor_algebra.h"
+#include "core/materials/tangent_terms.h"
 
 namespace fascicle {
 
 // W = mu e:e + lambda/2 (tr e)^2 with the small strain e = (F + F^T)/2 - I. A rotation strains it: for checks and small
 // deflections only.
-class LinearElastic {
+class LinearElastic : public LawFunctions<LinearElastic> {
  public:
   static constexpr const char* kName = "linear_elastic";
   static constexpr const char* kTitle = "Linear elastic (small strain)";
@@ -20,23 +20,25 @@ class LinearElastic {
 
   explicit LinearElastic(std::span<const double> values) : moduli_(values) {}
 
-  double Energy(const Mat3& F, const FibreState&) const {
-    const Mat3 e = Strain(F);
-    const double trace = e.trace();
-    return moduli_.mu * e.squaredNorm() + 0.5 * moduli_.lambda * trace * trace;
+  template <class T>
+  T EnergyAt(const Matrix3<T>& F, const Fibre<T>&) const {
+    const Matrix3<T> e = Strain(F);
+    const T trace = Trace(e);
+    return moduli_.mu * SquaredNorm(e) + 0.5 * moduli_.lambda * trace * trace;
   }
 
-  Mat3 Stress(const Mat3& F, const FibreState&) const {
-    const Mat3 e = Strain(F);
-    return 2 * moduli_.mu * e + moduli_.lambda * e.trace() * Mat3::Identity();
+  template <class T>
+  Matrix3<T> StressAt(const Matrix3<T>& F, const Fibre<T>&) const {
+    const Matrix3<T> e = Strain(F);
+    return PlusDiagonal(2 * moduli_.mu * e, moduli_.lambda * Trace(e));
   }
 
-  Mat9 Tangent(const Mat3&, const FibreState&) const {
-    Mat9 tangent = moduli_.mu * Mat9::Identity();
-    AddTransposedProduct(moduli_.mu, Mat3::Identity(), tangent);
-    const Vec9 identity = Flatten(Mat3::Identity());
-    tangent += moduli_.lambda * identity * identity.transpose();
-    return tangent;
+  template <class T, class Terms>
+  void AddTangentAt(const Matrix3<T>&, const Fibre<T>&, Terms& terms) const {
+    const Matrix3<T> identity = Diagonal(T(1.0));
+    terms.Diagonal(moduli_.mu);
+    terms.Transposed(moduli_.mu, identity);
+    terms.Square(moduli_.lambda, identity);
   }
 
   double ShearModulus() const { return moduli_.mu; }
@@ -45,7 +47,10 @@ class LinearElastic {
   LinearElastic WithVolumeModulus(double) const { return *this; }
 
  private:
-  static Mat3 Strain(const Mat3& F) { return 0.5 * (F + F.transpose()) - Mat3::Identity(); }
+  template <class T>
+  static Matrix3<T> Strain(const Matrix3<T>& F) {
+    return PlusDiagonal(SymmetricPart(F), -1);
+  }
 
   IsotropicModuli moduli_;
 };

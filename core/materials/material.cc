@@ -7,6 +7,35 @@
 #include <utility>
 
 namespace fascicle {
+
+template <class Law>
+double LawFunctions<Law>::Energy(const Mat3& F, const FibreState& fibre) const {
+  return static_cast<const Law&>(*this).EnergyAt(ToNumbers(F), ToNumbers(fibre));
+}
+template <class Law>
+Mat3 LawFunctions<Law>::Stress(const Mat3& F, const FibreState& fibre) const {
+  return ToEigen(static_cast<const Law&>(*this).StressAt(ToNumbers(F), ToNumbers(fibre)));
+}
+template <class Law>
+Mat9 LawFunctions<Law>::Tangent(const Mat3& F, const FibreState& fibre) const {
+  TangentMatrix<double> terms;
+  static_cast<const Law&>(*this).AddTangentAt(ToNumbers(F), ToNumbers(fibre), terms);
+  Mat9 tangent;
+  int place = 0;
+  for (int i = 0; i < 9; ++i) {
+    for (int j = i; j < 9; ++j) tangent(i, j) = tangent(j, i) = terms[place++];
+  }
+  return tangent;
+}
+template class LawFunctions<LinearElastic>;
+template class LawFunctions<StVenantKirchhoff>;
+template class LawFunctions<CorotatedLinear>;
+template class LawFunctions<NeoHookean>;
+template class LawFunctions<MooneyRivlin>;
+template class LawFunctions<Muscle>;
+template class LawFunctions<Tendon>;
+template class LawFunctions<TransIsoMooneyRivlin>;
+
 namespace {
 
 template <class Law>

@@ -9,7 +9,7 @@
 namespace fascicle {
 
 // W = c1 (I1bar - 3) + c2 (I2bar - 3) + K/2 (ln J)^2. Not finite where J <= 0.
-class MooneyRivlin {
+class MooneyRivlin : public LawFunctions<MooneyRivlin> {
  public:
   static constexpr const char* kName = "mooney_rivlin";
   static constexpr const char* kTitle = "Mooney-Rivlin (nearly incompressible)";
@@ -23,16 +23,20 @@ class MooneyRivlin {
 
   explicit MooneyRivlin(std::span<const double> values) : moduli_{values[0], values[1], values[2]} {}
 
-  double Energy(const Mat3& F, const FibreState&) const { return MatrixEnergy(moduli_, IsochoricKinematics(F)); }
-
-  Mat3 Stress(const Mat3& F, const FibreState&) const {
-    return NearlyIncompressibleStress(F, IsochoricKinematics(F), moduli_.c1 * Mat3::Identity(), moduli_.c2,
-                                      moduli_.bulk);
+  template <class T>
+  T EnergyAt(const Matrix3<T>& F, const Fibre<T>&) const {
+    return MatrixEnergy(moduli_, IsochoricKinematics<T>(F));
   }
 
-  Mat9 Tangent(const Mat3& F, const FibreState&) const {
-    return NearlyIncompressibleTangent(F, IsochoricKinematics(F), moduli_.c1 * Mat3::Identity(), moduli_.c2,
-                                       moduli_.bulk);
+  template <class T>
+  Matrix3<T> StressAt(const Matrix3<T>& F, const Fibre<T>&) const {
+    return NearlyIncompressibleStress(F, IsochoricKinematics<T>(F), Diagonal(T(moduli_.c1)), moduli_.c2, moduli_.bulk);
+  }
+
+  template <class T, class Terms>
+  void AddTangentAt(const Matrix3<T>& F, const Fibre<T>&, Terms& terms) const {
+    AddNearlyIncompressibleTangent(F, IsochoricKinematics<T>(F), Diagonal(T(moduli_.c1)), moduli_.c2, moduli_.bulk,
+                                   terms);
   }
 
   double ShearModulus() const { return 2 * (moduli_.c1 + moduli_.c2); }

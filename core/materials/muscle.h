@@ -22,7 +22,7 @@ namespace fascicle {
 // F2(1, alpha) = 0 for a fibre without rate, so that W = 0 at rest for every activation. Departs from the letter of
 // [Teran 2003, 5]: U = K/2 (ln J)^2, and W4 = dW/d(lambda^2) where the paper's W_lambda reads as dF2/dlambda; see
 // README.md. Not finite where J <= 0.
-class Muscle {
+class Muscle : public LawFunctions<Muscle> {
  public:
   static constexpr const char* kName = "muscle";
   static constexpr const char* kTitle = "Active skeletal muscle";
@@ -53,25 +53,28 @@ class Muscle {
         active_at_rest_(ActiveCurve::Integral(length_per_stretch_)),
         passive_at_rest_(passive_.Integral(length_per_stretch_)) {}
 
-  double Energy(const Mat3& F, const FibreState& fibre) const {
-    const IsochoricKinematics k(F);
-    const double r = k.FibreStretch(fibre.direction) * length_per_stretch_;
+  template <class T>
+  T EnergyAt(const Matrix3<T>& F, const Fibre<T>& fibre) const {
+    const IsochoricKinematics<T> k(F);
+    const T r = k.FibreStretch(fibre.direction) * length_per_stretch_;
     return MatrixEnergy(moduli_, k) + peak_stress_ * (fibre.activation * (ActiveWork(r, fibre) - active_at_rest_) +
                                                       (passive_.Integral(r) - passive_at_rest_));
   }
 
-  Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
-    const IsochoricKinematics k(F);
-    const double stretch = k.FibreStretch(fibre.direction);
-    const double W4 = Slope(stretch, fibre) / (2 * stretch);
+  template <class T>
+  Matrix3<T> StressAt(const Matrix3<T>& F, const Fibre<T>& fibre) const {
+    const IsochoricKinematics<T> k(F);
+    const T stretch = k.FibreStretch(fibre.direction);
+    const T W4 = Slope(stretch, fibre) / (2 * stretch);
     return NearlyIncompressibleStress(F, k, FibreWeight(moduli_.c1, W4, fibre.direction), moduli_.c2, moduli_.bulk);
   }
 
-  Mat9 Tangent(const Mat3& F, const FibreState& fibre) const {
-    const IsochoricKinematics k(F);
-    const double stretch = k.FibreStretch(fibre.direction);
-    const FibreDerivatives derivatives(stretch, Slope(stretch, fibre), Curvature(stretch, fibre));
-    return FibreTangent(F, k, moduli_, fibre.direction, derivatives);
+  template <class T, class Terms>
+  void AddTangentAt(const Matrix3<T>& F, const Fibre<T>& fibre, Terms& terms) const {
+    const IsochoricKinematics<T> k(F);
+    const T stretch = k.FibreStretch(fibre.direction);
+    const FibreDerivatives<T> derivatives(stretch, Slope(stretch, fibre), Curvature(stretch, fibre));
+    AddFibreTangent(F, k, moduli_, fibre.direction, derivatives, terms);
   }
 
   double ShearModulus() const { return 2 * (moduli_.c1 + moduli_.c2); }
@@ -85,7 +88,7 @@ class Muscle {
 
   // Cauchy stress that a held fibre adds along itself at isochoric stretch lambda: lambda F2'(lambda, alpha) [Pa].
   double FibreStress(double stretch, double activation) const {
-    return stretch * Slope(stretch, {Vec3::Zero(), activation});
+    return stretch * Slope(stretch, Fibre<double>{{}, activation, 1, 0});
   }
 
  private:
@@ -94,41 +97,45 @@ class Muscle {
   }
 
   // Normalized velocity for a unit of normalized length gained over the step; 0 where no rate counts.
-  double VelocityPerLength(const FibreState& fibre) const {
-    return max_velocity_ > 0 ? fibre.inverse_step / max_velocity_ : 0;
-  }
+  double VelocityPerLength(double inverse_step) const { return max_velocity_ > 0 ? inverse_step / max_velocity_ : 0; }
   // Integral of f_act f_v up to r; f_v counts over the step only, so that the integral is that of a held fibre before
   // it.
-  double ActiveWork(double r, const FibreState& fibre) const {
-    const double rate = VelocityPerLength(fibre);
+  template <class T>
+  T ActiveWork(const T& r, const Fibre<T>& fibre) const {
+    const double rate = VelocityPerLength(fibre.inverse_step);
     if (rate == 0) return ActiveCurve::Integral(r);
-    const double before = fibre.previous_stretch * length_per_stretch_;
-    return ActiveCurve::Integral(before) + force_velocity_.ActiveWork(before, r, rate);
+    const T before = fibre.previous_stretch * length_per_stretch_;
+    const auto work = [&](double from, double to) { return force_velocity_.ActiveWork(from, to, rate); };
+    return ActiveCurve::Integral(before) + Map(work, before, r);
   }
   // f_act f_v.
-  double ActivePull(double r, const FibreState& fibre) const {
-    const double rate = VelocityPerLength(fibre);
+  template <class T>
+  T ActivePull(const T& r, const Fibre<T>& fibre) const {
+    const double rate = VelocityPerLength(fibre.inverse_step);
     if (rate == 0) return ActiveCurve::Value(r);
-    const double v = rate * (r - fibre.previous_stretch * length_per_stretch_);
+    const T v = rate * (r - fibre.previous_stretch * length_per_stretch_);
     return ActiveCurve::Value(r) * force_velocity_.Value(v);
   }
   // Its derivative by r, to which the rate adds, as it is never negative.
-  double ActiveStiffness(double r, const FibreState& fibre) const {
-    const double rate = VelocityPerLength(fibre);
+  template <class T>
+  T ActiveStiffness(const T& r, const Fibre<T>& fibre) const {
+    const double rate = VelocityPerLength(fibre.inverse_step);
     if (rate == 0) return ActiveCurve::Derivative(r);
-    const double v = rate * (r - fibre.previous_stretch * length_per_stretch_);
+    const T v = rate * (r - fibre.previous_stretch * length_per_stretch_);
     return ActiveCurve::Derivative(r) * force_velocity_.Value(v) +
            ActiveCurve::Value(r) * force_velocity_.Derivative(v) * rate;
   }
 
   // F2'(lambda) [Pa].
-  double Slope(double stretch, const FibreState& fibre) const {
-    const double r = stretch * length_per_stretch_;
+  template <class T>
+  T Slope(const T& stretch, const Fibre<T>& fibre) const {
+    const T r = stretch * length_per_stretch_;
     return peak_stress_ * length_per_stretch_ * (fibre.activation * ActivePull(r, fibre) + passive_.Value(r));
   }
   // F2''(lambda) [Pa].
-  double Curvature(double stretch, const FibreState& fibre) const {
-    const double r = stretch * length_per_stretch_;
+  template <class T>
+  T Curvature(const T& stretch, const Fibre<T>& fibre) const {
+    const T r = stretch * length_per_stretch_;
     return peak_stress_ * length_per_stretch_ * length_per_stretch_ *
            (fibre.activation * ActiveStiffness(r, fibre) + passive_.Derivative(r));
   }

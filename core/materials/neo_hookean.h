@@ -1,16 +1,16 @@
 #ifndef FASCICLE_CORE_MATERIALS_NEO_HOOKEAN_H_
 #define FASCICLE_CORE_MATERIALS_NEO_HOOKEAN_H_
 
-#include <cmath>
 #include <span>
 
+#include "core/base/numbers.h"
 #include "core/materials/isotropic_moduli.h"
-#include "core/materials/tensor_algebra.h"
+#include "core/materials/tangent_terms.h"
 
 namespace fascicle {
 
 // W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2 with I1 = tr(F^T F). Not finite where J <= 0.
-class NeoHookean {
+class NeoHookean : public LawFunctions<NeoHookean> {
  public:
   static constexpr const char* kName = "neo_hookean";
   static constexpr const char* kTitle = "Neo-Hookean (compressible)";
@@ -20,26 +20,27 @@ class NeoHookean {
 
   explicit NeoHookean(std::span<const double> values) : moduli_(values) {}
 
-  double Energy(const Mat3& F, const FibreState&) const {
-    const double log_J = std::log(DeterminantOf(F, Cofactor(F)));
-    return 0.5 * moduli_.mu * (F.squaredNorm() - 3) - moduli_.mu * log_J + 0.5 * moduli_.lambda * log_J * log_J;
+  template <class T>
+  T EnergyAt(const Matrix3<T>& F, const Fibre<T>&) const {
+    const T log_J = Log(Determinant(F));
+    return 0.5 * moduli_.mu * (SquaredNorm(F) - 3) - moduli_.mu * log_J + 0.5 * moduli_.lambda * log_J * log_J;
   }
 
-  Mat3 Stress(const Mat3& F, const FibreState&) const {
-    const Mat3 cofactor = Cofactor(F);
-    const double J = DeterminantOf(F, cofactor);
-    return moduli_.mu * F + ((moduli_.lambda * std::log(J) - moduli_.mu) / J) * cofactor;
+  template <class T>
+  Matrix3<T> StressAt(const Matrix3<T>& F, const Fibre<T>&) const {
+    const Matrix3<T> cofactor = Cofactor(F);
+    const T J = DeterminantOf(F, cofactor);
+    return moduli_.mu * F + ((moduli_.lambda * Log(J) - moduli_.mu) / J) * cofactor;
   }
 
-  Mat9 Tangent(const Mat3& F, const FibreState&) const {
-    const Mat3 cofactor = Cofactor(F);
-    const double J = DeterminantOf(F, cofactor);
-    const Mat3 inverse_transpose = (1 / J) * cofactor;
-    const Vec9 h = Flatten(inverse_transpose);
-    Mat9 tangent = moduli_.lambda * h * h.transpose();
-    tangent.diagonal().array() += moduli_.mu;
-    AddTransposedProduct(moduli_.mu - moduli_.lambda * std::log(J), inverse_transpose, tangent);
-    return tangent;
+  template <class T, class Terms>
+  void AddTangentAt(const Matrix3<T>& F, const Fibre<T>&, Terms& terms) const {
+    const Matrix3<T> cofactor = Cofactor(F);
+    const T J = DeterminantOf(F, cofactor);
+    const Matrix3<T> inverse_transpose = (1 / J) * cofactor;
+    terms.Square(moduli_.lambda, inverse_transpose);
+    terms.Diagonal(moduli_.mu);
+    terms.Transposed(moduli_.mu - moduli_.lambda * Log(J), inverse_transpose);
   }
 
   double ShearModulus() const { return moduli_.mu; }

@@ -4,6 +4,8 @@
 #include <Eigen/SVD>
 #include <limits>
 
+#include "core/materials/constitutive_model.h"
+
 namespace fascicle {
 
 Mat3 NearestRotationBySvd(const Mat3& F) {
@@ -14,5 +16,11 @@ Mat3 NearestRotationBySvd(const Mat3& F) {
   if ((U * svd.matrixV().transpose()).determinant() < 0) U.col(2) = -U.col(2);
   return U * svd.matrixV().transpose();
 }
+
+void NearestRotationBySvd(const double* F, double* R) {
+  Eigen::Map<Mat3>{R} = NearestRotationBySvd(Mat3(Eigen::Map<const Mat3>(F)));
+}
+
+Mat3 NearestRotation(const Mat3& F) { return ToEigen(NearestRotation(ToNumbers(F))); }
 
 }  // namespace fascicle

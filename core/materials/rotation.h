@@ -1,38 +1,63 @@
 #ifndef FASCICLE_CORE_MATERIALS_ROTATION_H_
 #define FASCICLE_CORE_MATERIALS_ROTATION_H_
 
-#include <cmath>
-
-#include "core/materials/tensor_algebra.h"
+#include "core/base/matrix3.h"
+#include "core/base/numbers.h"
+#include "core/base/types.h"
 
 namespace fascicle {
 
 // The rotation nearest to F, det R = +1, by singular values; also for det F <= 0. NaN where F is not finite.
 Mat3 NearestRotationBySvd(const Mat3& F);
+// The same on nine numbers, column by column.
+void NearestRotationBySvd(const double* F, double* R);
+
+// For one number and for many: sets R to the rotation by singular values where `todo` says so.
+inline void TakeRotationBySvd(bool todo, const Matrix3<double>& F, Matrix3<double>& R) {
+  if (todo) NearestRotationBySvd(F.m, R.m);
+}
+template <class T>
+void TakeRotationBySvd(const typename T::Mask& todo, const Matrix3<T>& F, Matrix3<T>& R) {
+  for (int lane = 0; lane < T::kLanes; ++lane) {
+    if (!todo[lane]) continue;
+    double f[9], r[9];
+    for (int k = 0; k < 9; ++k) f[k] = F.m[k][lane];
+    NearestRotationBySvd(f, r);
+    for (int k = 0; k < 9; ++k) R.m[k].v[lane] = static_cast<typename T::Scalar>(r[k]);
+  }
+}
+inline bool AnyOf(bool condition) { return condition; }
+template <class Mask>
+bool AnyOf(const Mask& mask) {
+  return mask.Any();
+}
 
 // The rotation nearest to F (its polar factor where det F > 0): R maximizes tr(R^T F) over the rotations.
 // Newton's iteration with Frobenius scaling for what is safely invertible, singular values for the rest.
 // [Higham 1986, Computing the polar decomposition - with applications, SIAM J. Sci. Stat. Comput. 7]
-inline Mat3 NearestRotation(const Mat3& F) {
+template <class T>
+Matrix3<T> NearestRotation(const Matrix3<T>& F) {
   constexpr double kSafelyInvertible = 1e-6;  // least J relative to |F|^3
   constexpr double kConverged = 1e-18;        // squared change; convergence is quadratic, so the next one is nil
   constexpr int kMaxIterations = 20;          // six are usual
-  Mat3 R = F;
-  Mat3 cofactor = Cofactor(R);
-  double J = DeterminantOf(R, cofactor);
-  const double size = R.squaredNorm();
-  if (!(J > kSafelyInvertible * size * std::sqrt(size))) return NearestRotationBySvd(F);
-  for (int i = 0; i < kMaxIterations; ++i) {
-    const double scale = std::sqrt(std::sqrt(cofactor.squaredNorm() / R.squaredNorm()) / J);
-    const Mat3 next = (0.5 * scale) * R + (0.5 / (scale * J)) * cofactor;
-    const double change = (next - R).squaredNorm();
-    R = next;
-    if (change <= kConverged) return R;
-    cofactor = Cofactor(R);
-    J = DeterminantOf(R, cofactor);
+  Matrix3<T> R = F;
+  const T size = SquaredNorm(F);
+  const auto safe = Determinant(F) > kSafelyInvertible * size * Sqrt(size);
+  auto todo = safe;
+  for (int i = 0; i < kMaxIterations && AnyOf(todo); ++i) {
+    const Matrix3<T> cofactor = Cofactor(R);
+    const T J = DeterminantOf(R, cofactor);
+    const T scale = Sqrt(Sqrt(SquaredNorm(cofactor) / SquaredNorm(R)) / J);
+    const Matrix3<T> next = (0.5 * scale) * R + (0.5 / (scale * J)) * cofactor;
+    const auto converged = SquaredNorm(next - R) <= kConverged;
+    for (int k = 0; k < 9; ++k) R.m[k] = Select(todo, next.m[k], R.m[k]);
+    todo = todo & !converged;
   }
-  return NearestRotationBySvd(F);
+  const decltype(todo) left = todo | !safe;
+  if (AnyOf(left)) TakeRotationBySvd(left, F, R);
+  return R;
 }
+Mat3 NearestRotation(const Mat3& F);
 
 }  // namespace fascicle
 

@@ -4,13 +4,13 @@
 #include <span>
 
 #include "core/materials/isotropic_moduli.h"
-#include "core/materials/tensor_algebra.h"
+#include "core/materials/tangent_terms.h"
 
 namespace fascicle {
 
 // W = mu G:G + lambda/2 (tr G)^2 with the Green strain G = (F^T F - I)/2. Softens and collapses under strong
 // compression: its stress vanishes again as J goes to zero.
-class StVenantKirchhoff {
+class StVenantKirchhoff : public LawFunctions<StVenantKirchhoff> {
  public:
   static constexpr const char* kName = "st_venant_kirchhoff";
   static constexpr const char* kTitle = "St. Venant-Kirchhoff";
@@ -20,23 +20,26 @@ class StVenantKirchhoff {
 
   explicit StVenantKirchhoff(std::span<const double> values) : moduli_(values) {}
 
-  double Energy(const Mat3& F, const FibreState&) const {
-    const Mat3 G = GreenStrain(F);
-    const double trace = G.trace();
-    return moduli_.mu * G.squaredNorm() + 0.5 * moduli_.lambda * trace * trace;
+  template <class T>
+  T EnergyAt(const Matrix3<T>& F, const Fibre<T>&) const {
+    const Matrix3<T> G = GreenStrain(F);
+    const T trace = Trace(G);
+    return moduli_.mu * SquaredNorm(G) + 0.5 * moduli_.lambda * trace * trace;
   }
 
   // P = F S.
-  Mat3 Stress(const Mat3& F, const FibreState&) const { return F * SecondStress(F); }
+  template <class T>
+  Matrix3<T> StressAt(const Matrix3<T>& F, const Fibre<T>&) const {
+    return F * SecondStress(F);
+  }
 
   // d(F S) = dF S + F dS, dS = 2 mu dG + lambda tr(dG) I, dG = (dF^T F + F^T dF)/2.
-  Mat9 Tangent(const Mat3& F, const FibreState&) const {
-    const Vec9 f = Flatten(F);
-    Mat9 tangent = moduli_.lambda * f * f.transpose();
-    AddRightProduct(1, SecondStress(F), tangent);
-    AddTransposedProduct(moduli_.mu, F, tangent);
-    AddLeftProduct(moduli_.mu, F * F.transpose(), tangent);
-    return tangent;
+  template <class T, class Terms>
+  void AddTangentAt(const Matrix3<T>& F, const Fibre<T>&, Terms& terms) const {
+    terms.Square(moduli_.lambda, F);
+    terms.Right(SecondStress(F));
+    terms.Transposed(moduli_.mu, F);
+    terms.Left(moduli_.mu * (F * Transpose(F)));
   }
 
   double ShearModulus() const { return moduli_.mu; }
@@ -45,12 +48,16 @@ class StVenantKirchhoff {
   StVenantKirchhoff WithVolumeModulus(double) const { return *this; }
 
  private:
-  static Mat3 GreenStrain(const Mat3& F) { return 0.5 * (F.transpose() * F - Mat3::Identity()); }
+  template <class T>
+  static Matrix3<T> GreenStrain(const Matrix3<T>& F) {
+    return 0.5 * PlusDiagonal(Transpose(F) * F, -1);
+  }
 
   // Second Piola-Kirchhoff stress.
-  Mat3 SecondStress(const Mat3& F) const {
-    const Mat3 G = GreenStrain(F);
-    return 2 * moduli_.mu * G + moduli_.lambda * G.trace() * Mat3::Identity();
+  template <class T>
+  Matrix3<T> SecondStress(const Matrix3<T>& F) const {
+    const Matrix3<T> G = GreenStrain(F);
+    return PlusDiagonal(2 * moduli_.mu * G, moduli_.lambda * Trace(G));
   }
 
   IsotropicModuli moduli_;

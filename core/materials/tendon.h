@@ -15,7 +15,7 @@ namespace fascicle {
 //   lambda F2' = L1 (exp(L2 (lambda - 1)) - 1) for 1 < lambda < transition, then a straight line; 0 for lambda <= 1
 //
 // lambda is the isochoric fibre stretch. Not finite where J <= 0.
-class Tendon {
+class Tendon : public LawFunctions<Tendon> {
  public:
   static constexpr const char* kName = "tendon";
   static constexpr const char* kTitle = "Tendon and aponeurosis";
@@ -33,24 +33,27 @@ class Tendon {
   explicit Tendon(std::span<const double> values)
       : moduli_{values[0], values[1], values[2]}, curve_(values[3], values[4], values[5]) {}
 
-  double Energy(const Mat3& F, const FibreState& fibre) const {
-    const IsochoricKinematics k(F);
+  template <class T>
+  T EnergyAt(const Matrix3<T>& F, const Fibre<T>& fibre) const {
+    const IsochoricKinematics<T> k(F);
     return MatrixEnergy(moduli_, k) + curve_.IntegralOverLength(k.FibreStretch(fibre.direction));
   }
 
-  Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
-    const IsochoricKinematics k(F);
-    const double stretch = k.FibreStretch(fibre.direction);
-    const double W4 = curve_.Value(stretch) / (2 * stretch * stretch);
+  template <class T>
+  Matrix3<T> StressAt(const Matrix3<T>& F, const Fibre<T>& fibre) const {
+    const IsochoricKinematics<T> k(F);
+    const T stretch = k.FibreStretch(fibre.direction);
+    const T W4 = curve_.Value(stretch) / (2 * stretch * stretch);
     return NearlyIncompressibleStress(F, k, FibreWeight(moduli_.c1, W4, fibre.direction), moduli_.c2, moduli_.bulk);
   }
 
-  Mat9 Tangent(const Mat3& F, const FibreState& fibre) const {
-    const IsochoricKinematics k(F);
-    const double stretch = k.FibreStretch(fibre.direction);
-    const double slope = curve_.Value(stretch) / stretch;
-    const double curvature = (curve_.Derivative(stretch) - slope) / stretch;
-    return FibreTangent(F, k, moduli_, fibre.direction, FibreDerivatives(stretch, slope, curvature));
+  template <class T, class Terms>
+  void AddTangentAt(const Matrix3<T>& F, const Fibre<T>& fibre, Terms& terms) const {
+    const IsochoricKinematics<T> k(F);
+    const T stretch = k.FibreStretch(fibre.direction);
+    const T slope = curve_.Value(stretch) / stretch;
+    const T curvature = (curve_.Derivative(stretch) - slope) / stretch;
+    AddFibreTangent(F, k, moduli_, fibre.direction, FibreDerivatives<T>(stretch, slope, curvature), terms);
   }
 
   double ShearModulus() const { return 2 * (moduli_.c1 + moduli_.c2); }

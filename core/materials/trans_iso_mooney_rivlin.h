@@ -18,7 +18,7 @@ namespace fascicle {
 // unless c5 is that of the exponential. The active part is the second Piola-Kirchhoff stress T0 alpha a0 a0^T: of the
 // whole stretch, not of the isochoric one. Parameters are named as in FEBio, whose material of this name with its
 // uniaxial active contraction this is. Not finite where J <= 0.
-class TransIsoMooneyRivlin {
+class TransIsoMooneyRivlin : public LawFunctions<TransIsoMooneyRivlin> {
  public:
   static constexpr const char* kName = "trans_iso_mooney_rivlin";
   static constexpr const char* kTitle = "Transversely isotropic Mooney-Rivlin";
@@ -40,30 +40,34 @@ class TransIsoMooneyRivlin {
         curve_(values[2], values[3], values[5], values[4]),
         active_stress_(values[7]) {}
 
-  double Energy(const Mat3& F, const FibreState& fibre) const {
-    const IsochoricKinematics k(F);
-    const double active = 0.5 * active_stress_ * fibre.activation * ((F * fibre.direction).squaredNorm() - 1);
+  template <class T>
+  T EnergyAt(const Matrix3<T>& F, const Fibre<T>& fibre) const {
+    const IsochoricKinematics<T> k(F);
+    const Vector3<T> a = F * fibre.direction;
+    const T active = 0.5 * active_stress_ * fibre.activation * (Dot(a, a) - 1);
     return MatrixEnergy(moduli_, k) + curve_.IntegralOverLength(k.FibreStretch(fibre.direction)) + active;
   }
 
-  Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
-    const Vec3& a0 = fibre.direction;
-    const IsochoricKinematics k(F);
-    const double stretch = k.FibreStretch(a0);
-    const double W4 = curve_.Value(stretch) / (2 * stretch * stretch);
-    const Mat3 passive = NearlyIncompressibleStress(F, k, FibreWeight(moduli_.c1, W4, a0), moduli_.c2, moduli_.bulk);
-    return passive + (active_stress_ * fibre.activation) * (F * a0) * a0.transpose();
+  template <class T>
+  Matrix3<T> StressAt(const Matrix3<T>& F, const Fibre<T>& fibre) const {
+    const Vector3<T>& a0 = fibre.direction;
+    const IsochoricKinematics<T> k(F);
+    const T stretch = k.FibreStretch(a0);
+    const T W4 = curve_.Value(stretch) / (2 * stretch * stretch);
+    const Matrix3<T> passive =
+        NearlyIncompressibleStress(F, k, FibreWeight(moduli_.c1, W4, a0), moduli_.c2, moduli_.bulk);
+    return passive + (active_stress_ * fibre.activation) * Outer(F * a0, a0);
   }
 
-  Mat9 Tangent(const Mat3& F, const FibreState& fibre) const {
-    const Vec3& a0 = fibre.direction;
-    const IsochoricKinematics k(F);
-    const double stretch = k.FibreStretch(a0);
-    const double slope = curve_.Value(stretch) / stretch;
-    const double curvature = (curve_.Derivative(stretch) - slope) / stretch;
-    Mat9 tangent = FibreTangent(F, k, moduli_, a0, FibreDerivatives(stretch, slope, curvature));
-    AddRightProduct(active_stress_ * fibre.activation, a0 * a0.transpose(), tangent);
-    return tangent;
+  template <class T, class Terms>
+  void AddTangentAt(const Matrix3<T>& F, const Fibre<T>& fibre, Terms& terms) const {
+    const Vector3<T>& a0 = fibre.direction;
+    const IsochoricKinematics<T> k(F);
+    const T stretch = k.FibreStretch(a0);
+    const T slope = curve_.Value(stretch) / stretch;
+    const T curvature = (curve_.Derivative(stretch) - slope) / stretch;
+    AddFibreTangent(F, k, moduli_, a0, FibreDerivatives<T>(stretch, slope, curvature), terms);
+    terms.Right(ScaledSquare(active_stress_ * fibre.activation, a0));
   }
 
   double ShearModulus() const { return 2 * (moduli_.c1 + moduli_.c2); }

@@ -31,6 +31,8 @@ void CheckLoads(const Scene& scene, Problems& problems);
 void CheckSupports(const Scene& scene, Problems& problems);
 // Floors with a unit normal, that no body starts in.
 void CheckFloors(const Scene& scene, Problems& problems);
+// Steppings with the precision that they need.
+void CheckMethod(const Scene& scene, Problems& problems);
 // Probes that follow a node that exists; the number of frames; duration.
 void CheckOutput(const Scene& scene, Problems& problems);
 

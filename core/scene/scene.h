@@ -102,6 +102,7 @@ enum class ElementOrder { kLinear, kQuadratic };
 // Where the volume energy of nearly incompressible laws acts: on averages around nodes, or in each element by itself,
 // which locks.
 enum class VolumeForm { kNodal, kElement };
+enum class Precision { kDouble, kSingle };
 
 // How the linear systems of Newton's method are solved; automatic: iteratively where they are large.
 enum class LinearSolver { kAutomatic, kDirect, kIterative };
@@ -110,6 +111,7 @@ struct TetMethod {
   Stepping stepping = Stepping::kExplicit;
   ElementOrder element = ElementOrder::kLinear;
   VolumeForm volume = VolumeForm::kNodal;
+  Precision precision = Precision::kDouble;
   std::optional<double> time_step;  // [s]; automatic when absent
   LinearSolver linear_solver = LinearSolver::kAutomatic;
   double newton_tolerance = 1e-8;   // relative force at which the iterations of implicit steps end

@@ -25,6 +25,7 @@ class Fingerprint {
     Put(scene.method.solver_tolerance);
     Put(static_cast<int>(scene.method.element));
     Put(static_cast<int>(scene.method.volume));
+    Put(static_cast<int>(scene.method.precision));
     Put(scene.method.newton_tolerance);
     Put(static_cast<int>(scene.method.linear_solver));
     Put(scene.bodies.size());

@@ -4,87 +4,64 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/tet/chunk_tasks.h"
 #include "core/tet/points.h"
 
 namespace fascicle {
 namespace {
 
-// Forces of the elements of one group; `v` may be null for no viscous stress.
-template <class Element, bool kViscous, class Law>
-ForceReport GroupForces(const std::vector<Law>& laws, const TetModel& model, const TetGroup& group,
-                        const FibreDrive& drive, const NodalVector& x, const NodalVector* v, ThreadTeam& team,
-                        ForceWorkspace& workspace) {
-  const TetBody& body = model.bodies()[group.body];
-  std::atomic<bool> valid = true;
-  std::atomic<double> smallest_ratio = 1;
-  ForceReport report;
-  report.dissipated_power = team.Sum(group.tet_end - group.tet_begin, [&](std::size_t begin, std::size_t end) {
-    double power = 0;
-    double smallest = 1;
-    bool all_valid = true;
-    for (std::size_t e = group.tet_begin + begin; e < group.tet_begin + end; ++e) {
-      const Law& law = laws[model.law_of()[e]];
-      const auto values = ValuesOf<Element>(model, e, x);
-      std::array<Vec3, Element::kNodes> forces;
-      forces.fill(Vec3::Zero());
-      for (int q = 0; q < Element::kPoints; ++q) {
-        const double volume = model.rest_volume()[Element::kPoints * e + q];
-        const Mat3 F = GradientAt<Element>(model, e, values, q);
-        Mat3 P = law.Stress(F, FibreAt<Element>(model, e, drive, q));
-        const double J = Determinant(F);
-        const double pressure = PatchPressure<Element>(model.patches(), workspace.pressure, e, q);
-        if (pressure != 0) P += pressure * Cofactor(F);
-        smallest = std::min(smallest, J);
-        all_valid &= J > 0 && std::isfinite(P.sum());
-        if constexpr (kViscous) {
-          const Mat3 F_rate = GradientAt<Element>(model, e, ValuesOf<Element>(model, e, *v), q);
-          const ViscousStress viscous(F, F_rate, body.damping_mu, body.damping_lambda);
-          P += F * viscous.S;
-          power += volume * viscous.power;
-        }
-        CornerValues corners;
-        SetCornerForces(P, model.Dm_inverse()[Element::kPoints * e + q], volume, corners);
-        Element::AddCorners(corners, q, forces);
-      }
-      std::copy(forces.begin(), forces.end(), &workspace.element_forces[Element::kNodes * e]);
-    }
-    TakeLeast(smallest_ratio, smallest);
-    if (!all_valid) valid.store(false, std::memory_order_relaxed);
-    return power;
-  });
-  report.valid = valid.load();
-  report.smallest_ratio = smallest_ratio.load();
-  return report;
+// What acts on the elements; null pointers for what does not.
+struct Action {
+  bool elastic = true;
+  const FibreDrive* drive = nullptr;
+  const NodalVector* x = nullptr;
+  const NodalVector* v = nullptr;
+  bool with_energy = false;
+};
+
+template <class S>
+ChunkTask<S> TaskOf(const TetModel& model, const Chunk& chunk, const Action& action, const ForceWorkspace& workspace) {
+  ChunkTask<S> task = TaskOf<S>(model, chunk, model.chunks().node_sums);
+  task.x = Numbers(*action.x);
+  task.with_energy = action.with_energy;
+  if (action.elastic) {
+    SetDrive(model, *action.drive, task);
+    if (!model.patches().empty()) task.pressure = workspace.pressure.data();
+  } else {
+    task.law = nullptr;
+  }
+  const TetBody& body = model.bodies()[model.groups()[chunk.group].body];
+  if (action.v != nullptr) {
+    task.v = Numbers(*action.v);
+    task.mu = body.damping_mu;
+    task.lambda = body.damping_lambda;
+  }
+  return task;
 }
 
-ForceReport AllForces(const TetModel& model, const FibreDrive& drive, const NodalVector& x, const NodalVector* v,
-                      ThreadTeam& team, ForceWorkspace& workspace, NodalVector& force) {
-  workspace.element_forces.resize(model.nodes_per_element() * model.tetrahedra());
+ForceReport AllForces(const TetModel& model, const Action& action, ThreadTeam& team, ForceWorkspace& workspace,
+                      NodalVector& force) {
+  const ElementChunks& chunks = model.chunks();
+  force.resize(model.nodes());
+  workspace.slot_sums.resize(std::max(workspace.slot_sums.size(), 3 * chunks.node_sums.slots.size()));
+  workspace.reports.resize(chunks.chunks.size());
   ForceReport total;
-  total.valid = UpdatePatches(model, x, team, workspace);
-  model.VisitElement([&]<class Element>(Element) {
-    for (const TetGroup& group : model.groups()) {
-      const bool viscous = v != nullptr && model.bodies()[group.body].HasStrainDamping();
-      const ForceReport report = std::visit(
-          [&](const auto& laws) {
-            return viscous ? GroupForces<Element, true>(laws, model, group, drive, x, v, team, workspace)
-                           : GroupForces<Element, false>(laws, model, group, drive, x, nullptr, team, workspace);
-          },
-          group.laws);
-      total.valid &= report.valid;
-      total.dissipated_power += report.dissipated_power;
-      total.smallest_ratio = std::min(total.smallest_ratio, report.smallest_ratio);
-    }
+  if (action.elastic) total.valid = UpdatePatches(model, *action.x, team, workspace);
+  VisitKernels(model, *workspace.kernels, [&]<class S>(const ElementKernels<S>& kernels) {
+    ForChunks(model, team, [&](const Chunk& chunk, std::size_t c) {
+      ChunkTask<S> task = TaskOf<S>(model, chunk, action, workspace);
+      task.sums = Numbers(force);
+      task.slot_sums = workspace.slot_sums.data();
+      workspace.reports[c] = kernels.forces(task);
+    });
   });
-  GatherForces(model, workspace.element_forces, team, force);
+  AddSlots<3>(chunks.node_sums, workspace.slot_sums.data(), team, Numbers(force));
+  for (const ChunkReport& report : workspace.reports) {
+    total.valid &= report.finite && report.smallest_ratio > 0;
+    total.dissipated_power += report.dissipated_power;
+    if (!(report.smallest_ratio >= total.smallest_ratio)) total.smallest_ratio = report.smallest_ratio;
+  }
   return total;
-}
-
-template <class Visit>
-void ForElements(ThreadTeam& team, const TetBody& body, const Visit& visit) {
-  team.For(body.tet_end - body.tet_begin, kElementGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = body.tet_begin + begin; e < body.tet_begin + end; ++e) visit(e);
-  });
 }
 
 // What one corner of rest shape gradient g contributes to the diagonal of -D, for unit volume: twice the dissipation
@@ -98,22 +75,21 @@ Vec3 CornerDiagonal(const Mat3& F, const Vec3& g, double mu, double lambda) {
   return diagonal;
 }
 
+// Adds the diagonal of -D of one element to its chunk's nodes.
 template <class Element>
-void UpdateCornerVolumes(const TetModel& model, const NodalVector& x, ThreadTeam& team, ForceWorkspace& workspace) {
-  const VolumePatches& patches = model.patches();
-  team.For(patches.of_element.size(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) {
-      if (patches.of_element[e][0] == VolumePatches::kNone) continue;
-      const auto values = ValuesOf<Element>(model, e, x);
-      std::array<double, 4> volumes = {};
-      for (int q = 0; q < Element::kPoints; ++q) {
-        const double J = Determinant(GradientAt<Element>(model, e, values, q));
-        const double volume = model.rest_volume()[Element::kPoints * e + q] * J;
-        for (int c = 0; c < 4; ++c) volumes[c] += Element::Barycentric(q, c) * volume;
-      }
-      workspace.corner_volume[e] = volumes;
+void AddDiagonal(const TetModel& model, const TetBody& body, const NodalVector& x, std::size_t e,
+                 std::array<Vec3, kChunkNodes>& sums) {
+  const std::size_t slot = model.chunks().slot[e];
+  const std::uint16_t* local = &model.chunks().local[Element::kNodes * kBlock * (slot / kBlock) + slot % kBlock];
+  const auto positions = ValuesOf<Element>(model, e, x);
+  for (int q = 0; q < Element::kPoints; ++q) {
+    const Mat3 F = GradientAt<Element>(model, e, positions, q);
+    const auto gradients = ShapeGradients<Element>(model, e, q);
+    const double volume = model.rest_volume()[Element::kPoints * e + q];
+    for (int a = 0; a < Element::kNodes; ++a) {
+      sums[local[kBlock * a]] += volume * CornerDiagonal(F, gradients.col(a), body.damping_mu, body.damping_lambda);
     }
-  });
+  }
 }
 
 // An element's share of the patches' energy [J]: the energy density of each, times the volume at its corner.
@@ -133,128 +109,102 @@ double PatchEnergyOf(const TetModel& model, const ForceWorkspace& workspace, std
 
 ForceReport ElasticForce(const TetModel& model, const FibreDrive& drive, const NodalVector& x, ThreadTeam& team,
                          ForceWorkspace& workspace, NodalVector& force) {
-  return AllForces(model, drive, x, nullptr, team, workspace, force);
+  return AllForces(model, {true, &drive, &x}, team, workspace, force);
 }
 
 ForceReport ElasticAndViscousForce(const TetModel& model, const FibreDrive& drive, const NodalVector& x,
                                    const NodalVector& v, ThreadTeam& team, ForceWorkspace& workspace,
                                    NodalVector& force) {
-  return AllForces(model, drive, x, &v, team, workspace, force);
+  return AllForces(model, {true, &drive, &x, &v}, team, workspace, force);
 }
 
 void ViscousForce(const TetModel& model, const NodalVector& x, const NodalVector& v, ThreadTeam& team,
                   ForceWorkspace& workspace, NodalVector& force) {
-  workspace.element_forces.resize(model.nodes_per_element() * model.tetrahedra());
-  model.VisitElement([&]<class Element>(Element) {
-    for (const TetBody& body : model.bodies()) {
-      const bool damped = body.HasStrainDamping();
-      ForElements(team, body, [&](std::size_t e) {
-        std::array<Vec3, Element::kNodes> forces;
-        forces.fill(Vec3::Zero());
-        if (damped) {
-          const auto positions = ValuesOf<Element>(model, e, x), velocities = ValuesOf<Element>(model, e, v);
-          for (int q = 0; q < Element::kPoints; ++q) {
-            const Mat3 F = GradientAt<Element>(model, e, positions, q);
-            const ViscousStress viscous(F, GradientAt<Element>(model, e, velocities, q), body.damping_mu,
-                                        body.damping_lambda);
-            CornerValues corners;
-            SetCornerForces(F * viscous.S, model.Dm_inverse()[Element::kPoints * e + q],
-                            model.rest_volume()[Element::kPoints * e + q], corners);
-            Element::AddCorners(corners, q, forces);
-          }
-        }
-        std::copy(forces.begin(), forces.end(), &workspace.element_forces[Element::kNodes * e]);
-      });
-    }
-  });
-  GatherForces(model, workspace.element_forces, team, force);
+  AllForces(model, {false, nullptr, &x, &v}, team, workspace, force);
 }
 
 void ViscousDiagonal(const TetModel& model, const NodalVector& x, ThreadTeam& team, ForceWorkspace& workspace,
                      NodalVector& diagonal) {
-  workspace.element_forces.resize(model.nodes_per_element() * model.tetrahedra());
+  const ElementChunks& chunks = model.chunks();
+  diagonal.resize(model.nodes());
+  workspace.slot_sums.resize(std::max(workspace.slot_sums.size(), 3 * chunks.node_sums.slots.size()));
   model.VisitElement([&]<class Element>(Element) {
-    for (const TetBody& body : model.bodies()) {
-      ForElements(team, body, [&](std::size_t e) {
-        const auto positions = ValuesOf<Element>(model, e, x);
-        std::array<Vec3, Element::kNodes> sums;
-        sums.fill(Vec3::Zero());
-        for (int q = 0; q < Element::kPoints; ++q) {
-          const Mat3 F = GradientAt<Element>(model, e, positions, q);
-          const auto gradients = ShapeGradients<Element>(model, e, q);
-          const double volume = model.rest_volume()[Element::kPoints * e + q];
-          for (int a = 0; a < Element::kNodes; ++a) {
-            sums[a] += volume * CornerDiagonal(F, gradients.col(a), body.damping_mu, body.damping_lambda);
-          }
-        }
-        std::copy(sums.begin(), sums.end(), &workspace.element_forces[Element::kNodes * e]);
-      });
-    }
+    ForChunks(model, team, [&](const Chunk& chunk, std::size_t) {
+      const TetBody& body = model.bodies()[model.groups()[chunk.group].body];
+      std::array<Vec3, kChunkNodes> sums;
+      std::fill_n(sums.begin(), chunk.node_end - chunk.node_begin, Vec3::Zero());
+      for (std::size_t e = chunk.tet_begin; e < chunk.tet_end; ++e) {
+        AddDiagonal<Element>(model, body, x, e, sums);
+      }
+      for (std::size_t i = chunk.node_begin; i < chunk.node_end; ++i) {
+        const std::int32_t target = chunks.node_sums.target[i];
+        double* to = target >= 0 ? diagonal[target].data() : &workspace.slot_sums[3 * std::size_t(~target)];
+        std::copy_n(sums[i - chunk.node_begin].data(), 3, to);
+      }
+    });
   });
-  GatherForces(model, workspace.element_forces, team, diagonal);
+  AddSlots<3>(chunks.node_sums, workspace.slot_sums.data(), team, Numbers(diagonal));
 }
 
 double ElasticEnergy(const TetModel& model, std::size_t body, const FibreDrive& drive, const NodalVector& x,
                      ThreadTeam& team) {
   ForceWorkspace workspace;
+  workspace.reports.resize(model.chunks().chunks.size());
   UpdatePatches(model, x, team, workspace);
+  const Action action{true, &drive, &x, nullptr, true};
+  VisitKernels(model, *workspace.kernels, [&]<class S>(const ElementKernels<S>& kernels) {
+    ForChunks(model, team, [&](const Chunk& chunk, std::size_t c) {
+      if (model.groups()[chunk.group].body != body) return;
+      workspace.reports[c] = kernels.forces(TaskOf<S>(model, chunk, action, workspace));
+    });
+  });
+  double total = 0;
+  for (const ChunkReport& report : workspace.reports) total += report.energy;
+  const TetBody& elements = model.bodies()[body];
   return model.VisitElement([&]<class Element>(Element) {
-    double total = 0;
-    for (const TetGroup& group : model.groups()) {
-      if (group.body != body) continue;
-      total += std::visit(
-          [&](const auto& laws) {
-            return team.Sum(group.tet_end - group.tet_begin, [&](std::size_t begin, std::size_t end) {
-              double energy = 0;
-              for (std::size_t e = group.tet_begin + begin; e < group.tet_begin + end; ++e) {
-                const auto values = ValuesOf<Element>(model, e, x);
-                for (int q = 0; q < Element::kPoints; ++q) {
-                  const Mat3 F = GradientAt<Element>(model, e, values, q);
-                  const double density = laws[model.law_of()[e]].Energy(F, FibreAt<Element>(model, e, drive, q));
-                  energy += model.rest_volume()[Element::kPoints * e + q] * density;
-                }
-                energy += PatchEnergyOf<Element>(model, workspace, e);
-              }
-              return energy;
-            });
-          },
-          group.laws);
-    }
-    return total;
+    return total + team.Sum(elements.tet_end - elements.tet_begin, [&](std::size_t begin, std::size_t end) {
+      double energy = 0;
+      for (std::size_t e = elements.tet_begin + begin; e < elements.tet_begin + end; ++e) {
+        energy += PatchEnergyOf<Element>(model, workspace, e);
+      }
+      return energy;
+    });
   });
 }
 
 bool UpdatePatches(const TetModel& model, const NodalVector& x, ThreadTeam& team, ForceWorkspace& workspace) {
   const VolumePatches& patches = model.patches();
   if (patches.empty()) return true;
-  workspace.corner_volume.resize(patches.of_element.size());
   for (auto* values : {&workspace.raw_ratio, &workspace.ratio, &workspace.own_pressure, &workspace.pressure}) {
     values->resize(patches.size());
   }
-  model.VisitElement([&]<class Element>(Element) { UpdateCornerVolumes<Element>(model, x, team, workspace); });
-  GatherCornerVolumes(model, team, workspace, workspace.raw_ratio);
-  patches.Smooth(workspace.raw_ratio, workspace.ratio);
-  bool valid = true;
-  for (std::size_t n = 0; n < patches.size(); ++n) {
-    workspace.own_pressure[n] = PatchEnergy{patches.modulus[n]}.Pressure(workspace.ratio[n]);
-    valid &= workspace.ratio[n] > 0;
-  }
-  patches.Smooth(workspace.own_pressure, workspace.pressure);
-  return valid;
-}
-
-void GatherCornerVolumes(const TetModel& model, ThreadTeam& team, const ForceWorkspace& workspace,
-                         std::vector<double>& sums) {
-  const VolumePatches& patches = model.patches();
-  team.For(patches.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      double volume = 0;
-      for (std::int32_t k = patches.begin[n]; k < patches.begin[n + 1]; ++k) {
-        volume += workspace.corner_volume[patches.corners[k] / 4][patches.corners[k] % 4];
-      }
-      sums[n] = volume / patches.rest_volume[n];
-    }
+  const Sharing& sharing = model.chunks().patch_sums;
+  workspace.slot_sums.resize(std::max(workspace.slot_sums.size(), sharing.slots.size()));
+  VisitKernels(model, *workspace.kernels, [&]<class S>(const ElementKernels<S>& kernels) {
+    ForChunks(model, team, [&](const Chunk& chunk, std::size_t) {
+      if (sharing.target[chunk.node_begin] == Sharing::kNone) return;
+      ChunkTask<S> task = TaskOf<S>(model, chunk, sharing);
+      task.x = Numbers(x);
+      task.sums = workspace.raw_ratio.data();
+      task.slot_sums = workspace.slot_sums.data();
+      kernels.corner_volumes(task);
+    });
   });
+  AddSlots<1>(sharing, workspace.slot_sums.data(), team, workspace.raw_ratio.data());
+  ForPatches(patches, team, [&](std::size_t n) { workspace.raw_ratio[n] /= patches.rest_volume[n]; });
+  std::atomic<bool> valid = true;
+  team.For(patches.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
+    patches.SmoothRows(begin, end, workspace.raw_ratio, workspace.ratio);
+    workspace.kernels->patch_pressure(end - begin, &patches.modulus[begin], &workspace.ratio[begin],
+                                      &workspace.own_pressure[begin]);
+    bool positive = true;
+    for (std::size_t n = begin; n < end; ++n) positive &= workspace.ratio[n] > 0;
+    if (!positive) valid.store(false, std::memory_order_relaxed);
+  });
+  team.For(patches.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
+    patches.SmoothRows(begin, end, workspace.own_pressure, workspace.pressure);
+  });
+  return valid.load();
 }
 
 void GatherForces(const TetModel& model, const NodalVector& element_forces, ThreadTeam& team, NodalVector& sums) {

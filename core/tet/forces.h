@@ -5,11 +5,12 @@
 #include <span>
 #include <vector>
 
+#include "core/tet/kernels.h"
 #include "core/tet/model.h"
 
-// Loops over the elements: the law is fixed once for each group and call, nothing is allocated, and results are the
-// same bits for any number of threads, because every element writes its own forces and every node adds up its elements
-// in a fixed order.
+// Loops over the elements, chunk by chunk: the law is fixed for a chunk, nothing is allocated after the first call, and
+// results are the same bits for any number of threads and every instruction set: the order in which a chunk adds up its
+// elements and a node its chunks is fixed.
 //   x, v   positions [m] and velocities [m/s] of all nodes
 namespace fascicle {
 
@@ -30,8 +31,11 @@ struct FibreDrive {
 
 // Scratch of the functions below; keeps its memory from call to call.
 struct ForceWorkspace {
-  NodalVector element_forces;                        // nodes of an element times elements
-  std::vector<std::array<double, 4>> corner_volume;  // of each element: integral of L_c J [m^3]
+  const Kernels* kernels = &KernelsFor(PreferredInstructionSet());
+  std::vector<double> slot_sums;     // of shared nodes or patches, see Sharing
+  std::vector<ChunkReport> reports;  // of each chunk
+  std::vector<double> wave_blocks;   // of AddStiffness
+  NodalVector element_forces;        // nodes of an element times elements; of implicit steps only
   // Of each patch: theta before and after smoothing [1], U'(theta) and what of it acts on elements, W U'(theta) [Pa].
   std::vector<double> raw_ratio, ratio, own_pressure, pressure;
 };
@@ -65,10 +69,6 @@ double ElasticEnergy(const TetModel& model, std::size_t body, const FibreDrive& 
 
 // Volume ratio theta and pressure U'(theta) of every patch into the workspace; false where a ratio is not positive.
 bool UpdatePatches(const TetModel& model, const NodalVector& x, ThreadTeam& team, ForceWorkspace& workspace);
-
-// Adds up the workspace's corner volumes in every patch and divides by V_n; `sums` has a place for each patch.
-void GatherCornerVolumes(const TetModel& model, ThreadTeam& team, const ForceWorkspace& workspace,
-                         std::vector<double>& sums);
 
 // Adds up the forces of all elements on every node; `sums` gets its size.
 void GatherForces(const TetModel& model, const NodalVector& element_forces, ThreadTeam& team, NodalVector& sums);

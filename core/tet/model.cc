@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <set>
+#include <tuple>
 
 #include "core/base/check.h"
 
@@ -42,6 +43,30 @@ double ElementVolumeModulus(const Law& law, ElementOrder order) {
   return std::min(modulus, kept * (shear + active_stress));
 }
 
+// Where the middle of each tetrahedron lies on a curve that fills the mesh's bounding box, so that what is near on the
+// curve is near in space: the bits of its three coordinates in turn [Morton 1966].
+std::vector<std::uint64_t> PlacesOnCurve(const TetMesh& mesh) {
+  constexpr int kBits = 20;
+  Vec3 low = Vec3::Zero(), high = low;
+  if (!mesh.nodes.empty()) low = high = mesh.nodes[0];
+  for (const Vec3& X : mesh.nodes) {
+    low = low.cwiseMin(X);
+    high = high.cwiseMax(X);
+  }
+  const double cell = (high - low).maxCoeff() / (1 << kBits);
+  std::vector<std::uint64_t> places;
+  places.reserve(mesh.tetrahedra.size());
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const Vec3 middle = (Centroid(mesh, t) - low) / cell;
+    std::uint64_t place = 0;
+    for (int bit = kBits - 1; bit >= 0; --bit) {
+      for (int c = 0; c < 3; ++c) place = place << 1 | (static_cast<std::uint64_t>(middle[c]) >> bit & 1);
+    }
+    places.push_back(place);
+  }
+  return places;
+}
+
 // Whether the active stress of any law depends on how fast the fibre shortens.
 template <class Law>
 bool DependsOnRate(const Law& law) {
@@ -75,13 +100,20 @@ TetModel::TetModel(const Scene& scene) : scene_(&scene) {
     }
   });
   Invert(element_nodes, nodes(), node_use_begin_, node_uses_);
-  std::vector<std::int32_t> patches;
-  for (const VolumePatches::Corners& corners : patches_.of_element) {
-    patches.insert(patches.end(), corners.begin(), corners.end());
-  }
-  Invert(patches, patches_.size(), patches_.begin, patches_.corners);
   if (order() == ElementOrder::kLinear) SetSmoothing();
-  middles_.clear();
+  SetChunks();
+  if (scene.method.precision == Precision::kSingle) {
+    SetBlocks<float>();
+  } else {
+    SetBlocks<double>();
+  }
+  building_ = {};
+  // What grew one by one has room for as much again.
+  const auto shrink = [](auto&... vectors) { (vectors.shrink_to_fit(), ...); };
+  shrink(rest_positions_, tetrahedra_, edge_nodes_, source_tetrahedron_, law_of_, mass_, mass_damping_);
+  shrink(patches_.of_element, patches_.rest_volume, patches_.modulus, patches_.row, patches_.neighbour,
+         patches_.weight);
+  shrink(chunks_.chunks, chunks_.nodes, chunks_.local, chunks_.slot, chunks_.patch);
   FindCurvesEnd();
 }
 
@@ -121,14 +153,15 @@ void TetModel::AddNodes(const Body& body, TetBody& entry) {
       std::array<std::int32_t, 6>& edges = edge_nodes_.emplace_back();
       for (int k = 0; k < 6; ++k) {
         const std::int32_t i = first + tet[kTetEdges[k][0]], j = first + tet[kTetEdges[k][1]];
-        const auto [place, is_new] = middles_.try_emplace(std::minmax(i, j), static_cast<std::int32_t>(nodes()));
+        const auto [place, is_new] =
+            building_.middles.try_emplace(std::minmax(i, j), static_cast<std::int32_t>(nodes()));
         if (is_new) rest_positions_.push_back(0.5 * (rest_positions_[i] + rest_positions_[j]));
         edges[k] = place->second;
       }
     }
     for (const CurvedEdge& edge : body.mesh.curved_edges) {
       const std::int32_t i = first + edge.ends[0], j = first + edge.ends[1];
-      rest_positions_[middles_.at(std::minmax(i, j))] = edge.middle;
+      rest_positions_[building_.middles.at(std::minmax(i, j))] = edge.middle;
     }
     entry.node_end = nodes();
   }
@@ -140,12 +173,18 @@ void TetModel::AddElements(const Body& body, TetBody& entry) {
   const std::size_t count = body.mesh.tetrahedra.size();
   entry.tet_begin = tetrahedra();
   entry.tet_end = entry.tet_begin + count;
-  // Sorted by the kind of law; AddNodes left the edges in the mesh's order.
+  // AddNodes left the edges in the mesh's order.
   std::vector<std::size_t> kinds(count);
   for (std::size_t t = 0; t < count; ++t) kinds[t] = MaterialOf(body, t).index();
+  // One chunk is near in any order.
+  const std::vector<std::uint64_t> curve =
+      count > kChunkElements ? PlacesOnCurve(body.mesh) : std::vector<std::uint64_t>(count, 0);
+  const auto key = [&](std::int32_t t) {
+    return std::tuple{kinds[t], body.material_of.empty() ? 0 : body.material_of[t], curve[t]};
+  };
   std::vector<std::int32_t> sorted(count);
   for (std::size_t t = 0; t < count; ++t) sorted[t] = static_cast<std::int32_t>(t);
-  std::stable_sort(sorted.begin(), sorted.end(), [&](std::int32_t a, std::int32_t b) { return kinds[a] < kinds[b]; });
+  std::stable_sort(sorted.begin(), sorted.end(), [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
   if (!edge_nodes_.empty()) {
     const std::vector<std::array<std::int32_t, 6>> edges(
         edge_nodes_.begin() + static_cast<std::ptrdiff_t>(entry.tet_begin), edge_nodes_.end());
@@ -160,10 +199,10 @@ void TetModel::AddElements(const Body& body, TetBody& entry) {
     const std::size_t e = tetrahedra();
     tetrahedra_.push_back(shifted);
     source_tetrahedron_.push_back(t);
-    fibres_.push_back(body.fibres.empty() ? Vec3(Vec3::Zero()) : body.fibres[t]);
+    building_.fibres.push_back(body.fibres.empty() ? Vec3(Vec3::Zero()) : body.fibres[t]);
     const std::int32_t activation = body.activation_of.empty() ? 0 : body.activation_of[t];
-    activation_of_.push_back(static_cast<std::int32_t>(entry.activation) + activation);
-    activation_scale_.push_back(body.activation_scale.empty() ? 1 : body.activation_scale[t]);
+    building_.activation_of.push_back(static_cast<std::int32_t>(entry.activation) + activation);
+    building_.activation_scale.push_back(body.activation_scale.empty() ? 1 : body.activation_scale[t]);
     VisitElement([&]<class Element>(Element) {
       const auto element_nodes = NodesOf<Element>(e);
       const double volume = AddPoints<Element>(e);
@@ -224,8 +263,8 @@ double TetModel::AddPoints(std::size_t tet) {
     const Mat3 Dm = EdgeMatrix(Element::Corners(X, q));
     const double volume = Element::kPointWeight * Dm.determinant() / 6;
     FASCICLE_CHECK(volume > 0, "meshes are checked before they are simulated");
-    Dm_inverse_.push_back(Dm.inverse());
-    rest_volume_.push_back(volume);
+    building_.Dm_inverse.push_back(Dm.inverse());
+    building_.rest_volume.push_back(volume);
     sum += volume;
   }
   return sum;
@@ -248,7 +287,13 @@ void TetModel::AddPatches(const TetGroup& group, std::span<const double> given) 
       }
       const std::int32_t patch = place->second;
       patches_.of_element[e][c] = patch;
-      const double volume = VisitElement([&]<class Element>(Element) { return CornerVolume<Element>(e, c); });
+      const double volume = VisitElement([&]<class Element>(Element) {
+        double sum = 0;
+        for (int q = 0; q < Element::kPoints; ++q) {
+          sum += Element::Barycentric(q, c) * building_.rest_volume[Element::kPoints * e + q];
+        }
+        return sum;
+      });
       patches_.rest_volume[patch] += volume;
       patches_.modulus[patch] += volume * modulus;
     }
@@ -263,7 +308,7 @@ void TetModel::SetSmoothing() {
     const VolumePatches::Corners& corners = patches_.of_element[e];
     if (corners[0] == VolumePatches::kNone) continue;
     for (const std::int32_t n : corners) {
-      for (const std::int32_t m : corners) rows[n][m] += rest_volume_[e] / 16 / patches_.rest_volume[n];
+      for (const std::int32_t m : corners) rows[n][m] += building_.rest_volume[e] / 16 / patches_.rest_volume[n];
     }
   }
   patches_.row.push_back(0);
@@ -274,6 +319,118 @@ void TetModel::SetSmoothing() {
     }
     patches_.row.push_back(static_cast<std::int32_t>(patches_.neighbour.size()));
   }
+}
+
+// Cuts the elements of each law into chunks, and numbers the nodes of each chunk.
+void TetModel::SetChunks() {
+  VisitElement([&]<class Element>(Element) {
+    std::vector<std::int32_t> local_of(nodes(), -1), patch_of_local;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      for (std::size_t e = groups_[g].tet_begin; e < groups_[g].tet_end;) {
+        Chunk chunk;
+        chunk.group = static_cast<std::int32_t>(g);
+        chunk.law = law_of_[e];
+        chunk.tet_begin = e;
+        chunk.node_begin = chunks_.nodes.size();
+        chunk.block_begin = chunks_.chunks.empty() ? 0 : chunks_.chunks.back().block_end;
+        const auto count_new = [&] {
+          const auto element_nodes = NodesOf<Element>(e);
+          return std::count_if(element_nodes.begin(), element_nodes.end(),
+                               [&](std::int32_t n) { return local_of[n] < 0; });
+        };
+        for (; e < groups_[g].tet_end && law_of_[e] == chunk.law && e - chunk.tet_begin < kChunkElements; ++e) {
+          if (chunks_.nodes.size() - chunk.node_begin + count_new() > kChunkNodes) break;
+          const std::size_t slot = kBlock * chunk.block_begin + (e - chunk.tet_begin);
+          chunks_.slot.push_back(static_cast<std::int32_t>(slot));
+          chunks_.local.resize(Element::kNodes * kBlock * (slot / kBlock + 1));
+          const auto element_nodes = NodesOf<Element>(e);
+          for (int a = 0; a < Element::kNodes; ++a) {
+            std::int32_t& local = local_of[element_nodes[a]];
+            if (local < 0) {
+              local = static_cast<std::int32_t>(chunks_.nodes.size() - chunk.node_begin);
+              chunks_.nodes.push_back(element_nodes[a]);
+              const bool has_patch = a < 4 && !patches_.empty() && patches_.of_element[e][0] != VolumePatches::kNone;
+              chunks_.patch.push_back(has_patch ? patches_.of_element[e][a] : Sharing::kNone);
+            }
+            // The last block's free lanes repeat the last element.
+            for (std::size_t k = slot % kBlock; k < kBlock; ++k) {
+              chunks_.local[(Element::kNodes * (slot / kBlock) + a) * kBlock + k] = static_cast<std::uint16_t>(local);
+            }
+          }
+        }
+        chunk.tet_end = e;
+        chunk.block_end = chunk.block_begin + (e - chunk.tet_begin + kBlock - 1) / kBlock;
+        chunk.node_end = chunks_.nodes.size();
+        for (std::size_t i = chunk.node_begin; i < chunk.node_end; ++i) local_of[chunks_.nodes[i]] = -1;
+        chunks_.chunks.push_back(chunk);
+      }
+    }
+  });
+  chunks_.node_sums = Sharing(chunks_.nodes, nodes());
+  if (!patches_.empty()) chunks_.patch_sums = Sharing(chunks_.patch, patches_.size());
+}
+
+template <class S>
+void TetModel::SetBlocks() {
+  BlockArrays<S> arrays;
+  const std::size_t blocks = chunks_.chunks.empty() ? 0 : chunks_.chunks.back().block_end;
+  const int points = points_per_element();
+  arrays.points.resize(points * blocks);
+  arrays.fibres.resize(blocks);
+  for (const Chunk& chunk : chunks_.chunks) {
+    for (std::size_t slot = kBlock * chunk.block_begin; slot < kBlock * chunk.block_end; ++slot) {
+      const std::size_t e = std::min(chunk.tet_begin + (slot - kBlock * chunk.block_begin), chunk.tet_end - 1);
+      const std::size_t block = slot / kBlock, lane = slot % kBlock;
+      const bool is_element = slot - kBlock * chunk.block_begin < chunk.tet_end - chunk.tet_begin;
+      for (int q = 0; q < points; ++q) {
+        RestPoint<S>& point = arrays.points[points * block + q];
+        for (int k = 0; k < 9; ++k) {
+          point.Dm_inverse[k][lane] = static_cast<S>(building_.Dm_inverse[points * e + q].data()[k]);
+        }
+        point.volume[lane] = is_element ? static_cast<S>(building_.rest_volume[points * e + q]) : S(0);
+      }
+      BlockFibres<S>& fibres = arrays.fibres[block];
+      for (int c = 0; c < 3; ++c) fibres.direction[c][lane] = static_cast<S>(building_.fibres[e][c]);
+      fibres.activation[lane] = building_.activation_of[e];
+      fibres.activation_scale[lane] = static_cast<S>(building_.activation_scale[e]);
+    }
+  }
+  blocks_ = std::move(arrays);
+}
+
+double TetModel::ActivationOf(std::size_t tet, std::span<const double> activations) const {
+  const std::size_t slot = chunks_.slot[tet];
+  return VisitBlocks([&](const auto& arrays) {
+    const auto& fibres = arrays.fibres[slot / kBlock];
+    return activations[fibres.activation[slot % kBlock]] * static_cast<double>(fibres.activation_scale[slot % kBlock]);
+  });
+}
+
+Mat3 TetModel::DmInverses::operator[](std::size_t point) const {
+  const std::size_t points = model.points_per_element();
+  const std::size_t slot = model.chunks_.slot[point / points];
+  return model.VisitBlocks([&](const auto& arrays) {
+    const auto& rest = arrays.points[points * (slot / kBlock) + point % points];
+    Mat3 Dm_inverse;
+    for (int k = 0; k < 9; ++k) Dm_inverse.data()[k] = rest.Dm_inverse[k][slot % kBlock];
+    return Dm_inverse;
+  });
+}
+
+double TetModel::RestVolumes::operator[](std::size_t point) const {
+  const std::size_t points = model.points_per_element();
+  const std::size_t slot = model.chunks_.slot[point / points];
+  return model.VisitBlocks([&](const auto& arrays) {
+    return static_cast<double>(arrays.points[points * (slot / kBlock) + point % points].volume[slot % kBlock]);
+  });
+}
+
+Vec3 TetModel::Fibres::operator[](std::size_t tet) const {
+  const std::size_t slot = model.chunks_.slot[tet];
+  return model.VisitBlocks([&](const auto& arrays) {
+    const auto& direction = arrays.fibres[slot / kBlock].direction;
+    return Vec3(direction[0][slot % kBlock], direction[1][slot % kBlock], direction[2][slot % kBlock]);
+  });
 }
 
 // The nodes of a region, ascending: those of the mesh, and of quadratic elements the middles of edges both of whose
@@ -288,7 +445,7 @@ std::vector<std::int32_t> TetModel::NodesOfRegion(const Region& region, const Te
   for (const std::int32_t n : region.nodes) inside[n] = true;
   std::set<std::int32_t> middles;
   const auto add = [&](std::int32_t i, std::int32_t j) {
-    if (inside[i] && inside[j]) middles.insert(middles_.at(std::minmax(first + i, first + j)));
+    if (inside[i] && inside[j]) middles.insert(building_.middles.at(std::minmax(first + i, first + j)));
   };
   for (const Triangle& t : BoundaryTriangles(body.source->mesh)) {
     for (int c = 0; c < 3; ++c) add(t[c], t[(c + 1) % 3]);
@@ -312,7 +469,8 @@ std::map<std::int32_t, Vec3> TetModel::TractionForces(const Region& region, cons
     const Vec3& X0 = rest_positions_[n[0]];
     const double area = 0.5 * (rest_positions_[n[1]] - X0).cross(rest_positions_[n[2]] - X0).norm();
     for (int c = 0; c < 3; ++c) {
-      const std::int32_t at = order() == ElementOrder::kLinear ? n[c] : middles_.at(std::minmax(n[c], n[(c + 1) % 3]));
+      const std::int32_t at =
+          order() == ElementOrder::kLinear ? n[c] : building_.middles.at(std::minmax(n[c], n[(c + 1) % 3]));
       forces.try_emplace(at, Vec3::Zero()).first->second += area / 3 * traction;
     }
   }
@@ -366,7 +524,8 @@ void TetModel::AddContactNodes(const TetBody& body) {
     const double corner = order() == ElementOrder::kLinear ? 1. / 3 : 1. / 12;
     for (int c = 0; c < 3; ++c) {
       areas[n[c]] += corner * area;
-      if (order() == ElementOrder::kQuadratic) areas[middles_.at(std::minmax(n[c], n[(c + 1) % 3]))] += area / 4;
+      if (order() == ElementOrder::kQuadratic)
+        areas[building_.middles.at(std::minmax(n[c], n[(c + 1) % 3]))] += area / 4;
     }
   }
   const double modulus =

@@ -12,6 +12,7 @@
 #include "core/linalg/nodal_vector.h"
 #include "core/scene/scene.h"
 #include "core/tet/element.h"
+#include "core/tet/element_blocks.h"
 #include "core/tet/volume_patches.h"
 
 namespace fascicle {
@@ -68,8 +69,8 @@ struct ContactNode {
 };
 
 // A scene made ready for stepping: nodes and elements of all bodies in common arrays, and what does not change. Indices
-// count through all bodies. The elements of a body are sorted by the kind of their law, else in the mesh's order.
-// Immutable; may be shared between threads.
+// count through all bodies. The elements of a body are sorted by the kind of their law, then by the law, and those of
+// one law so that neighbours in space are neighbours in memory. Immutable; may be shared between threads.
 class TetModel {
  public:
   // The scene must have passed CheckScene and must outlive the model.
@@ -112,30 +113,53 @@ class TetModel {
 
   // Curves of activation of all bodies, and what each element makes of its one.
   const std::vector<const Curve*>& activations() const { return activations_; }
-  double ActivationOf(std::size_t tet, std::span<const double> activations) const {
-    return activations[activation_of_[tet]] * activation_scale_[tet];
+  double ActivationOf(std::size_t tet, std::span<const double> activations) const;
+  // The elements as the loops over them see them.
+  const ElementChunks& chunks() const { return chunks_; }
+  template <class S>
+  const BlockArrays<S>& blocks() const {
+    return std::get<BlockArrays<S>>(blocks_);
   }
+  // Calls visitor(blocks()).
+  template <class Visitor>
+  decltype(auto) VisitBlocks(const Visitor& visitor) const {
+    return std::visit(visitor, blocks_);
+  }
+
   // Of point q of an element, at points of an element * element + q: Dm^-1 [1/m], and its part V of the volume [m^3].
-  const std::vector<Mat3>& Dm_inverse() const { return Dm_inverse_; }
-  const std::vector<double>& rest_volume() const { return rest_volume_; }
+  // These and the fibres are read from the blocks, one by one.
+  struct DmInverses {
+    const TetModel& model;
+    Mat3 operator[](std::size_t point) const;
+  };
+  struct RestVolumes {
+    const TetModel& model;
+    double operator[](std::size_t point) const;
+  };
+  struct Fibres {
+    const TetModel& model;
+    Vec3 operator[](std::size_t tet) const;
+  };
+  DmInverses Dm_inverse() const { return {*this}; }
+  RestVolumes rest_volume() const { return {*this}; }
+  Fibres fibres() const { return {*this}; }  // a0; zero without fibres
   // The integral of the barycentric coordinate L_c over an element at rest [m^3].
   template <class Element>
   double CornerVolume(std::size_t tet, int c) const {
     double volume = 0;
     for (int q = 0; q < Element::kPoints; ++q) {
-      volume += Element::Barycentric(q, c) * rest_volume_[Element::kPoints * tet + q];
+      volume += Element::Barycentric(q, c) * rest_volume()[Element::kPoints * tet + q];
     }
     return volume;
   }
-  const std::vector<Vec3>& fibres() const { return fibres_; }  // a0; zero without fibres
-  const std::vector<double>& mass() const { return mass_; }    // lumped: see Element::kMassShare [kg]
+  const std::vector<double>& mass() const { return mass_; }  // lumped: see Element::kMassShare [kg]
   // 1/m [1/kg], and zero for components whose motion is prescribed.
   const NodalVector& inverse_mass() const { return inverse_mass_; }
   // Rayleigh damping of each node: mass_damping of its body [1/s].
   const std::vector<double>& mass_damping() const { return mass_damping_; }
 
   // Bm3 = -V Dm^-T, so that [f1 f2 f3] = P Bm3 [Teran 2003, 4.1].
-  Mat3 Bm3(std::size_t point) const { return -rest_volume_[point] * Dm_inverse_[point].transpose(); }
+  Mat3 Bm3(std::size_t point) const { return -rest_volume()[point] * Dm_inverse()[point].transpose(); }
 
   // Where node n is one of an element: node_uses()[node_use_begin()[n] .. node_use_begin()[n + 1]), ascending.
   const std::vector<std::int32_t>& node_use_begin() const { return node_use_begin_; }
@@ -165,6 +189,9 @@ class TetModel {
   double AddPoints(std::size_t tet);
   void AddPatches(const TetGroup& group, std::span<const double> given);
   void SetSmoothing();
+  void SetChunks();
+  template <class S>
+  void SetBlocks();
   std::vector<std::int32_t> NodesOfRegion(const Region& region, const TetBody& body) const;
   std::map<std::int32_t, Vec3> TractionForces(const Region& region, const TetBody& body, const Vec3& traction) const;
   void AddLoads(const Body& source, const TetBody& body);
@@ -178,17 +205,24 @@ class TetModel {
   NodalVector rest_positions_;
   std::vector<Tetrahedron> tetrahedra_;
   std::vector<std::array<std::int32_t, 6>> edge_nodes_;  // quadratic elements only
-  // The node in the middle of the edge between two nodes, the lower first; during construction only.
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles_;
+  // During construction only.
+  struct Building {
+    // The node in the middle of the edge between two nodes, the lower first.
+    std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
+    // Of each point and of each element.
+    std::vector<Mat3> Dm_inverse;
+    std::vector<double> rest_volume;
+    std::vector<Vec3> fibres;
+    std::vector<std::int32_t> activation_of;
+    std::vector<double> activation_scale;
+  };
+  Building building_;
   std::vector<std::int32_t> source_tetrahedron_;
   std::vector<std::int32_t> law_of_;
   std::vector<const Curve*> activations_;
-  std::vector<std::int32_t> activation_of_;
-  std::vector<double> activation_scale_;
   VolumePatches patches_;
-  std::vector<Mat3> Dm_inverse_;
-  std::vector<double> rest_volume_;
-  std::vector<Vec3> fibres_;
+  ElementChunks chunks_;
+  std::variant<BlockArrays<double>, BlockArrays<float>> blocks_;
   std::vector<double> mass_;
   NodalVector inverse_mass_;
   std::vector<double> mass_damping_;

@@ -1,129 +1,83 @@
 #include "core/tet/stable_step.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/tet/chunk_tasks.h"
 #include "core/tet/floor_contact.h"
-#include "core/tet/points.h"
 
 namespace fascicle {
 namespace {
 
 // Residual of the eigenvalue at which Lanczos stops: half of it is the error of the step.
 constexpr double kEigenvalueTolerance = 0.02;
-constexpr double kHair = 1e-7;
 
 }  // namespace
 
 void TetStiffness::Set(const TetModel& model, const FibreDrive& drive, const NodalVector& x, ThreadTeam& team,
                        ForceWorkspace& workspace) {
   const VolumePatches& patches = model.patches();
-  const std::size_t points = model.points_per_element() * model.tetrahedra();
-  tangents_.resize(points);
-  if (!patches.empty()) cofactors_.resize(points);
+  drive_ = drive;
+  x_ = &x;
   slopes_.resize(patches.size());
   pressure_change_.resize(patches.size());
   UpdatePatches(model, x, team, workspace);
   for (std::size_t n = 0; n < patches.size(); ++n) {
     slopes_[n] = PatchEnergy{patches.modulus[n]}.Slope(workspace.ratio[n]);
   }
-  model.VisitElement([&]<class Element>(Element) { SetElements<Element>(model, drive, x, team, workspace); });
-}
-
-template <class Element>
-void TetStiffness::SetElements(const TetModel& model, const FibreDrive& drive, const NodalVector& x, ThreadTeam& team,
-                               const ForceWorkspace& workspace) {
-  for (const TetGroup& group : model.groups()) {
-    ForElementsOfGroup(model, group, team, [&](const auto& law, std::size_t e) {
-      const Vec3& a0 = model.fibres()[e];
-      const auto values = ValuesOf<Element>(model, e, x);
-      for (int q = 0; q < Element::kPoints; ++q) {
-        const std::size_t point = Element::kPoints * e + q;
-        Mat3 F = GradientAt<Element>(model, e, values, q);
-        // A hair longer along the fibre: where a fibre curve has a kink, at rest above all, its stiffer side counts.
-        F += (kHair * F * a0) * a0.transpose();
-        Mat9 tangent = law.Tangent(F, FibreAt<Element>(model, e, drive, q));
-        if (!cofactors_.empty()) {
-          cofactors_[point] = Cofactor(F);
-          AddCofactorTangent(PatchPressure<Element>(model.patches(), workspace.pressure, e, q), F, tangent);
-        }
-        std::size_t k = 0;
-        for (int i = 0; i < 9; ++i) {
-          for (int j = i; j < 9; ++j) tangents_[point][k++] = static_cast<float>(tangent(i, j));
-        }
-      }
-    });
-  }
 }
 
 void TetStiffness::Apply(const TetModel& model, const NodalVector& p, ThreadTeam& team, ForceWorkspace& workspace,
                          NodalVector& product) {
-  workspace.element_forces.resize(model.nodes_per_element() * model.tetrahedra());
-  model.VisitElement([&]<class Element>(Element) {
-    ApplyToPatches<Element>(model, p, team, workspace);
-    ApplyElements<Element>(model, p, team, workspace);
+  const Sharing& sharing = model.chunks().node_sums;
+  product.resize(model.nodes());
+  workspace.slot_sums.resize(std::max(workspace.slot_sums.size(), 3 * sharing.slots.size()));
+  ApplyToPatches(model, p, team, workspace);
+  VisitKernels(model, *workspace.kernels, [&]<class S>(const ElementKernels<S>& kernels) {
+    ForChunks(model, team, [&](const Chunk& chunk, std::size_t) {
+      ChunkTask<S> task = TaskOf<S>(model, chunk, sharing);
+      task.x = Numbers(*x_);
+      task.p = Numbers(p);
+      SetDrive(model, drive_, task);
+      if (!model.patches().empty()) {
+        task.pressure = workspace.pressure.data();
+        task.pressure_change = pressure_change_.data();
+      }
+      task.sums = Numbers(product);
+      task.slot_sums = workspace.slot_sums.data();
+      kernels.stiffness_product(task);
+    });
   });
-  GatherForces(model, workspace.element_forces, team, product);
+  AddSlots<3>(sharing, workspace.slot_sums.data(), team, Numbers(product));
   AddFloorStiffness(model, p, product);
 }
 
-template <class Element>
 void TetStiffness::ApplyToPatches(const TetModel& model, const NodalVector& p, ThreadTeam& team,
                                   ForceWorkspace& workspace) {
   const VolumePatches& patches = model.patches();
   if (patches.empty()) return;
-  team.For(model.tetrahedra(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) {
-      const auto values = ValuesOf<Element>(model, e, p);
-      std::array<double, 4> changes = {};
-      for (int q = 0; q < Element::kPoints; ++q) {
-        const Mat3 dF = GradientAt<Element>(model, e, values, q);
-        const double dJ = Contract(cofactors_[Element::kPoints * e + q], dF);
-        for (int c = 0; c < 4; ++c) {
-          changes[c] += model.rest_volume()[Element::kPoints * e + q] * Element::Barycentric(q, c) * dJ;
-        }
-      }
-      workspace.corner_volume[e] = changes;
-    }
+  const Sharing& sharing = model.chunks().patch_sums;
+  std::vector<double>& change = workspace.raw_ratio;
+  VisitKernels(model, *workspace.kernels, [&]<class S>(const ElementKernels<S>& kernels) {
+    ForChunks(model, team, [&](const Chunk& chunk, std::size_t) {
+      if (sharing.target[chunk.node_begin] == Sharing::kNone) return;
+      ChunkTask<S> task = TaskOf<S>(model, chunk, sharing);
+      task.x = Numbers(*x_);
+      task.p = Numbers(p);
+      task.sums = change.data();
+      task.slot_sums = workspace.slot_sums.data();
+      kernels.corner_volume_changes(task);
+    });
   });
-  GatherCornerVolumes(model, team, workspace, workspace.raw_ratio);
-  patches.Smooth(workspace.raw_ratio, pressure_change_);
-  for (std::size_t n = 0; n < patches.size(); ++n) workspace.raw_ratio[n] = slopes_[n] * pressure_change_[n];
-  patches.Smooth(workspace.raw_ratio, pressure_change_);
-}
-
-template <class Element>
-void TetStiffness::ApplyElements(const TetModel& model, const NodalVector& p, ThreadTeam& team,
-                                 ForceWorkspace& workspace) const {
-  team.For(model.tetrahedra(), kElementGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) {
-      const auto values = ValuesOf<Element>(model, e, p);
-      std::array<Vec3, Element::kNodes> forces;
-      forces.fill(Vec3::Zero());
-      for (int q = 0; q < Element::kPoints; ++q) {
-        const std::size_t point = Element::kPoints * e + q;
-        const Mat3 dF = GradientAt<Element>(model, e, values, q);
-        Mat3 dP = Mat3::Zero();
-        const float* entry = tangents_[point].data();
-        for (int i = 0; i < 9; ++i) {
-          double sum = *entry++ * dF.data()[i];
-          for (int j = i + 1; j < 9; ++j) {
-            const double h = *entry++;
-            sum += h * dF.data()[j];
-            dP.data()[j] += h * dF.data()[i];
-          }
-          dP.data()[i] += sum;
-        }
-        if (!cofactors_.empty()) {
-          dP += PatchPressure<Element>(model.patches(), pressure_change_, e, q) * cofactors_[point];
-        }
-        CornerValues corners;
-        SetCornerForces(-dP, model.Dm_inverse()[point], model.rest_volume()[point], corners);
-        Element::AddCorners(corners, q, forces);
-      }
-      std::copy(forces.begin(), forces.end(), &workspace.element_forces[Element::kNodes * e]);
-    }
-  });
+  AddSlots<1>(sharing, workspace.slot_sums.data(), team, change.data());
+  ForPatches(patches, team, [&](std::size_t n) { change[n] /= patches.rest_volume[n]; });
+  const auto smooth = [&](const std::vector<double>& in, std::vector<double>& out) {
+    ForPatches(patches, team, [&](std::size_t n) { patches.SmoothRows(n, n + 1, in, out); });
+  };
+  smooth(change, pressure_change_);
+  ForPatches(patches, team, [&](std::size_t n) { change[n] = slopes_[n] * pressure_change_[n]; });
+  smooth(change, pressure_change_);
 }
 
 double LargestStableStep(const TetModel& model, const FibreDrive& drive, const NodalVector& x, bool explicit_damping,

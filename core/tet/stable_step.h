@@ -1,8 +1,6 @@
 #ifndef FASCICLE_CORE_TET_STABLE_STEP_H_
 #define FASCICLE_CORE_TET_STABLE_STEP_H_
 
-#include <array>
-#include <span>
 #include <vector>
 
 #include "core/linalg/lanczos.h"
@@ -10,32 +8,25 @@
 
 namespace fascicle {
 
-// The stiffness K = -df/dx of all elements, patches and floors at one state, kept as the tangents dP/dF of the laws.
+// The stiffness K = -df/dx of all elements, patches and floors at one state. No matrix is kept: each product goes
+// through the laws again, with less memory to read than matrices would be.
 class TetStiffness {
  public:
-  // Tangents at positions x [m]. O(elements); allocates in the first call only.
+  // At positions x [m] and what drives the fibres; both, with what the drive points to, must stay until the last
+  // product. Updates the workspace's patches, which must be left as they are as long.
   void Set(const TetModel& model, const FibreDrive& drive, const NodalVector& x, ThreadTeam& team,
            ForceWorkspace& workspace);
 
-  // product = K p: the change of P at every point, as nodal forces with the sign turned.
+  // product = K p.
   void Apply(const TetModel& model, const NodalVector& p, ThreadTeam& team, ForceWorkspace& workspace,
              NodalVector& product);
 
  private:
-  template <class Element>
-  void SetElements(const TetModel& model, const FibreDrive& drive, const NodalVector& x, ThreadTeam& team,
-                   const ForceWorkspace& workspace);
-  template <class Element>
-  void ApplyElements(const TetModel& model, const NodalVector& p, ThreadTeam& team, ForceWorkspace& workspace) const;
   // The change of the patches' pressures under p.
-  template <class Element>
   void ApplyToPatches(const TetModel& model, const NodalVector& p, ThreadTeam& team, ForceWorkspace& workspace);
 
-  // The upper triangle of a symmetric 9x9 matrix, row by row. In float: a step length needs no more, and this is by
-  // far the largest array of a simulation.
-  using PackedTangent = std::array<float, 45>;
-  std::vector<PackedTangent> tangents_;  // of each point
-  std::vector<Mat3> cofactors_;          // of each point, where there are patches
+  FibreDrive drive_;
+  const NodalVector* x_ = nullptr;
   std::vector<double> slopes_;           // U''(theta) of each patch [Pa]
   std::vector<double> pressure_change_;  // of each patch
 };

@@ -29,16 +29,15 @@ struct VolumePatches {
   std::vector<Corners> of_element;
   std::vector<double> rest_volume;  // V_n [m^3]
   std::vector<double> modulus;      // k_n [Pa], volume mean over the patch
-  // The corners that make patch n: corners[begin[n] .. begin[n + 1]), each 4 * element + corner, ascending.
-  std::vector<std::int32_t> begin;
-  std::vector<std::int32_t> corners;
   // Row n of W: weights weight[k] of patches neighbour[k], k in [row[n], row[n + 1]); empty for W = 1.
   std::vector<std::int32_t> row, neighbour;
   std::vector<double> weight;
 
   // out = W in; both of size(), not the same.
-  void Smooth(std::span<const double> in, std::span<double> out) const {
-    for (std::size_t n = 0; n < size(); ++n) out[n] = row.empty() ? in[n] : RowOf(n, in);
+  void Smooth(std::span<const double> in, std::span<double> out) const { SmoothRows(0, size(), in, out); }
+  // Of patches [begin, end) alone.
+  void SmoothRows(std::size_t begin, std::size_t end, std::span<const double> in, std::span<double> out) const {
+    for (std::size_t n = begin; n < end; ++n) out[n] = row.empty() ? in[n] : RowOf(n, in);
   }
   double RowOf(std::size_t n, std::span<const double> in) const {
     double sum = 0;

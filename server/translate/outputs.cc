@@ -184,6 +184,7 @@ TetMethod TranslateMethod(const v1::Scene& scene) {
   if (scene.tet().volume() == v1::VOLUME_FORM_ELEMENT) method.volume = VolumeForm::kElement;
   if (scene.tet().linear_solver() == v1::LINEAR_SOLVER_DIRECT) method.linear_solver = LinearSolver::kDirect;
   if (scene.tet().linear_solver() == v1::LINEAR_SOLVER_ITERATIVE) method.linear_solver = LinearSolver::kIterative;
+  if (scene.tet().precision() == v1::PRECISION_SINGLE) method.precision = Precision::kSingle;
   method.newton_tolerance = scene.tet().newton_tolerance();
   if (scene.tet().has_time_step()) method.time_step = scene.tet().time_step();
   method.safety = scene.tet().safety();

@@ -9,6 +9,7 @@
 
 #include "core/materials/isochoric.h"
 #include "core/materials/material.h"
+#include "core/materials/tensor_algebra.h"
 #include "law_checks.h"
 
 namespace fascicle {
@@ -31,8 +32,8 @@ struct WrongSign : NeoHookean {
 struct BulkCountedTwice : Muscle {
   BulkCountedTwice() : Muscle(kMuscle) {}
   Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
-    const IsochoricKinematics k(F);
-    return Muscle::Stress(F, fibre) + BulkModulus() * k.log_J * k.inverse_transpose;
+    const IsochoricKinematics k(ToNumbers(F));
+    return Muscle::Stress(F, fibre) + BulkModulus() * k.log_J * ToEigen(k.inverse_transpose);
   }
 };
 
@@ -40,11 +41,12 @@ struct BulkCountedTwice : Muscle {
 struct WrongFibreDerivative : Muscle {
   WrongFibreDerivative() : Muscle(kMuscle) {}
   Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
-    const IsochoricKinematics k(F);
-    const double stretch = k.FibreStretch(fibre.direction);
+    const IsochoricKinematics k(ToNumbers(F));
+    const Vector3<double> a0 = ToNumbers(fibre).direction;
+    const double stretch = k.FibreStretch(a0);
     const double slope = FibreStress(stretch, fibre.activation) / stretch;
-    const Eigen::Matrix<double, 9, 1> gradient = FibreStretchSquaredGradient(F, k, fibre.direction);
-    return Muscle::Stress(F, fibre) + (slope - slope / (2 * stretch)) * gradient.reshaped(3, 3);
+    const Mat3 gradient = ToEigen(FibreStretchSquaredGradient(ToNumbers(F), k, a0));
+    return Muscle::Stress(F, fibre) + (slope - slope / (2 * stretch)) * gradient;
   }
 };
 
@@ -52,10 +54,10 @@ struct WrongFibreDerivative : Muscle {
 struct TangentWithoutGeometricTerm : NeoHookean {
   TangentWithoutGeometricTerm() : NeoHookean(kYoungPoisson) {}
   Mat9 Tangent(const Mat3& F, const FibreState& fibre) const {
-    const IsochoricKinematics k(F);
+    const IsochoricKinematics k(ToNumbers(F));
     const double lambda = BulkModulus() - 2 * ShearModulus() / 3;
     Mat9 tangent = NeoHookean::Tangent(F, fibre);
-    AddTransposedProduct(lambda * k.log_J - ShearModulus(), k.inverse_transpose, tangent);
+    AddTransposedProduct(lambda * k.log_J - ShearModulus(), ToEigen(k.inverse_transpose), tangent);
     return tangent;
   }
 };
@@ -73,10 +75,16 @@ struct TangentWithFrozenRotation : CorotatedLinear {
 struct TangentWithoutFibreCurvature : Muscle {
   TangentWithoutFibreCurvature() : Muscle(kMuscle) {}
   Mat9 Tangent(const Mat3& F, const FibreState& fibre) const {
-    const IsochoricKinematics k(F);
-    const double stretch = k.FibreStretch(fibre.direction);
-    const double W4 = FibreStress(stretch, fibre.activation) / (2 * stretch * stretch);
-    return NearlyIncompressibleTangent(F, k, FibreWeight(kMuscle[0], W4, fibre.direction), kMuscle[1], kMuscle[2]);
+    const Matrix3<double> numbers = ToNumbers(F);
+    const IsochoricKinematics k(numbers);
+    const Vector3<double> a0 = ToNumbers(fibre).direction;
+    const double stretch = k.FibreStretch(a0);
+    const Vec9 gradient = Flatten(ToEigen(FibreStretchSquaredGradient(numbers, k, a0)));
+    const double slope = FibreStress(stretch, fibre.activation) / stretch, h = 1e-5;
+    const double slope_ahead = FibreStress(stretch + h, fibre.activation) / (stretch + h);
+    const double slope_behind = FibreStress(stretch - h, fibre.activation) / (stretch - h);
+    const FibreDerivatives<double> fibres(stretch, slope, (slope_ahead - slope_behind) / (2 * h));
+    return Muscle::Tangent(F, fibre) - fibres.W44 * gradient * gradient.transpose();
   }
 };
 

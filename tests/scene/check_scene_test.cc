@@ -231,6 +231,23 @@ TEST(CheckSceneTest, EquilibriumNeedsSupportsAlongEveryAxis) {
   EXPECT_TRUE(held.empty()) << held.ToString();
 }
 
+TEST(CheckSceneTest, StepsThatAreSolvedForNeedDouble) {
+  Scene scene = GoodScene();
+  scene.method.precision = Precision::kSingle;
+  for (const Stepping stepping : {Stepping::kExplicit, Stepping::kMixed}) {
+    scene.method.stepping = stepping;
+    Problems problems;
+    CheckScene(scene, problems);
+    EXPECT_TRUE(problems.empty()) << problems.ToString();
+  }
+  for (const Stepping stepping :
+       {Stepping::kBackwardEuler, Stepping::kNewmark, Stepping::kBdf2, Stepping::kQuasiStatic}) {
+    scene.method.stepping = stepping;
+    EXPECT_EQ(ProblemOf(scene).path, "tet.precision");
+    EXPECT_THAT(ProblemOf(scene).hint, HasSubstr("explicit"));
+  }
+}
+
 TEST(CheckSceneTest, Output) {
   Scene scene = GoodScene();
   scene.output.frame_interval = 1e-6;

@@ -1,7 +1,9 @@
 // After its first step a solver takes no more memory: what a step needs is there, however long the run.
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <Eigen/Dense>
+#include <cstdio>
 
 #include "allocation_count.h"
 #include "tet_scenes.h"
@@ -64,6 +66,37 @@ TEST_P(AllocationsTest, NoneAfterTheFirstStep) {
 INSTANTIATE_TEST_SUITE_P(Steppings, AllocationsTest,
                          ::testing::Combine(::testing::Values(Stepping::kExplicit, Stepping::kMixed),
                                             ::testing::Values(1, 2)));
+
+// Bytes in use of the heap.
+std::size_t BytesInUse() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+// Model, state and all that a step needs, but not the scene: linear elements of a nearly incompressible muscle, stepped
+// explicitly, search for the stable step included.
+TEST(MemoryTest, LessThan400BytesForATetrahedron) {
+  Body body = BoxBody(Vec3(0.1, 0.1, 0.1), {26, 26, 26}, Muscle(std::array{5e2, 5e2, 1e7, 3e5, 1.2, 0.05, 6.6, 1.4}));
+  body.fibres = ConstantFibres(body.mesh, Vec3(1, 0.2, 0.1));
+  body.activation = Curve::Constant(0.5);
+  Scene scene;
+  scene.bodies.push_back(std::move(body));
+  scene.duration = 1;
+  for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
+    scene.method.precision = precision;
+    const std::size_t before = BytesInUse();
+    const TetModel model(scene);
+    ThreadTeam team(1);
+    TetSolver solver(model, team);
+    TetState state = solver.InitialState();
+    ASSERT_EQ(solver.Advance(state, scene.duration).problem, StepProblem::kNone);
+    const double bytes = static_cast<double>(BytesInUse() - before) / static_cast<double>(model.tetrahedra());
+    RecordProperty(precision == Precision::kDouble ? "bytes" : "bytes_single", std::to_string(bytes));
+    std::printf("%s: %.0f bytes a tetrahedron\n", precision == Precision::kDouble ? "double" : "single", bytes);
+    EXPECT_LT(bytes, precision == Precision::kDouble ? 400 : 350);
+    EXPECT_GT(bytes, 100);
+  }
+}
 
 // A count that misses something would pass everything. Called by name, operator new may not be optimized away.
 TEST(AllocationCountTest, SeesEveryKind) {

@@ -87,7 +87,7 @@ TEST_P(EveryLawTest, NoResultant) {
   }
 }
 
-// K p against a difference of forces; K is kept in float.
+// K p against a difference of forces, to the error of the difference.
 TEST_P(EveryLawTest, StiffnessIsDerivativeOfForce) {
   TetStiffness stiffness;
   stiffness.Set(model_, activation_, x_, loaded_.team, loaded_.corners);
@@ -234,7 +234,7 @@ TEST(BadElementsTest, NamesThem) {
   EXPECT_TRUE(bad.inverted);
   ASSERT_FALSE(bad.elements.empty());
   for (const std::int64_t e : bad.elements) {
-    const Tetrahedron& tet = loaded.model.corners()[static_cast<std::size_t>(e)];
+    const Tetrahedron& tet = loaded.scene.bodies[0].mesh.tetrahedra[static_cast<std::size_t>(e)];
     EXPECT_NE(std::find(tet.begin(), tet.end(), 0), tet.end());
   }
 }

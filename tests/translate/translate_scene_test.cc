@@ -123,7 +123,10 @@ TEST(TranslateScene, SteppingChoosesTheElementUnlessTheSceneDoes) {
   EXPECT_EQ(method().element, ElementOrder::kLinear);
   EXPECT_EQ(method().volume, VolumeForm::kElement);
   EXPECT_EQ(method().newton_tolerance, 1e-6);
+  EXPECT_EQ(method().precision, Precision::kDouble);
   wire.mutable_tet()->set_stepping(v1::STEPPING_EXPLICIT);
+  wire.mutable_tet()->set_precision(v1::PRECISION_SINGLE);
+  EXPECT_EQ(method().precision, Precision::kSingle);
   wire.mutable_tet()->set_element(v1::ELEMENT_QUADRATIC);
   EXPECT_EQ(method().element, ElementOrder::kQuadratic);
 }

@@ -1,0 +1,84 @@
+#ifndef FASCICLE_CORE_TET_CHUNK_TASKS_H_
+#define FASCICLE_CORE_TET_CHUNK_TASKS_H_
+
+#include "core/tet/forces.h"
+
+// What loops over chunks share.
+namespace fascicle {
+
+inline const double* Numbers(const NodalVector& values) { return values.data()->data(); }
+inline double* Numbers(NodalVector& values) { return values.data()->data(); }
+
+// Calls visitor(kernels of the model's element and number type).
+template <class Visitor>
+void VisitKernels(const TetModel& model, const Kernels& kernels, const Visitor& visitor) {
+  const bool linear = model.order() == ElementOrder::kLinear;
+  model.VisitBlocks([&]<class S>(const BlockArrays<S>&) {
+    if constexpr (std::is_same_v<S, float>) {
+      visitor(linear ? kernels.linear_float : kernels.quadratic_float);
+    } else {
+      visitor(linear ? kernels.linear : kernels.quadratic);
+    }
+  });
+}
+
+// A chunk's elements and law; what acts on it is left to the caller.
+template <class S>
+ChunkTask<S> TaskOf(const TetModel& model, const Chunk& chunk, const Sharing& sharing) {
+  const ElementChunks& chunks = model.chunks();
+  const BlockArrays<S>& arrays = model.blocks<S>();
+  const TetGroup& group = model.groups()[chunk.group];
+  ChunkTask<S> task;
+  task.points = &arrays.points[model.points_per_element() * chunk.block_begin];
+  task.fibres = &arrays.fibres[chunk.block_begin];
+  task.local = &chunks.local[model.nodes_per_element() * kBlock * chunk.block_begin];
+  task.elements = chunk.tet_end - chunk.tet_begin;
+  task.nodes = &chunks.nodes[chunk.node_begin];
+  task.node_count = chunk.node_end - chunk.node_begin;
+  task.patch = &chunks.patch[chunk.node_begin];
+  task.target = &sharing.target[chunk.node_begin];
+  task.law = std::visit([&](const auto& laws) -> const void* { return &laws[chunk.law]; }, group.laws);
+  task.law_kind = static_cast<int>(group.laws.index());
+  return task;
+}
+
+// What the laws of a task are told of the fibres.
+template <class S>
+void SetDrive(const TetModel& model, const FibreDrive& drive, ChunkTask<S>& task) {
+  task.activation = drive.activation.data();
+  if (drive.inverse_step == 0 || !model.depends_on_rate()) return;
+  task.previous = Numbers(*drive.previous);
+  task.inverse_step = drive.inverse_step;
+}
+
+// Calls visit(chunk, its number) for all chunks, in parallel.
+template <class Visit>
+void ForChunks(const TetModel& model, ThreadTeam& team, const Visit& visit) {
+  const std::vector<Chunk>& chunks = model.chunks().chunks;
+  team.For(chunks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) visit(chunks[c], c);
+  });
+}
+
+template <class Visit>
+void ForPatches(const VolumePatches& patches, ThreadTeam& team, const Visit& visit) {
+  ForNodes(team, patches.size(), visit);
+}
+
+// Adds up the slots of shared places, kComponents numbers each.
+template <int kComponents>
+void AddSlots(const Sharing& sharing, const double* slot_sums, ThreadTeam& team, double* sums) {
+  team.For(sharing.shared.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double sum[kComponents] = {};
+      for (std::int32_t k = sharing.begin[i]; k < sharing.begin[i + 1]; ++k) {
+        for (int c = 0; c < kComponents; ++c) sum[c] += slot_sums[kComponents * sharing.slots[k] + c];
+      }
+      for (int c = 0; c < kComponents; ++c) sums[kComponents * sharing.shared[i] + c] = sum[c];
+    }
+  });
+}
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_TET_CHUNK_TASKS_H_

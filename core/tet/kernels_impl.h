@@ -1,0 +1,789 @@
+#ifndef FASCICLE_CORE_TET_KERNELS_IMPL_H_
+#define FASCICLE_CORE_TET_KERNELS_IMPL_H_
+
+#include "core/base/lanes.h"
+#include "core/geometry/quadratic_tetrahedron.h"
+#include "core/materials/material.h"
+#include "core/tet/kernels.h"
+
+// What kernels.h declares, for one type of Lanes. Included by one file for each instruction set, and by nothing else:
+// all functions here are templates on that type, so that no two sets share any (a test looks at the object files).
+// Nothing of Eigen or the standard library is called.
+namespace fascicle {
+
+// The two elements, as in element.h: what happens at a point of either is what happens in a linear tetrahedron whose
+// corners are combinations of the element's nodes.
+struct LinearShape {
+  static constexpr int kNodes = 4;
+  static constexpr int kPoints = 1;
+  static constexpr double kNear = 0.25, kFar = 0.25;  // barycentric coordinates of a point: of its corner, of others
+};
+struct QuadraticShape {
+  static constexpr int kNodes = 10;
+  static constexpr int kPoints = 4;
+  static constexpr double kNear = kNearCorner, kFar = kFarCorner;
+};
+inline constexpr int kEdgeEnds[6][2] = {{kTetEdges[0][0], kTetEdges[0][1]}, {kTetEdges[1][0], kTetEdges[1][1]},
+                                        {kTetEdges[2][0], kTetEdges[2][1]}, {kTetEdges[3][0], kTetEdges[3][1]},
+                                        {kTetEdges[4][0], kTetEdges[4][1]}, {kTetEdges[5][0], kTetEdges[5][1]}};
+
+// A block's values of one kind at one point of its elements.
+template <class S>
+struct alignas(64) BlockMatrix {
+  S m[9][kBlock];
+};
+
+// What a law is told of the points of a block.
+template <class S>
+struct alignas(64) PointBlock {
+  BlockMatrix<S> F;
+  S previous_stretch[kBlock];
+  S activation[kBlock];
+  const BlockFibres<S>* fibres;
+  double inverse_step;
+};
+
+template <class L, class Matrix>
+Matrix3<L> LoadMatrix(const Matrix& block, int lane) {
+  Matrix3<L> a;
+  for (int k = 0; k < 9; ++k) a.m[k] = L::Load(&block[k][lane]);
+  return a;
+}
+template <class L, class Matrix>
+void StoreMatrix(const Matrix3<L>& a, int lane, Matrix& block) {
+  for (int k = 0; k < 9; ++k) a.m[k].Store(&block[k][lane]);
+}
+template <class L, class Vector>
+Vector3<L> LoadVector(const Vector& block, int lane) {
+  return {{L::Load(&block[0][lane]), L::Load(&block[1][lane]), L::Load(&block[2][lane])}};
+}
+
+// The functions of one law on a block of points.
+template <class S>
+struct LawKernels {
+  void (*stress)(const void* law, const PointBlock<S>&, BlockMatrix<S>& P);
+  void (*energy)(const void* law, const PointBlock<S>&, S* density);
+  void (*product)(const void* law, const PointBlock<S>&, const BlockMatrix<S>& dF, BlockMatrix<S>& dP);
+  void (*tangent)(const void* law, const PointBlock<S>&, S (*H)[kBlock]);
+};
+
+template <class L, class Law>
+struct LawOnBlocks {
+  using S = typename L::Scalar;
+
+  static Fibre<L> FibreOf(const PointBlock<S>& at, int lane) {
+    return {LoadVector<L>(at.fibres->direction, lane), L::Load(&at.activation[lane]),
+            L::Load(&at.previous_stretch[lane]), at.inverse_step};
+  }
+  // Inlined to the last call: vectors stay in registers.
+  [[gnu::flatten]] static void Stress(const void* law, const PointBlock<S>& at, BlockMatrix<S>& P) {
+    for (int k = 0; k < kBlock; k += L::kLanes) {
+      StoreMatrix(static_cast<const Law*>(law)->StressAt(LoadMatrix<L>(at.F.m, k), FibreOf(at, k)), k, P.m);
+    }
+  }
+  static void Energy(const void* law, const PointBlock<S>& at, S* density) {
+    for (int k = 0; k < kBlock; k += L::kLanes) {
+      static_cast<const Law*>(law)->EnergyAt(LoadMatrix<L>(at.F.m, k), FibreOf(at, k)).Store(&density[k]);
+    }
+  }
+  [[gnu::flatten]] static void Product(const void* law, const PointBlock<S>& at, const BlockMatrix<S>& dF,
+                                       BlockMatrix<S>& dP) {
+    for (int k = 0; k < kBlock; k += L::kLanes) {
+      TangentProduct<L> terms(LoadMatrix<L>(dF.m, k));
+      static_cast<const Law*>(law)->AddTangentAt(LoadMatrix<L>(at.F.m, k), FibreOf(at, k), terms);
+      StoreMatrix(terms.dP(), k, dP.m);
+    }
+  }
+  static void Tangent(const void* law, const PointBlock<S>& at, S (*H)[kBlock]) {
+    for (int k = 0; k < kBlock; k += L::kLanes) {
+      TangentMatrix<L> terms;
+      static_cast<const Law*>(law)->AddTangentAt(LoadMatrix<L>(at.F.m, k), FibreOf(at, k), terms);
+      for (int i = 0; i < TangentMatrix<L>::kEntries; ++i) terms[i].Store(&H[i][k]);
+    }
+  }
+  static constexpr LawKernels<S> kKernels = {&Stress, &Energy, &Product, &Tangent};
+};
+
+template <class L, class List>
+struct LawList;
+template <class L, class... Laws>
+struct LawList<L, std::variant<Laws...>> {
+  static constexpr LawKernels<typename L::Scalar> kKernels[] = {LawOnBlocks<L, Laws>::kKernels...};
+};
+
+// Rows (x, y, z, w) of four numbers into vectors of x, y, z and w, and back.
+template <class L>
+struct Rows {
+  using S = typename L::Scalar;
+  typedef S Row __attribute__((vector_size(4 * sizeof(S))));
+
+  static Row Load(const S* p) {
+    Row r;
+    __builtin_memcpy(&r, p, sizeof r);
+    return r;
+  }
+  static void Store(Row r, S* p) { __builtin_memcpy(p, &r, sizeof r); }
+
+  static void Transpose(Row r[4]) {
+    if constexpr (sizeof(S) == 8) {
+      const Row a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6),
+                b = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+      const Row c = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6),
+                d = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+      r[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+      r[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+      r[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+      r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+    } else {
+      const Row a = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5),
+                b = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5);
+      const Row c = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7),
+                d = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
+      r[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
+      r[1] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
+      r[2] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
+      r[3] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
+    }
+  }
+};
+
+template <class L, class Shape>
+struct ChunkKernels {
+  using S = typename L::Scalar;
+  using R = Rows<L>;
+  using Row = typename R::Row;
+  static constexpr int kNodes = Shape::kNodes, kPoints = Shape::kPoints;
+
+  // Rows of the nodes of a chunk.
+  struct alignas(64) NodeRows {
+    S at[4 * kChunkNodes];
+  };
+  // Rows of the nodes of a block's elements, side by side.
+  struct alignas(64) NodeValues {
+    S at[kNodes][4][kBlock];
+  };
+
+  // `values` of the chunk's nodes less `origin`; as the fourth number that of the node's patch, if any.
+  static void LoadRows(const ChunkTask<S>& task, const double* values, const double* origin, const double* of_patch,
+                       NodeRows& rows) {
+    for (std::size_t i = 0; i < task.node_count; ++i) {
+      const double* value = values + 3 * task.nodes[i];
+      S* row = rows.at + 4 * i;
+      for (int c = 0; c < 3; ++c) row[c] = static_cast<S>(value[c] - origin[c]);
+      const bool has_patch = of_patch != nullptr && task.patch[i] != Sharing::kNone;
+      row[3] = has_patch ? static_cast<S>(of_patch[task.patch[i]]) : S(0);
+    }
+  }
+  // Positions of a chunk count from its first node: in float, they lose no digits to the distance from the origin.
+  static void LoadPositions(const ChunkTask<S>& task, const double* x, const double* of_patch, NodeRows& rows) {
+    constexpr double kZero[3] = {0, 0, 0};
+    LoadRows(task, x, sizeof(S) == 4 ? x + 3 * task.nodes[0] : kZero, of_patch, rows);
+  }
+  static void LoadVectors(const ChunkTask<S>& task, const double* v, const double* of_patch, NodeRows& rows) {
+    constexpr double kZero[3] = {0, 0, 0};
+    LoadRows(task, v, kZero, of_patch, rows);
+  }
+
+  static void Gather(const NodeRows& rows, const std::uint16_t* local, NodeValues& values) {
+    for (int a = 0; a < kNodes; ++a) {
+      for (int k = 0; k < kBlock; k += 4) {
+        const std::uint16_t* node = local + a * kBlock + k;
+        Row r[4] = {R::Load(rows.at + 4 * node[0]), R::Load(rows.at + 4 * node[1]), R::Load(rows.at + 4 * node[2]),
+                    R::Load(rows.at + 4 * node[3])};
+        R::Transpose(r);
+        for (int c = 0; c < 4; ++c) R::Store(r[c], &values.at[a][c][k]);
+      }
+    }
+  }
+  // Adds components 0 to 2, element by element and node by node whatever the number of lanes.
+  static void Scatter(const NodeValues& values, const std::uint16_t* local, NodeRows& rows) {
+    for (int k = 0; k < kBlock; k += 4) {
+      Row r[kNodes][4];
+      for (int a = 0; a < kNodes; ++a) {
+        for (int c = 0; c < 3; ++c) r[a][c] = R::Load(&values.at[a][c][k]);
+        r[a][3] = Row{};
+        R::Transpose(r[a]);
+      }
+      for (int lane = 0; lane < 4; ++lane) {
+        for (int a = 0; a < kNodes; ++a) {
+          S* row = rows.at + 4 * local[a * kBlock + k + lane];
+          R::Store(R::Load(row) + r[a][lane], row);
+        }
+      }
+    }
+  }
+
+  static constexpr double Barycentric(int q, int c) { return q == c || kPoints == 1 ? Shape::kNear : Shape::kFar; }
+
+  // [y1 - y0, y2 - y0, y3 - y0] of the corners y at point q.
+  static Matrix3<L> Edges(const NodeValues& values, int q, int k) {
+    Matrix3<L> edges;
+    for (int i = 0; i < 3; ++i) {
+      L y[4];
+      for (int c = 0; c < 4; ++c) y[c] = L::Load(&values.at[c][i][k]);
+      if constexpr (kNodes == 10) {
+        for (int c = 0; c < 4; ++c) y[c] *= 4 * Barycentric(q, c) - 1;
+        for (int e = 0; e < 6; ++e) {
+          const int a = kEdgeEnds[e][0], b = kEdgeEnds[e][1];
+          const L middle = L::Load(&values.at[4 + e][i][k]);
+          y[a] += 4 * Barycentric(q, b) * middle;
+          y[b] += 4 * Barycentric(q, a) * middle;
+        }
+      }
+      for (int c = 0; c < 3; ++c) edges(i, c) = y[c + 1] - y[0];
+    }
+    return edges;
+  }
+  static Matrix3<L> Gradient(const NodeValues& values, const RestPoint<S>& rest, int q, int k) {
+    return Edges(values, q, k) * LoadMatrix<L>(rest.Dm_inverse, k);
+  }
+
+  // Adds what corner c at point q contributes, component i, to the nodes.
+  static void AddCorner(const L& value, int q, int c, int i, int k, NodeValues& nodes) {
+    const auto add = [&](int a, const L& part) { (L::Load(&nodes.at[a][i][k]) + part).Store(&nodes.at[a][i][k]); };
+    if constexpr (kNodes == 4) {
+      add(c, value);
+    } else {
+      add(c, (4 * Barycentric(q, c) - 1) * value);
+      for (int e = 0; e < 6; ++e) {
+        if (kEdgeEnds[e][0] == c) add(4 + e, 4 * Barycentric(q, kEdgeEnds[e][1]) * value);
+        if (kEdgeEnds[e][1] == c) add(4 + e, 4 * Barycentric(q, kEdgeEnds[e][0]) * value);
+      }
+    }
+  }
+  // [f1 f2 f3] = -V P Dm^-T, f0 = -(f1 + f2 + f3), onto the nodes.
+  static void AddForces(const Matrix3<L>& P, const RestPoint<S>& rest, int q, int k, NodeValues& nodes) {
+    const Matrix3<L> f = (-L::Load(&rest.volume[k]) * P) * ::fascicle::Transpose(LoadMatrix<L>(rest.Dm_inverse, k));
+    for (int i = 0; i < 3; ++i) {
+      const L corners[4] = {-(f(i, 0) + f(i, 1) + f(i, 2)), f(i, 0), f(i, 1), f(i, 2)};
+      for (int c = 0; c < 4; ++c) {
+        if constexpr (kNodes == 4) {
+          corners[c].Store(&nodes.at[c][i][k]);
+        } else {
+          AddCorner(corners[c], q, c, i, k, nodes);
+        }
+      }
+    }
+  }
+  static void Clear(NodeValues& nodes) {
+    for (int a = 0; a < kNodes; ++a) {
+      for (int c = 0; c < 4; ++c) {
+        for (int k = 0; k < kBlock; ++k) nodes.at[a][c][k] = 0;
+      }
+    }
+  }
+
+  // The fourth number at point q: the pressure of the patches.
+  static L FourthAt(const NodeValues& values, int q, int k) {
+    L sum = 0.0;
+    for (int c = 0; c < 4; ++c) sum += Barycentric(q, c) * L::Load(&values.at[c][3][k]);
+    return sum;
+  }
+
+  // Asks for the next block while this one is worked on: the memory of a busy machine is far away.
+  static void Prefetch(const ChunkTask<S>& task, std::size_t b) {
+    if (b * kBlock >= task.elements) return;
+    const auto fetch = [](const void* begin, std::size_t bytes) {
+      for (std::size_t at = 0; at < bytes; at += 64) __builtin_prefetch(static_cast<const char*>(begin) + at);
+    };
+    fetch(task.points + kPoints * b, kPoints * sizeof(RestPoint<S>));
+    fetch(task.fibres + b, sizeof(BlockFibres<S>));
+    fetch(task.local + b * kNodes * kBlock, kNodes * kBlock * sizeof(std::uint16_t));
+  }
+
+  static void SetActivation(const ChunkTask<S>& task, const BlockFibres<S>& fibres, PointBlock<S>& point) {
+    point.fibres = &fibres;
+    point.inverse_step = task.inverse_step;
+    for (int k = 0; k < kBlock; ++k) {
+      point.activation[k] = static_cast<S>(task.activation[fibres.activation[k]]) * fibres.activation_scale[k];
+      point.previous_stretch[k] = 1;
+    }
+  }
+  static bool HasRate(const ChunkTask<S>& task) { return task.inverse_step != 0 && task.law != nullptr; }
+  static bool IsViscous(const ChunkTask<S>& task) { return task.mu != 0 || task.lambda != 0; }
+
+  // Isochoric stretch |F a0| / J^(1/3).
+  static void SetPreviousStretch(const NodeValues& previous, const RestPoint<S>& rest, int q, PointBlock<S>& point) {
+    for (int k = 0; k < kBlock; k += L::kLanes) {
+      const Matrix3<L> F = Gradient(previous, rest, q, k);
+      const Vector3<L> a = F * LoadVector<L>(point.fibres->direction, k);
+      (Sqrt(Dot(a, a)) * Exp(-1.0 / 3.0 * Log(Determinant(F)))).Store(&point.previous_stretch[k]);
+    }
+  }
+
+  // The strain E of viscous stress.
+  static Matrix3<L> StrainOf(const ChunkTask<S>& task, const Matrix3<L>& F, const NodeValues& other,
+                             const RestPoint<S>& rest, int q, int k) {
+    const Matrix3<L> G = Gradient(other, rest, q, k);
+    if (task.v != nullptr) return SymmetricPart(::fascicle::Transpose(F) * G);
+    return 0.5 * (::fascicle::Transpose(F) * F - ::fascicle::Transpose(G) * G);
+  }
+  static Matrix3<L> ViscousStress(const ChunkTask<S>& task, const Matrix3<L>& E) {
+    return PlusDiagonal(2 * task.mu * E, task.lambda * Trace(E));
+  }
+
+  // Sums of a chunk by the lane of the block, so that their order does not depend on how many lanes a vector has.
+  struct alignas(64) LaneSums {
+    S at[kBlock] = {};
+    void Add(int k, const L& value) { (L::Load(&at[k]) + value).Store(&at[k]); }
+    double Total() const {
+      double total = 0;
+      for (const S value : at) total += value;
+      return total;
+    }
+  };
+
+  [[gnu::flatten]] static ChunkReport Forces(const ChunkTask<S>& task) {
+    NodeRows x, other, sums;
+    const bool needs_previous = HasRate(task) || (IsViscous(task) && task.v == nullptr);
+    const bool viscous = IsViscous(task);
+    LoadPositions(task, task.x, task.pressure, x);
+    NodeRows& before = other;
+    NodeRows velocity;
+    if (needs_previous) LoadPositions(task, task.previous, nullptr, before);
+    if (viscous && task.v != nullptr) LoadVectors(task, task.v, nullptr, velocity);
+    for (std::size_t i = 0; i < 4 * task.node_count; ++i) sums.at[i] = 0;
+
+    LaneSums power, energy, squares, not_finite;
+    alignas(64) S smallest[kBlock];
+    for (S& s : smallest) s = 1;
+    NodeValues positions, previous, rates, forces;
+    PointBlock<S> point;
+    BlockMatrix<S> P;
+    alignas(64) S density[kBlock];
+    const std::size_t blocks = (task.elements + kBlock - 1) / kBlock;
+    const LawKernels<S>& law = LawList<L, Material>::kKernels[task.law_kind];
+    for (std::size_t b = 0; b < blocks; ++b) {
+      Prefetch(task, b + 1);
+      const std::uint16_t* local = task.local + b * kNodes * kBlock;
+      Gather(x, local, positions);
+      if (needs_previous) Gather(before, local, previous);
+      if (viscous && task.v != nullptr) Gather(velocity, local, rates);
+      if (kNodes != 4) Clear(forces);
+      if (task.law != nullptr) SetActivation(task, task.fibres[b], point);
+      for (int q = 0; q < kPoints; ++q) {
+        const RestPoint<S>& rest = task.points[kPoints * b + q];
+        for (int k = 0; k < kBlock; k += L::kLanes) StoreMatrix(Gradient(positions, rest, q, k), k, point.F.m);
+        if (HasRate(task)) SetPreviousStretch(previous, rest, q, point);
+        if (task.law != nullptr) law.stress(task.law, point, P);
+        if (task.with_energy) law.energy(task.law, point, density);
+        for (int k = 0; k < kBlock; k += L::kLanes) {
+          const Matrix3<L> F = LoadMatrix<L>(point.F.m, k);
+          Matrix3<L> total = Diagonal(L(0.0));
+          if (task.law != nullptr) {
+            const Matrix3<L> cofactor = Cofactor(F);
+            const L J = DeterminantOf(F, cofactor);
+            const L least = L::Load(&smallest[k]);
+            Select(J < least, J, least).Store(&smallest[k]);
+            not_finite.Add(k, J * 0);
+            total = LoadMatrix<L>(P.m, k);
+            if (task.pressure != nullptr) total = total + FourthAt(positions, q, k) * cofactor;
+          }
+          const L volume = L::Load(&rest.volume[k]);
+          if (task.with_energy) energy.Add(k, volume * L::Load(&density[k]));
+          if (viscous) {
+            const Matrix3<L> E = StrainOf(task, F, task.v != nullptr ? rates : previous, rest, q, k);
+            const Matrix3<L> stress = ViscousStress(task, E);
+            total = total + F * stress;
+            power.Add(k, volume * Contract(stress, E));
+          }
+          AddForces(total, rest, q, k, forces);
+        }
+      }
+      if (task.with_energy) AddSquares(forces, squares);
+      Scatter(forces, local, sums);
+    }
+    ChunkReport report;
+    report.finite = WriteVectors(task, sums);
+    for (const S s : smallest) {
+      if (s < report.smallest_ratio) report.smallest_ratio = s;
+    }
+    if (not_finite.Total() != 0) report.smallest_ratio = not_finite.Total();
+    report.dissipated_power = power.Total();
+    report.energy = energy.Total() + (task.with_energy ? 0.5 * report.dissipated_power : 0);
+    report.squares = squares.Total();
+    return report;
+  }
+
+  static void AddSquares(const NodeValues& forces, LaneSums& squares) {
+    for (int k = 0; k < kBlock; k += L::kLanes) {
+      L sum = 0.0;
+      for (int a = 0; a < kNodes; ++a) {
+        const Vector3<L> f = LoadVector<L>(forces.at[a], k);
+        sum += Dot(f, f);
+      }
+      squares.Add(k, sum);
+    }
+  }
+
+  // Sums of the chunk to where they go; whether all are finite.
+  static bool WriteVectors(const ChunkTask<S>& task, const NodeRows& sums) {
+    double check = 0;
+    for (std::size_t i = 0; i < task.node_count; ++i) {
+      const S* row = sums.at + 4 * i;
+      check += static_cast<double>(row[0] + row[1] + row[2]) * 0;
+      if (task.sums == nullptr) continue;
+      const std::int32_t target = task.target[i];
+      double* to = target >= 0 ? task.sums + 3 * std::ptrdiff_t{target} : task.slot_sums + 3 * std::ptrdiff_t{~target};
+      for (int c = 0; c < 3; ++c) to[c] = row[c];
+    }
+    return check == 0;
+  }
+  static void WriteNumbers(const ChunkTask<S>& task, const S* sums) {
+    for (std::size_t i = 0; i < task.node_count; ++i) {
+      const std::int32_t target = task.target[i];
+      if (target == Sharing::kNone) continue;
+      (target >= 0 ? task.sums[target] : task.slot_sums[~target]) = sums[i];
+    }
+  }
+
+  // Adds the corner volumes that `at_point(q, lane)` (of points, parts of volume) makes.
+  template <class AtPoint>
+  static void AddCornerVolumes(const AtPoint& at_point, const std::uint16_t* local, int elements, S* sums) {
+    alignas(64) S volumes[4][kBlock];
+    for (int k = 0; k < kBlock; k += L::kLanes) {
+      if constexpr (kPoints == 1) {
+        const L volume = at_point(0, k) * 0.25;
+        for (int c = 0; c < 4; ++c) volume.Store(&volumes[c][k]);
+      } else {
+        L sum[4] = {0.0, 0.0, 0.0, 0.0};
+        for (int q = 0; q < kPoints; ++q) {
+          const L volume = at_point(q, k);
+          for (int c = 0; c < 4; ++c) sum[c] += Barycentric(q, c) * volume;
+        }
+        for (int c = 0; c < 4; ++c) sum[c].Store(&volumes[c][k]);
+      }
+    }
+    for (int lane = 0; lane < elements; ++lane) {
+      for (int c = 0; c < 4; ++c) sums[local[c * kBlock + lane]] += volumes[c][lane];
+    }
+  }
+  static int ElementsOf(const ChunkTask<S>& task, std::size_t b) {
+    const std::size_t left = task.elements - b * kBlock;
+    return left < kBlock ? static_cast<int>(left) : kBlock;
+  }
+  // A point's part of the volume is det Ds / 6 times its weight.
+  static constexpr double kVolumePerEdges = 1.0 / (6 * kPoints);
+
+  [[gnu::flatten]] static void CornerVolumes(const ChunkTask<S>& task) {
+    NodeRows x;
+    alignas(64) S sums[kChunkNodes];
+    LoadPositions(task, task.x, nullptr, x);
+    for (std::size_t i = 0; i < task.node_count; ++i) sums[i] = 0;
+    NodeValues positions;
+    for (std::size_t b = 0; b * kBlock < task.elements; ++b) {
+      const std::uint16_t* local = task.local + b * kNodes * kBlock;
+      Gather(x, local, positions);
+      const auto at_point = [&](int q, int k) { return kVolumePerEdges * Determinant(Edges(positions, q, k)); };
+      AddCornerVolumes(at_point, local, ElementsOf(task, b), sums);
+    }
+    WriteNumbers(task, sums);
+  }
+
+  [[gnu::flatten]] static void CornerVolumeChanges(const ChunkTask<S>& task) {
+    NodeRows x, p;
+    alignas(64) S sums[kChunkNodes];
+    LoadPositions(task, task.x, nullptr, x);
+    LoadVectors(task, task.p, nullptr, p);
+    for (std::size_t i = 0; i < task.node_count; ++i) sums[i] = 0;
+    NodeValues positions, changes;
+    for (std::size_t b = 0; b * kBlock < task.elements; ++b) {
+      const std::uint16_t* local = task.local + b * kNodes * kBlock;
+      Gather(x, local, positions);
+      Gather(p, local, changes);
+      const auto at_point = [&](int q, int k) {
+        return kVolumePerEdges * Contract(Cofactor(Edges(positions, q, k)), Edges(changes, q, k));
+      };
+      AddCornerVolumes(at_point, local, ElementsOf(task, b), sums);
+    }
+    WriteNumbers(task, sums);
+  }
+
+  // F (I + hair a0 a0^T): where a fibre curve has a kink, at rest above all, its stiffer side counts.
+  static Matrix3<L> AHairLonger(const Matrix3<L>& F, const Vector3<L>& a0) {
+    constexpr double kHair = sizeof(S) == 4 ? 1e-6 : 1e-7;
+    return F + kHair * ::fascicle::Outer(F * a0, a0);
+  }
+
+  [[gnu::flatten]] static void StiffnessProduct(const ChunkTask<S>& task) {
+    NodeRows x, p, sums;
+    LoadPositions(task, task.x, task.pressure, x);
+    LoadVectors(task, task.p, task.pressure_change, p);
+    for (std::size_t i = 0; i < 4 * task.node_count; ++i) sums.at[i] = 0;
+    NodeValues positions, changes, forces;
+    PointBlock<S> point;
+    BlockMatrix<S> dF, dP;
+    const LawKernels<S>& law = LawList<L, Material>::kKernels[task.law_kind];
+    for (std::size_t b = 0; b * kBlock < task.elements; ++b) {
+      Prefetch(task, b + 1);
+      const std::uint16_t* local = task.local + b * kNodes * kBlock;
+      Gather(x, local, positions);
+      Gather(p, local, changes);
+      if (kNodes != 4) Clear(forces);
+      SetActivation(task, task.fibres[b], point);
+      for (int q = 0; q < kPoints; ++q) {
+        const RestPoint<S>& rest = task.points[kPoints * b + q];
+        for (int k = 0; k < kBlock; k += L::kLanes) {
+          const Vector3<L> a0 = LoadVector<L>(point.fibres->direction, k);
+          StoreMatrix(AHairLonger(Gradient(positions, rest, q, k), a0), k, point.F.m);
+          StoreMatrix(Gradient(changes, rest, q, k), k, dF.m);
+        }
+        law.product(task.law, point, dF, dP);
+        for (int k = 0; k < kBlock; k += L::kLanes) {
+          Matrix3<L> total = LoadMatrix<L>(dP.m, k);
+          if (task.pressure != nullptr) {
+            const Matrix3<L> F = LoadMatrix<L>(point.F.m, k);
+            TangentProduct<L> terms(LoadMatrix<L>(dF.m, k));
+            terms.CofactorTerm(FourthAt(positions, q, k), F);
+            total = total + terms.dP() + FourthAt(changes, q, k) * Cofactor(F);
+          }
+          AddForces(-1 * total, rest, q, k, forces);
+        }
+      }
+      Scatter(forces, local, sums);
+    }
+    WriteVectors(task, sums);
+  }
+
+  // How a node's value enters the corners of the linear tetrahedra: of a corner node one, of the middle of an edge two.
+  struct Parts {
+    int count = 0;
+    int corner[2] = {};
+    double factor[kPoints][2] = {};
+  };
+  struct PartTable {
+    constexpr PartTable() {
+      for (int a = 0; a < kNodes; ++a) {
+        Parts& parts = of[a];
+        parts.count = a < 4 ? 1 : 2;
+        for (int i = 0; i < parts.count; ++i) {
+          parts.corner[i] = a < 4 ? a : kEdgeEnds[a - 4][i];
+          for (int q = 0; q < kPoints; ++q) {
+            parts.factor[q][i] = kNodes == 4 ? 1
+                                 : a < 4     ? 4 * Barycentric(q, a) - 1
+                                             : 4 * Barycentric(q, kEdgeEnds[a - 4][1 - i]);
+          }
+        }
+      }
+    }
+    Parts of[kNodes];
+  };
+  static constexpr int kPairs = kNodes * (kNodes + 1) / 2;
+  static constexpr int PairOf(int a, int b) { return a * (a + 1) / 2 + b; }
+
+  // The entries of a block's matrices, element beside element.
+  struct alignas(64) MatrixEntries {
+    S blocks[kPairs][9][kBlock];
+    S volumes[4][kNodes][3][kBlock];
+  };
+
+  // H of a point under the whole potential.
+  static TangentMatrix<L> TangentAt(const ChunkTask<S>& task, const S (*H)[kBlock], const Matrix3<L>& F,
+                                    const NodeValues& positions, const NodeValues& previous, const RestPoint<S>& rest,
+                                    int q, int k) {
+    TangentMatrix<L> terms;
+    for (int i = 0; i < TangentMatrix<L>::kEntries; ++i) terms.Set(i, L::Load(&H[i][k]));
+    if (task.pressure != nullptr) terms.CofactorTerm(FourthAt(positions, q, k), F);
+    if (IsViscous(task)) {
+      terms.Square(task.lambda, F);
+      terms.Right(ViscousStress(task, StrainOf(task, F, previous, rest, q, k)));
+      terms.Transposed(task.mu, F);
+      terms.Left(task.mu * (F * ::fascicle::Transpose(F)));
+    }
+    return terms;
+  }
+
+  // The blocks of the linear tetrahedron of one point: of corners c >= d at PairOf(c, d).
+  static void SetCornerBlocks(const TangentMatrix<L>& H, const L& volume, const Matrix3<L>& Dm_inverse,
+                              Matrix3<L> (&blocks)[10]) {
+    for (int d = 1; d < 4; ++d) {
+      // Change of P with each component of corner d.
+      Matrix3<L> change[3];
+      for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 3; ++i) {
+          for (int k = 0; k < 3; ++k) {
+            L sum = 0.0;
+            for (int l = 0; l < 3; ++l) {
+              const int row = 3 * j + i, column = 3 * l + k;
+              sum += H[row <= column ? H.At(row, column) : H.At(column, row)] * Dm_inverse(d - 1, l);
+            }
+            change[j](i, k) = volume * sum;
+          }
+        }
+      }
+      for (int c = d; c < 4; ++c) {
+        blocks[PairOf(c, d)] =
+            Dm_inverse(c - 1, 0) * change[0] + Dm_inverse(c - 1, 1) * change[1] + Dm_inverse(c - 1, 2) * change[2];
+      }
+    }
+    // The gradients of all four corners sum to zero.
+    for (int c = 1; c < 4; ++c) {
+      Matrix3<L> sum = blocks[PairOf(c, c)];
+      for (int d = 1; d < 4; ++d) {
+        if (d != c) sum = sum + (d < c ? blocks[PairOf(c, d)] : ::fascicle::Transpose(blocks[PairOf(d, c)]));
+      }
+      blocks[PairOf(c, 0)] = -1 * sum;
+    }
+    blocks[0] = -1 * (blocks[PairOf(1, 0)] + blocks[PairOf(2, 0)] + blocks[PairOf(3, 0)]);
+  }
+
+  static void Clear(MatrixEntries& entries) {
+    for (int i = 0; i < kPairs; ++i) {
+      for (int m = 0; m < 9; ++m) {
+        for (int k = 0; k < kBlock; k += L::kLanes) L(0.0).Store(&entries.blocks[i][m][k]);
+      }
+    }
+    for (int i = 0; i < 12 * kNodes; ++i) {
+      for (int k = 0; k < kBlock; k += L::kLanes) L(0.0).Store(&entries.volumes[0][0][0][kBlock * i + k]);
+    }
+  }
+  static void AddBlocks(const Matrix3<L> (&corner_blocks)[10], int q, int k, MatrixEntries& entries) {
+    static constexpr PartTable kParts;
+    if constexpr (kNodes == 4) {
+      for (int pair = 0; pair < kPairs; ++pair) {
+        for (int m = 0; m < 9; ++m) corner_blocks[pair].m[m].Store(&entries.blocks[pair][m][k]);
+      }
+      return;
+    }
+    for (int a = 0; a < kNodes; ++a) {
+      for (int b = 0; b <= a; ++b) {
+        S(*block)[kBlock] = entries.blocks[PairOf(a, b)];
+        const Parts &of_a = kParts.of[a], &of_b = kParts.of[b];
+        for (int i = 0; i < of_a.count; ++i) {
+          for (int j = 0; j < of_b.count; ++j) {
+            const int c = of_a.corner[i], d = of_b.corner[j];
+            const L factor = of_a.factor[q][i] * of_b.factor[q][j];
+            const Matrix3<L>& part = corner_blocks[c >= d ? PairOf(c, d) : PairOf(d, c)];
+            for (int m = 0; m < 9; ++m) {
+              const L& value = part.m[c >= d ? m : 3 * (m % 3) + m / 3];
+              (L::Load(&block[m][k]) + factor * value).Store(&block[m][k]);
+            }
+          }
+        }
+      }
+    }
+  }
+
+  // Derivatives of the integrals of L_c J.
+  static void AddVolumes(const Matrix3<L>& F, const L& volume, const Matrix3<L>& Dm_inverse, int q, int k,
+                         MatrixEntries& entries) {
+    static constexpr PartTable kParts;
+    const Matrix3<L> h = volume * (Cofactor(F) * ::fascicle::Transpose(Dm_inverse));
+    for (int i = 0; i < 3; ++i) {
+      const L of_corner[4] = {-(h(i, 0) + h(i, 1) + h(i, 2)), h(i, 0), h(i, 1), h(i, 2)};
+      for (int a = 0; a < kNodes; ++a) {
+        const Parts& parts = kParts.of[a];
+        L change = 0.0;
+        for (int p = 0; p < parts.count; ++p) change += parts.factor[q][p] * of_corner[parts.corner[p]];
+        for (int c = 0; c < 4; ++c) {
+          S* to = &entries.volumes[c][a][i][k];
+          const L before = kNodes == 4 ? L(0.0) : L::Load(to);
+          (before + Barycentric(q, c) * change).Store(to);
+        }
+      }
+    }
+  }
+
+  // `count` entries of each of `elements` elements, from side by side to one element after another.
+  static void Separate(const S (*entries)[kBlock], int count, int elements, double* out) {
+    for (int first = 0; first < elements; first += 4) {
+      int entry = 0;
+      if constexpr (sizeof(S) == 8) {
+        for (; first + 4 <= elements && entry + 4 <= count; entry += 4) {
+          Row r[4];
+          for (int i = 0; i < 4; ++i) r[i] = R::Load(&entries[entry + i][first]);
+          R::Transpose(r);
+          for (int i = 0; i < 4; ++i) R::Store(r[i], reinterpret_cast<S*>(out) + count * (first + i) + entry);
+        }
+      }
+      for (; entry < count; ++entry) {
+        for (int i = first; i < elements && i < first + 4; ++i) out[count * i + entry] = entries[entry][i];
+      }
+    }
+  }
+
+  [[gnu::flatten]] static void Matrices(const ChunkTask<S>& task, std::size_t b, const BlockMatrices& out) {
+    NodeValues positions, previous;
+    const std::uint16_t* local = task.local + b * kNodes * kBlock;
+    const bool needs_previous = HasRate(task) || IsViscous(task);
+    LoadElements(task, task.x, task.pressure, local, positions);
+    if (needs_previous) LoadElements(task, task.previous, nullptr, local, previous);
+    MatrixEntries entries;
+    if (kNodes != 4) Clear(entries);
+    PointBlock<S> point;
+    alignas(64) S H[TangentMatrix<L>::kEntries][kBlock];
+    SetActivation(task, task.fibres[b], point);
+    for (int q = 0; q < kPoints; ++q) {
+      const RestPoint<S>& rest = task.points[kPoints * b + q];
+      for (int k = 0; k < kBlock; k += L::kLanes) StoreMatrix(Gradient(positions, rest, q, k), k, point.F.m);
+      if (HasRate(task)) SetPreviousStretch(previous, rest, q, point);
+      LawList<L, Material>::kKernels[task.law_kind].tangent(task.law, point, H);
+      for (int k = 0; k < kBlock; k += L::kLanes) {
+        const Matrix3<L> F = LoadMatrix<L>(point.F.m, k), Dm_inverse = LoadMatrix<L>(rest.Dm_inverse, k);
+        const L volume = L::Load(&rest.volume[k]);
+        Matrix3<L> corner_blocks[10];
+        SetCornerBlocks(TangentAt(task, H, F, positions, previous, rest, q, k), volume, Dm_inverse, corner_blocks);
+        AddBlocks(corner_blocks, q, k, entries);
+        AddVolumes(F, volume, Dm_inverse, q, k, entries);
+      }
+    }
+    const int elements = ElementsOf(task, b);
+    Separate(&entries.blocks[0][0], 9 * kPairs, elements, out.blocks);
+    Separate(&entries.volumes[0][0][0], 12 * kNodes, elements, out.volumes);
+  }
+
+  // The values of the nodes of a block's elements straight from all nodes.
+  static void LoadElements(const ChunkTask<S>& task, const double* values, const double* of_patch,
+                           const std::uint16_t* local, NodeValues& to) {
+    const double* origin = values + 3 * task.nodes[0];
+    for (int a = 0; a < kNodes; ++a) {
+      for (int k = 0; k < kBlock; ++k) {
+        const int node = local[a * kBlock + k];
+        const double* value = values + 3 * task.nodes[node];
+        for (int c = 0; c < 3; ++c) {
+          to.at[a][c][k] = static_cast<S>(sizeof(S) == 4 ? value[c] - origin[c] : value[c]);
+        }
+        const bool has_patch = of_patch != nullptr && task.patch[node] != Sharing::kNone;
+        to.at[a][3][k] = has_patch ? static_cast<S>(of_patch[task.patch[node]]) : S(0);
+      }
+    }
+  }
+};
+
+template <class L, class Shape>
+constexpr ElementKernels<typename L::Scalar> ElementKernelsOf() {
+  using K = ChunkKernels<L, Shape>;
+  using S = typename L::Scalar;
+  void (*matrices)(const ChunkTask<S>&, std::size_t, const BlockMatrices&) = nullptr;
+  if constexpr (sizeof(S) == 8) matrices = &K::Matrices;
+  return {&K::Forces, &K::CornerVolumes, &K::CornerVolumeChanges, &K::StiffnessProduct, matrices};
+}
+
+template <class L>
+void PatchPressures(std::size_t count, const double* modulus, const double* theta, double* pressure) {
+  const auto pressure_of = [](const L& k, const L& ratio) { return k * Log(ratio) / ratio; };
+  std::size_t n = 0;
+  for (; n + L::kLanes <= count; n += L::kLanes) {
+    pressure_of(L::Load(modulus + n), L::Load(theta + n)).Store(pressure + n);
+  }
+  if (n == count) return;
+  double k[L::kLanes] = {}, ratio[L::kLanes] = {}, last[L::kLanes];
+  for (std::size_t i = n; i < count; ++i) {
+    k[i - n] = modulus[i];
+    ratio[i - n] = theta[i];
+  }
+  pressure_of(L::Load(k), L::Load(ratio)).Store(last);
+  for (std::size_t i = n; i < count; ++i) pressure[i] = last[i - n];
+}
+
+template <class Set>
+constexpr Kernels KernelsOf() {
+  using D = Lanes<double, Set>;
+  using F = Lanes<float, Set>;
+  return {ElementKernelsOf<D, LinearShape>(), ElementKernelsOf<D, QuadraticShape>(), ElementKernelsOf<F, LinearShape>(),
+          ElementKernelsOf<F, QuadraticShape>(), &PatchPressures<D>};
+}
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_TET_KERNELS_IMPL_H_
