@@ -207,15 +207,4 @@ bool UpdatePatches(const TetModel& model, const NodalVector& x, ThreadTeam& team
   return valid.load();
 }
 
-void GatherForces(const TetModel& model, const NodalVector& element_forces, ThreadTeam& team, NodalVector& sums) {
-  const auto& begin = model.node_use_begin();
-  const auto& uses = model.node_uses();
-  sums.resize(model.nodes());
-  ForNodes(team, model.nodes(), [&](std::size_t n) {
-    Vec3 sum = Vec3::Zero();
-    for (std::int32_t k = begin[n]; k < begin[n + 1]; ++k) sum += element_forces[uses[k]];
-    sums[n] = sum;
-  });
-}
-
 }  // namespace fascicle

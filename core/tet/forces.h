@@ -35,7 +35,6 @@ struct ForceWorkspace {
   std::vector<double> slot_sums;     // of shared nodes or patches, see Sharing
   std::vector<ChunkReport> reports;  // of each chunk
   std::vector<double> wave_blocks;   // of AddStiffness
-  NodalVector element_forces;        // nodes of an element times elements; of implicit steps only
   // Of each patch: theta before and after smoothing [1], U'(theta) and what of it acts on elements, W U'(theta) [Pa].
   std::vector<double> raw_ratio, ratio, own_pressure, pressure;
 };
@@ -69,9 +68,6 @@ double ElasticEnergy(const TetModel& model, std::size_t body, const FibreDrive& 
 
 // Volume ratio theta and pressure U'(theta) of every patch into the workspace; false where a ratio is not positive.
 bool UpdatePatches(const TetModel& model, const NodalVector& x, ThreadTeam& team, ForceWorkspace& workspace);
-
-// Adds up the forces of all elements on every node; `sums` gets its size.
-void GatherForces(const TetModel& model, const NodalVector& element_forces, ThreadTeam& team, NodalVector& sums);
 
 }  // namespace fascicle
 

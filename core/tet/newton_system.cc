@@ -35,7 +35,8 @@ double ForceFloor(const TetModel& model) {
 
 }  // namespace
 
-NewtonSystem::NewtonSystem(const TetModel& model, Profile* profile) : model_(model), profile_(profile), assembly_(model), force_floor_(ForceFloor(model)) {
+NewtonSystem::NewtonSystem(const TetModel& model, Profile* profile)
+    : model_(model), profile_(profile), assembly_(model), force_floor_(ForceFloor(model)) {
   unknowns_ = model.patches().size();
   for (const auto& free : assembly_.matrix().free) unknowns_ += std::count(free.begin(), free.end(), true);
   const LinearSolver choice = model.scene().method.linear_solver;
@@ -60,13 +61,13 @@ NewtonSystem::Evaluation NewtonSystem::Evaluate(const IncrementalPotential& pote
                                                 std::span<const double> pressure, ThreadTeam& team,
                                                 NodalVector& force) {
   const StageTimer timer(profile_, "evaluation");
-  forces_.element_forces.resize(model_.nodes_per_element() * model_.tetrahedra());
   const bool patches_valid = UpdatePatches(model_, x, team, forces_);
   Smooth(potential, pressure);
-  Evaluation total =
-      model_.VisitElement([&]<class Element>(Element) { return EvaluateElements<Element>(potential, x, team); });
+  const ElementEvaluation elements = EvaluateElements(model_, potential, x, acting_, team, forces_, force);
+  Evaluation total;
+  total.energy = elements.energy;
+  total.smallest_ratio = elements.smallest_ratio;
   total.valid = potential.untangling || (total.smallest_ratio > 0 && patches_valid);
-  GatherForces(model_, forces_.element_forces, team, force);
   const NodalVector& load = *potential.load;
   total.energy += SumOverNodes(team, model_.nodes(), [&](std::size_t n) {
     force[n] += load[n];
@@ -82,61 +83,14 @@ NewtonSystem::Evaluation NewtonSystem::Evaluate(const IncrementalPotential& pote
     AddFloorForce(model_, x, force);
     total.energy += FloorEnergy(model_, x);
   }
-  total.valid &= std::isfinite(total.energy);
+  total.valid &= elements.finite && std::isfinite(total.energy);
   const double loads = SumOverNodes(team, model_.nodes(), [&](std::size_t n) { return load[n].squaredNorm(); });
-  total.force_scale = std::hypot(total.force_scale, force_floor_, std::sqrt(loads));
+  total.force_scale = std::hypot(std::sqrt(elements.squares), force_floor_, std::sqrt(loads));
   if (!potential.inertia.empty()) {
     const double squares =
         SumOverNodes(team, model_.nodes(), [&](std::size_t n) { return (potential.inertia[n] * x[n]).squaredNorm(); });
     total.rounding = 4 * std::numeric_limits<double>::epsilon() * std::sqrt(squares);
   }
-  return total;
-}
-
-template <class Element>
-NewtonSystem::Evaluation NewtonSystem::EvaluateElements(const IncrementalPotential& potential, const NodalVector& x,
-                                                        ThreadTeam& team) {
-  Evaluation total;
-  std::atomic<double> smallest = 1;
-  double squares = 0;
-  for (const TetGroup& group : model_.groups()) {
-    const TetBody& body = model_.bodies()[group.body];
-    std::visit(
-        [&]<class Law>(const std::vector<Law>& laws) {
-          total.energy += team.Sum(group.tet_end - group.tet_begin, [&](std::size_t begin, std::size_t end) {
-            double energy = 0;
-            for (std::size_t e = group.tet_begin + begin; e < group.tet_begin + end; ++e) {
-              const auto values = ValuesOf<Element>(model_, e, x);
-              std::array<Vec3, Element::kNodes> forces;
-              forces.fill(Vec3::Zero());
-              for (int q = 0; q < Element::kPoints; ++q) {
-                const Mat3 F = GradientAt<Element>(model_, e, values, q);
-                const double volume = model_.rest_volume()[Element::kPoints * e + q];
-                TakeLeast(smallest, Determinant(F));
-                const PointPotential<Element, Law> point(potential, model_, body, laws[model_.law_of()[e]], e, q);
-                energy += volume * point.Energy(F);
-                const Mat3 P = point.Stress(F) + PatchPressure<Element>(model_.patches(), acting_, e, q) * Cofactor(F);
-                CornerValues corners;
-                SetCornerForces(P, model_.Dm_inverse()[Element::kPoints * e + q], volume, corners);
-                Element::AddCorners(corners, q, forces);
-              }
-              std::copy(forces.begin(), forces.end(), &forces_.element_forces[Element::kNodes * e]);
-            }
-            return energy;
-          });
-          squares += team.Sum(group.tet_end - group.tet_begin, [&](std::size_t begin, std::size_t end) {
-            double sum = 0;
-            for (std::size_t k = Element::kNodes * (group.tet_begin + begin);
-                 k < Element::kNodes * (group.tet_begin + end); ++k) {
-              sum += forces_.element_forces[k].squaredNorm();
-            }
-            return sum;
-          });
-        },
-        group.laws);
-  }
-  total.force_scale = std::sqrt(squares);
-  total.smallest_ratio = smallest.load();
   return total;
 }
 
@@ -161,7 +115,7 @@ void NewtonSystem::Assemble(const IncrementalPotential& potential, const NodalVe
   const StageTimer timer(profile_, "assembly");
   const VolumePatches& patches = model_.patches();
   Smooth(potential, pressure);
-  assembly_.Assemble(potential, x, acting_, forces_.ratio, team);
+  assembly_.Assemble(potential, x, acting_, forces_.ratio, team, forces_);
   projection_ = 0;
   has_projected_ = false;
   SaddleMatrix& matrix = assembly_.matrix();
@@ -186,7 +140,7 @@ void NewtonSystem::Project(const IncrementalPotential& potential, const NodalVec
   SaddleMatrix& matrix = assembly_.matrix();
   const BlockValues& whole = assembly_.projection();
   if (!has_projected_) {
-    assembly_.AssembleProjection(potential, x, acting_, team);
+    assembly_.AssembleProjection(potential, x, acting_, team, forces_);
     Multiply(matrix.pattern, whole, prescribed, team, projected_side_);
     has_projected_ = true;
   }

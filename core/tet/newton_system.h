@@ -65,8 +65,6 @@ class NewtonSystem {
   const LinearSolves& solves() const { return solves_; }
 
  private:
-  template <class Element>
-  Evaluation EvaluateElements(const IncrementalPotential& potential, const NodalVector& x, ThreadTeam& team);
   void Smooth(const IncrementalPotential& potential, std::span<const double> pressure);
 
   const TetModel& model_;

@@ -2,7 +2,7 @@
 #define FASCICLE_CORE_TET_SADDLE_MATRIX_H_
 
 #include "core/linalg/block_matrix.h"
-#include "core/tet/potential.h"
+#include "core/tet/element_matrices.h"
 
 namespace fascicle {
 
@@ -33,8 +33,8 @@ struct SaddleMatrix {
   void IsolatePrescribed(ThreadTeam& team);
 };
 
-// Assembles SaddleMatrix: elements by blocks that fit the cache, each block's matrices in parallel, then the rows in
-// parallel, each in the order of its elements; so the bits do not depend on the number of threads. One at a time.
+// Assembles SaddleMatrix from the matrices of elements (element_matrices.h): blocks and rows are added up in the order
+// of the elements, so the bits do not depend on the number of threads. One at a time.
 class SaddleAssembly {
  public:
   // Finds the pattern; the model must outlive the assembly.
@@ -42,12 +42,11 @@ class SaddleAssembly {
 
   // At positions x and acting pressures W p [Pa]; volume ratios theta of the patches. Exact tangents.
   void Assemble(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> acting,
-                std::span<const double> ratio, ThreadTeam& team);
+                std::span<const double> ratio, ThreadTeam& team, ForceWorkspace& workspace);
 
-  // What A gains when the tangent of every point is replaced by the positive semidefinite one that is nearest to it, at
-  // the x and pressures of the last Assemble.
+  // What A gains when the tangent of every point is replaced by the positive semidefinite one that is nearest to it.
   void AssembleProjection(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> acting,
-                          ThreadTeam& team);
+                          ThreadTeam& team, ForceWorkspace& workspace);
   const BlockValues& projection() const { return projection_; }
 
   SaddleMatrix& matrix() { return matrix_; }
@@ -56,23 +55,23 @@ class SaddleAssembly {
  private:
   template <class Element>
   void FindPattern();
-  enum class Part { kExact, kProjection };
+  void FindSmoothedPattern();
+  void AssembleBlocks(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> acting,
+                      double projection, ThreadTeam& team, ForceWorkspace& workspace, BlockValues& values) const;
   template <class Element>
-  void AssembleElements(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> acting,
-                        Part part, ThreadTeam& team);
-  template <class Element>
-  void AddBlock(std::size_t begin, std::size_t end, Part part, ThreadTeam& team);
+  void AssembleVolumes(const NodalVector& x, ThreadTeam& team);
   void SmoothVolumes(ThreadTeam& team);
 
   const TetModel& model_;
   SaddleMatrix matrix_;
-  BlockValues projection_;  // on the pattern of A
-  // B before smoothing, where there is smoothing.
+  TransposedPattern transposed_;  // of the pattern of A
+  BlockValues projection_;        // on that pattern
+  // B before smoothing, where there is smoothing, and the corners that make each of its rows: 4 * element + corner.
   BlockPattern raw_pattern_;
   NodalVector raw_B_;
-  std::vector<std::int32_t> block_places_;   // of element e: nodes x nodes, row by row
-  std::vector<std::int32_t> volume_places_;  // of element e: 4 corners x nodes
-  std::vector<double> element_matrices_;     // of one block of elements
+  std::vector<std::int32_t> corner_begin_, corners_;
+  std::vector<std::int32_t> pair_places_;    // of element e: nodes a >= b, as AddStiffness takes them
+  std::vector<std::int32_t> volume_places_;  // of each corner: nodes of its element
 };
 
 }  // namespace fascicle

@@ -123,6 +123,11 @@ TEST(TranslateScene, SteppingChoosesTheElementUnlessTheSceneDoes) {
   EXPECT_EQ(method().element, ElementOrder::kLinear);
   EXPECT_EQ(method().volume, VolumeForm::kElement);
   EXPECT_EQ(method().newton_tolerance, 1e-6);
+  EXPECT_EQ(method().linear_solver, LinearSolver::kAutomatic);
+  wire.mutable_tet()->set_linear_solver(v1::LINEAR_SOLVER_DIRECT);
+  EXPECT_EQ(method().linear_solver, LinearSolver::kDirect);
+  wire.mutable_tet()->set_linear_solver(v1::LINEAR_SOLVER_ITERATIVE);
+  EXPECT_EQ(method().linear_solver, LinearSolver::kIterative);
   EXPECT_EQ(method().precision, Precision::kDouble);
   wire.mutable_tet()->set_stepping(v1::STEPPING_EXPLICIT);
   wire.mutable_tet()->set_precision(v1::PRECISION_SINGLE);
