@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "core/materials/tensor_algebra.h"
 #include "ratio.h"
 #include "scalar_reference.h"
 #include "tet_box.h"

@@ -169,7 +169,9 @@ TEST_F(CliTest, RunTellsWhereTheTimeWent) {
   double top = profile["rest_seconds"];
   for (const json& stage : profile["stages"]) {
     EXPECT_GE(stage["seconds"], 0);
-    if (stage["name"] == "step") EXPECT_EQ(stage["calls"], 1000);
+    if (stage["name"] == "step") {
+      EXPECT_EQ(stage["calls"], 1000);
+    }
     if (!stage.contains("concurrent") && stage["name"].get<std::string>().find('/') == std::string::npos) {
       top += stage["seconds"].get<double>();
     }
