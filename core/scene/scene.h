@@ -114,7 +114,7 @@ struct TetMethod {
   Precision precision = Precision::kDouble;
   std::optional<double> time_step;  // [s]; automatic when absent
   LinearSolver linear_solver = LinearSolver::kAutomatic;
-  double newton_tolerance = 1e-8;   // relative force at which the iterations of implicit steps end
+  double newton_tolerance = 1e-8;  // relative force at which the iterations of implicit steps end
   double safety = 0.9;
   double solver_tolerance = 1e-8;
 };

@@ -5,8 +5,8 @@
 
 namespace fascicle::bench {
 
-// What core does for a force and a tangent at one state, behind one name for all benchmarks: the force of explicit steps,
-// and the block-sparse matrix of implicit ones.
+// What core does for a force and a tangent at one state, behind one name for all benchmarks: the force of explicit
+// steps, and the block-sparse matrix of implicit ones.
 class CoreTangent {
  public:
   // Both must outlive this.
