@@ -174,7 +174,7 @@ TEST_F(StreamTest, LatestOfADoneJobIsItsLastFrame) {
 
 TEST_F(StreamTest, HeartbeatsTellOfAJobThatWaitsAndOfOneThatIsSlow) {
   // Two jobs without frames for long keep the workers busy; a third waits.
-  const v1::Scene slow = SwingingBox(1000, 500);
+  const v1::Scene slow = SwingingBox(100000, 50000);
   const std::string running = stubs_->Submit(slow);
   stubs_->Submit(slow);
   const std::string waiting = stubs_->Submit(slow);
