@@ -174,7 +174,8 @@ TEST_F(StreamTest, LatestOfADoneJobIsItsLastFrame) {
 
 TEST_F(StreamTest, HeartbeatsTellOfAJobThatWaitsAndOfOneThatIsSlow) {
   // Two jobs without frames for long keep the workers busy; a third waits.
-  const v1::Scene slow = SwingingBox(100000, 50000);
+  v1::Scene slow = SwingingBox(1000, 500);
+  for (int i = 0; i < 3; ++i) slow.mutable_bodies(0)->mutable_mesh()->mutable_box()->set_divisions(i, 8);
   const std::string running = stubs_->Submit(slow);
   stubs_->Submit(slow);
   const std::string waiting = stubs_->Submit(slow);
