@@ -13,11 +13,13 @@ using Vec4f = Eigen::Vector4f;  // three components and one that is zero, for wh
 using Field = std::vector<Vec4f>;
 
 // Levels up to that many blocks are factored.
-constexpr std::size_t kCoarsest = 2000;
+constexpr std::size_t kCoarsest = 500;
 constexpr std::size_t kMostLevels = 10;
 constexpr int kSmoothing = 3;  // degree of the polynomials
 // Part of the spectrum that they damp: from the largest eigenvalue down to that part of it.
 constexpr float kDamped = 1.0f / 8;
+// Eigenvalues that are no further apart than that need no coarser levels.
+constexpr double kMostSpread = 3000;
 constexpr int kPowerIterations = 12;
 constexpr float kEigenvalueMargin = 1.15f;
 // Least eigenvalue of a diagonal block relative to its largest, and what is added to the coarsest diagonal for
@@ -103,7 +105,7 @@ struct Multigrid::Level {
   // x += polynomial in D^-1 A, times D^-1 (b - A x); from_zero: x is zero whatever it holds.
   void Smooth(bool from_zero, ThreadTeam& team) {
     const std::size_t size = pattern->rows();
-    const float centre = 0.5f * (1 + kDamped) * largest_eigenvalue, half = 0.5f * (1 - kDamped) * largest_eigenvalue;
+    const float centre = 0.5f * (1 + damped) * largest_eigenvalue, half = 0.5f * (1 - damped) * largest_eigenvalue;
     const float sigma = centre / half;
     float rho = 1 / sigma;
     ForNodes(team, size, [&](std::size_t n) {
@@ -144,6 +146,7 @@ struct Multigrid::Level {
   std::vector<RigidBlock> blocks;
   std::vector<FloatBlock> matrix, inverse_diagonal;
   float largest_eigenvalue = 1;
+  float damped = kDamped;  // part of the spectrum, from the largest eigenvalue down
   Field x, b, r, d, d_next;
   // To the next coarser level, where there is one.
   std::optional<Prolongation> prolongation;
@@ -164,12 +167,17 @@ Multigrid::Multigrid(const BlockPattern& pattern, const NodalVector& positions, 
 
 Multigrid::~Multigrid() = default;
 
-bool Multigrid::SetUp(const BlockValues& values, ThreadTeam& team) {
+bool Multigrid::SetUp(const BlockValues& values, ThreadTeam& team, double least_eigenvalue) {
   const BlockValues* current = &values;
   for (std::size_t l = 0; HasCoarser(l); ++l) {
     Level& level = *levels_[l];
     level.SetValues(*current, team);
     level.FindLargestEigenvalue(team);
+    if (l == 0) {
+      smoothes_only_ = least_eigenvalue * kMostSpread >= level.largest_eigenvalue;
+      level.damped = smoothes_only_ ? static_cast<float>(least_eigenvalue) / level.largest_eigenvalue : kDamped;
+      if (smoothes_only_) return true;
+    }
     if (l + 1 == levels_.size()) AddLevel(*current);
     level.galerkin.Compute(*level.pattern, *current, *level.prolongation, team, level.coarse_values);
     levels_[l + 1]->IsolateUnused(level.coarse_values);
@@ -255,6 +263,10 @@ void Multigrid::Apply(const NodalVector& r, ThreadTeam& team, NodalVector& z) {
 }
 
 void Multigrid::Cycle(std::size_t l, ThreadTeam& team) {
+  if (smoothes_only_) {
+    levels_[l]->Smooth(true, team);
+    return;
+  }
   if (l + 1 == levels_.size()) {
     SolveCoarsest();
     return;

@@ -28,7 +28,9 @@ class Multigrid {
 
   // Values of the finest level, prescribed components isolated. The aggregation is found at the first call after
   // construction or ForgetAggregation and kept, all numbers are new. False when the coarsest level can't be factored.
-  bool SetUp(const BlockValues& values, ThreadTeam& team);
+  // `least_eigenvalue`: a bound from below for the matrix preconditioned by its diagonal blocks, 0 where there is none;
+  // where it is near enough to the largest, smoothing alone does, and there are no coarser levels.
+  bool SetUp(const BlockValues& values, ThreadTeam& team, double least_eigenvalue = 0);
 
   // The next SetUp starts anew: what follows does not depend on what was before.
   void ForgetAggregation();
@@ -49,6 +51,7 @@ class Multigrid {
 
   std::vector<std::unique_ptr<Level>> levels_;
   DirectSolver coarsest_;
+  bool smoothes_only_ = false;
   bool first_is_given_ = false, coarsest_analyzed_ = false;
   std::vector<double> coarsest_values_, coarsest_side_;
 };

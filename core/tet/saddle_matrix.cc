@@ -149,6 +149,11 @@ void SaddleAssembly::Assemble(const IncrementalPotential& potential, const Nodal
   if (!potential.untangling) {
     ForFloorStiffness(model_, x, [&](std::size_t n, const Mat3& stiffness) { diagonal(n) += stiffness; });
   }
+  matrix_.least_eigenvalue = potential.inertia.empty() ? 0 : 1;
+  for (std::size_t n = 0; n < potential.inertia.size(); ++n) {
+    const double largest = diagonal(n).cwiseAbs().rowwise().sum().maxCoeff();  // Gershgorin
+    matrix_.least_eigenvalue = std::min(matrix_.least_eigenvalue, potential.inertia[n] / largest);
+  }
   const VolumePatches& patches = model_.patches();
   for (std::size_t n = 0; n < patches.size(); ++n) {
     matrix_.C[n] =

@@ -21,6 +21,8 @@ struct SaddleMatrix {
   NodalVector B;          // [m^2]
   std::vector<double> C;  // diagonal [m^3/Pa]
   FreeComponents free;
+  // Of A preconditioned by its diagonal blocks: a bound for the least eigenvalue that inertia alone gives; 0 without.
+  double least_eigenvalue = 0;
 
   std::size_t nodes() const { return pattern.rows(); }
   std::size_t patches() const { return C.size(); }

@@ -130,7 +130,7 @@ IterativeSaddleSolver::Result IterativeSaddleSolver::Solve(const SaddleMatrix& m
                                                            ThreadTeam& team, NodalVector& dx, std::span<double> dp) {
   dx.assign(force.size(), Vec3::Zero());
   std::fill(dp.begin(), dp.end(), 0.0);
-  if (!multigrid_.SetUp(matrix.A, team)) return {};
+  if (!multigrid_.SetUp(matrix.A, team, matrix.least_eigenvalue)) return {};
   SetScales(matrix);
   x_.resize(matrix.nodes());
   p_.resize(matrix.patches());

@@ -75,7 +75,7 @@ TEST(RealSurfaceTest, FiftyThousandTetrahedraInHalfAMinute) {
   const std::clock_t start = std::clock();
   Problems problems;
   const auto result = Mesh(surface, 50000, problems);
-  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;  // of all threads
+  [[maybe_unused]] const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;  // of all threads
   ASSERT_TRUE(result) << problems.ToString();
   ExpectGood(*result);
   EXPECT_NEAR(static_cast<double>(result->mesh.tetrahedra.size()), 50000, 2500);
