@@ -28,6 +28,8 @@ constexpr const char* kExamples =
   fascicle mesh muscle.stl --out muscle.msh --size 2.5        edges of about 2.5 at the surface, in its own unit
   fascicle mesh muscle.stl --out muscle.msh --region origin=near:femur.stl:3 --region insertion=near:tibia.stl:3 \
     --scene muscle.json --picture muscle.png                  attachments, a scene to begin with, and a picture
+  fascicle mesh muscle.stl --out muscle.msh --region origin=end:0,0,1:20 --region insertion=end:0,0,-1:20 \
+    --scene muscle.json                                       attached by 20 of its own units at its two ends
   fascicle mesh muscle.stl --out muscle.msh --region top=side:0,0,1:30
   fascicle mesh labels.mha --label 2 --out triceps.msh        the voxels of a segmentation that have the value 2
 
@@ -151,7 +153,7 @@ Json SceneJson(const Options& options, const std::vector<Region>& regions) {
   Json body = {{"name", "muscle"},
                {"unit", options.unit},
                {"mesh", {{"file", {{"path", fs::absolute(options.out).lexically_relative(folder).string()}}}}},
-               {"material", {{"muscle", {{"bulk_modulus", 1e6}, {"optimal_stretch", 1}}}}},
+               {"material", {{"muscle", {{"optimal_stretch", 1}}}}},
                {"regions", std::move(list)},
                {"fibres", {{"harmonic", {{"origin", regions[0].name}, {"insertion", regions[1].name}}}}},
                {"constraints", std::move(constraints)},
@@ -226,6 +228,7 @@ int MakeMesh(const Options& options, const Context& context) {
   }
   FailOn(problems, options.surface);
   const std::vector<Region> regions = MarkRegions(requests, result->mesh, problems);
+  if (!options.scene.empty() && problems.empty()) CheckEnds(regions[0], regions[1], problems);
   FailOn(problems, options.surface);
 
   std::vector<TagName> names;
@@ -279,8 +282,9 @@ void AddMesh(CLI::App& app, Context& context) {
   command
       ->add_option(
           "--region", options->regions,
-          "Name a part of the mesh's surface: what faces a direction, or is near another surface; may be repeated")
-      ->type_name("NAME=side:X,Y,Z[:DEGREES]|NAME=near:SURFACE:DISTANCE")
+          "Name a part of the mesh's surface: the end of a direction, what faces it, or what is near another surface; "
+          "may be repeated")
+      ->type_name("NAME=end:X,Y,Z:LENGTH|NAME=side:X,Y,Z[:DEGREES]|NAME=near:SURFACE:DISTANCE")
       ->allow_extra_args(false);
   command->add_option("--scene", options->scene, "Write a scene: a muscle between the first two regions")
       ->type_name("FILE.json");

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -16,7 +17,8 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kForms = "NAME=side:X,Y,Z, NAME=side:X,Y,Z:DEGREES or NAME=near:SURFACE:DISTANCE";
+constexpr const char* kForms =
+    "NAME=end:X,Y,Z:LENGTH, NAME=side:X,Y,Z, NAME=side:X,Y,Z:DEGREES or NAME=near:SURFACE:DISTANCE";
 constexpr double kDefaultAngle = 45;  // [degree]
 
 bool ParseNumber(std::string_view text, double& value) {
@@ -31,21 +33,35 @@ bool IsName(const std::string& name) {
   });
 }
 
+// X,Y,Z of which one at least is not zero.
+std::optional<Vec3> ParseDirection(std::string_view text) {
+  Vec3 direction;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t comma = text.find(',');
+    if ((comma == std::string_view::npos) != (axis == 2)) return std::nullopt;
+    if (!ParseNumber(text.substr(0, comma), direction[axis])) return std::nullopt;
+    text = comma == std::string_view::npos ? std::string_view() : text.substr(comma + 1);
+  }
+  if (direction.isZero(0)) return std::nullopt;
+  return direction;
+}
+
 std::optional<SideSelector> ParseSide(std::string_view text) {
-  SideSelector side;
   double angle = kDefaultAngle;
   const std::size_t colon = text.find(':');
   if (colon != std::string_view::npos && !ParseNumber(text.substr(colon + 1), angle)) return std::nullopt;
-  std::string_view rest = text.substr(0, colon);
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t comma = rest.find(',');
-    if ((comma == std::string_view::npos) != (axis == 2)) return std::nullopt;
-    if (!ParseNumber(rest.substr(0, comma), side.direction[axis])) return std::nullopt;
-    rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
-  }
-  side.max_angle = angle * std::numbers::pi / 180;
-  if (side.direction.isZero(0) || angle < 0 || angle > 180) return std::nullopt;
-  return side;
+  const auto direction = ParseDirection(text.substr(0, colon));
+  if (!direction || angle < 0 || angle > 180) return std::nullopt;
+  return SideSelector{*direction, angle * std::numbers::pi / 180};
+}
+
+std::optional<RegionRequest::End> ParseEnd(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  double length = 0;
+  if (colon == std::string_view::npos || !ParseNumber(text.substr(colon + 1), length)) return std::nullopt;
+  const auto direction = ParseDirection(text.substr(0, colon));
+  if (!direction || length <= 0) return std::nullopt;
+  return RegionRequest::End{*direction, length};
 }
 
 std::optional<RegionRequest::Near> ParseNear(std::string_view text) {
@@ -65,8 +81,17 @@ void ReadOther(RegionRequest::Near& near, const std::string& path, Problems& pro
   for (const Problem& problem : in_file.kept()) problems.Add(path, near.file + ": " + problem.message, problem.hint);
 }
 
+// All that is beyond the plane across the direction, `length` below the furthest node.
+PlaneSelector BelowFurthest(const TetMesh& mesh, const RegionRequest::End& end) {
+  const Vec3 direction = end.direction.normalized();
+  double furthest = -std::numeric_limits<double>::infinity();
+  for (const Vec3& x : mesh.nodes) furthest = std::max(furthest, x.dot(direction));
+  return {(furthest - end.length) * direction, direction};
+}
+
 // What to try where a region is empty.
 std::string EmptyHint(const RegionRequest& request, const TetMesh& mesh, const std::vector<Triangle>& surface) {
+  if (std::holds_alternative<RegionRequest::End>(request.selector)) return "try a larger length";
   const auto* near = std::get_if<RegionRequest::Near>(&request.selector);
   if (near == nullptr) return "try a larger angle";
   const TriangleTree tree(near->surface);
@@ -105,6 +130,12 @@ std::vector<RegionRequest> ReadRegionRequests(const std::vector<std::string>& op
       } else {
         problems.Add(path, "expects a direction, and perhaps an angle of 0 to 180 degrees", "such as side:0,0,1:30");
       }
+    } else if (value.starts_with("end:")) {
+      if (const auto end = ParseEnd(value.substr(4))) {
+        request.selector = *end;
+      } else {
+        problems.Add(path, "expects a direction and a length above 0", "such as end:0,0,1:15");
+      }
     } else if (value.starts_with("near:")) {
       if (auto near = ParseNear(value.substr(5))) {
         ReadOther(*near, path, problems);
@@ -120,6 +151,16 @@ std::vector<RegionRequest> ReadRegionRequests(const std::vector<std::string>& op
   return requests;
 }
 
+void CheckEnds(const Region& origin, const Region& insertion, Problems& problems) {
+  std::vector<std::int32_t> common;
+  std::set_intersection(origin.nodes.begin(), origin.nodes.end(), insertion.nodes.begin(), insertion.nodes.end(),
+                        std::back_inserter(common));
+  if (common.empty()) return;
+  problems.Add("--region " + insertion.name,
+               "has " + std::to_string(common.size()) + " nodes in common with " + origin.name,
+               "the ends of a muscle are apart: take smaller regions, or end:X,Y,Z:LENGTH");
+}
+
 std::vector<Region> MarkRegions(const std::vector<RegionRequest>& requests, TetMesh& mesh, Problems& problems) {
   const std::vector<Triangle> surface = BoundaryTriangles(mesh);
   std::vector<Region> regions;
@@ -127,6 +168,8 @@ std::vector<Region> MarkRegions(const std::vector<RegionRequest>& requests, TetM
     const RegionRequest& request = requests[i];
     if (const auto* side = std::get_if<SideSelector>(&request.selector)) {
       regions.push_back(SelectRegion(mesh, surface, request.name, *side));
+    } else if (const auto* end = std::get_if<RegionRequest::End>(&request.selector)) {
+      regions.push_back(SelectRegion(mesh, surface, request.name, BelowFurthest(mesh, *end)));
     } else {
       const auto& near = std::get<RegionRequest::Near>(request.selector);
       regions.push_back(SelectNear(mesh, surface, request.name, TriangleTree(near.surface), near.distance));

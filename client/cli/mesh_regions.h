@@ -20,12 +20,20 @@ struct RegionRequest {
     TriangleMesh surface;
     double distance = 0;
   };
+  // NAME=end:X,Y,Z:LENGTH: no further below the furthest point in a direction.
+  struct End {
+    Vec3 direction = Vec3::Zero();
+    double length = 0;
+  };
   std::string name;
-  std::variant<SideSelector, Near> selector;
+  std::variant<SideSelector, Near, End> selector;
 };
 
 // Reads `--region` options and the surfaces that they name; adds every mistake to `problems`.
 std::vector<RegionRequest> ReadRegionRequests(const std::vector<std::string>& options, Problems& problems);
+
+// Problems of two regions that are the ends of a muscle: they may not have a node in common.
+void CheckEnds(const Region& origin, const Region& insertion, Problems& problems);
 
 // Marks the triangles of each region, the first by tag 1 and so on, and all tetrahedra by the tag after the last. A
 // region without a triangle is a problem.

@@ -101,15 +101,21 @@ TEST_F(MeshTest, TellsAllMistakesAtOnceAndWritesNothing) {
                                    "--region",
                                    "g=ball:1",
                                    "--region",
-                                   "g=side:0,0,1:200"});
+                                   "g=side:0,0,1:200",
+                                   "--region",
+                                   "h=end:0,0,0:3",
+                                   "--region",
+                                   "i=end:0,0,1:0",
+                                   "--region",
+                                   "j=end:0,0,1"});
   EXPECT_EQ(wrong.exit_code, 2);
   const json error = json::parse(wrong.out);
   EXPECT_EQ(error["reason"], "INVALID_SURFACE");
   std::vector<std::string> paths;
   for (const json& problem : error["problems"]) paths.push_back(problem["path"]);
-  EXPECT_THAT(paths,
-              ::testing::UnorderedElementsAre("--out", "--label", "--region a b", "--region c", "--region d",
-                                              "--region e", "--region f", "--region g", "--region g", "--region g"));
+  EXPECT_THAT(paths, ::testing::UnorderedElementsAre("--out", "--label", "--region a b", "--region c", "--region d",
+                                                     "--region e", "--region f", "--region g", "--region g",
+                                                     "--region g", "--region h", "--region i", "--region j"));
   EXPECT_EQ(Fascicle({"mesh", folder_ / "none.stl", "--out", folder_ / "x.msh"}).exit_code, 2);
   EXPECT_EQ(Fascicle({"mesh", bar, "--out", folder_ / "x.msh", "--size", "2", "--tets", "3000"}).exit_code, 2);
   EXPECT_EQ(Fascicle({"mesh", bar, "--out", folder_ / "x.msh", "--size", "-2"}).exit_code, 2);
@@ -127,6 +133,25 @@ TEST_F(MeshTest, AnEmptyRegionIsAMistake) {
   EXPECT_FALSE(HasFile("bar.msh"));
 }
 
+TEST_F(MeshTest, TheEndsOfAMuscleMustBeApart) {
+  const std::string bar = File("bar.obj", kBar);
+  const auto with_ends = [&](const std::string& origin, const std::string& insertion) {
+    return Fascicle({"mesh", bar, "--json", "--out", folder_ / "bar.msh", "--size", "5", "--scene",
+                     folder_ / "bar.json", "--region", "origin=" + origin, "--region", "insertion=" + insertion});
+  };
+  const Finished wrong = with_ends("end:0,0,2:35", "end:0,0,-1:35");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err + wrong.out, AllOf(HasSubstr("--region insertion"), HasSubstr("nodes in common with origin")));
+  EXPECT_FALSE(HasFile("bar.msh"));
+  const Finished right = with_ends("end:0,0,2:12", "end:0,0,-1:0.1");
+  ASSERT_EQ(right.exit_code, 0) << right.err;
+  const json regions = json::parse(right.out)["regions"];
+  // The face and a rim of 10 to 12 around it; the face alone.
+  EXPECT_GT(regions[0]["area"], 400 + 80 * 10 - 1);
+  EXPECT_LT(regions[0]["area"], 400 + 80 * 12 + 1);
+  EXPECT_NEAR(regions[1]["area"].get<double>(), 400, 1);
+}
+
 TEST_F(MeshTest, AHoleIsRefusedWithItsPlace) {
   std::string open = kBar;
   open.erase(open.find("f 5 6 7 8\n"), 10);
@@ -140,18 +165,30 @@ TEST_F(MeshTest, AHoleIsRefusedWithItsPlace) {
   EXPECT_THAT(closed.out, HasSubstr("closed a hole at (10, 10, 60)"));
 }
 
-TEST_F(MeshTest, AMuscleIsMeshedWithItsAttachments) {
+TEST_F(MeshTest, AMuscleIsMeshedWithItsAttachmentsAndContracts) {
   if (!fs::exists(Muscle("Muscle_PeroneusLongus"))) GTEST_SKIP() << Data() << " is not there; set FASCICLE_DATA";
   const Finished made =
       Fascicle({"mesh", Muscle("Muscle_PeroneusLongus"), "--json", "--out", folder_ / "m/peroneus.msh", "--tets",
-                "3000", "--region", "origin=near:" + Muscle("Bone_Fibula") + ":6", "--region",
-                "insertion=side:0,0,-1:50", "--scene", folder_ / "scene.json"});
+                "3000", "--region", "origin=end:0,0,1:40", "--region", "insertion=end:0,0,-1:25", "--region",
+                "fibula=near:" + Muscle("Bone_Fibula") + ":6", "--scene", folder_ / "scene.json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const json report = json::parse(made.out);
   EXPECT_GE(report["smallest_dihedral_angle"], 10.0);
   EXPECT_NEAR(report["volume_error"].get<double>(), 0, 5e-3);
-  EXPECT_GT(report["regions"][0]["triangles"], 10);
-  EXPECT_TRUE(fs::exists(folder_ / "scene.json"));
+  EXPECT_GT(report["regions"][2]["triangles"], 10);
+
+  const Finished run = Fascicle({"run", folder_ / "scene.json", "--json", "--out", folder_ / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json series = json::parse(ReadText(folder_ / "out/summary.json"))["series"];
+  const auto last = [&](const char* name) { return series.at(name).at("final").get<double>(); };
+  EXPECT_NEAR(last("muscle/volume_ratio"), 1, 0.01);
+  EXPECT_GT(last("muscle/min_volume_ratio"), 0.2);
+  // The muscle pulls its insertion, at its lower end, upwards: what holds it pulls down, by some tens of newtons.
+  EXPECT_LT(last("muscle/reaction/insertion/z"), -5);
+  for (const std::string axis : {"x", "y", "z"}) {
+    EXPECT_NEAR(last(("muscle/reaction/origin/" + axis).c_str()), -last(("muscle/reaction/insertion/" + axis).c_str()),
+                1e-3);
+  }
 }
 
 TEST_F(MeshTest, LabelsOfAnImage) {
