@@ -214,7 +214,8 @@ double NewtonSolver::LineSearch(const IncrementalPotential& potential, const Nod
     if (trial_merit <= merit + kArmijo * part * slope) return part;
     // Where rounding hides the difference of the energies, which may be sums of much larger parts, their slopes tell
     // [Hager & Zhang 2005, 4.1].
-    const double rounding = 1e-13 * (std::abs(now_.energy) + std::abs(merit)) + 1e-8 * now_.force_scale * step_length;
+    const double rounding = now_.energy_rounding + 1e-13 * (std::abs(now_.energy) + std::abs(merit)) +
+                            1e-8 * now_.force_scale * step_length;
     if (trial_merit <= merit + rounding && SlopeAt(augmentation) <= (2 * kArmijo - 1) * slope) return part;
   }
   return 0;

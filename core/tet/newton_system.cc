@@ -17,13 +17,30 @@ constexpr std::size_t kMostFallbackUnknowns = 60000;
 // So many failures of the iteration, and the rest of the step in time is solved directly.
 constexpr int kMostFailures = 2;
 
+double ModulusOf(const TetModel& model, const TetGroup& group) {
+  return std::visit([](const auto& law) { return law.ShearModulus() + law.BulkModulus(); },
+                    model.bodies()[group.body].source->material);
+}
+
+// What rounding does to the elastic energy [J]: at every point a small difference of terms of the modulus' size.
+double EnergyRounding(const TetModel& model) {
+  double sum = 0;
+  for (const TetGroup& group : model.groups()) {
+    const double modulus = ModulusOf(model, group);
+    for (std::size_t point = group.tet_begin * model.points_per_element();
+         point < group.tet_end * model.points_per_element(); ++point) {
+      sum += modulus * model.rest_volume()[point];
+    }
+  }
+  return std::numeric_limits<double>::epsilon() * sum;
+}
+
 // Element forces at a strain of 1e-5: a body at rest has none to compare with.
 double ForceFloor(const TetModel& model) {
   constexpr double kSmallStrain = 1e-5;
   double squares = 0;
   for (const TetGroup& group : model.groups()) {
-    const Material& material = model.bodies()[group.body].source->material;
-    const double modulus = std::visit([](const auto& law) { return law.ShearModulus() + law.BulkModulus(); }, material);
+    const double modulus = ModulusOf(model, group);
     for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
       const double force =
           kSmallStrain * modulus * std::pow(model.rest_volume()[e * model.points_per_element()], 2.0 / 3);
@@ -36,7 +53,11 @@ double ForceFloor(const TetModel& model) {
 }  // namespace
 
 NewtonSystem::NewtonSystem(const TetModel& model, Profile* profile)
-    : model_(model), profile_(profile), assembly_(model), force_floor_(ForceFloor(model)) {
+    : model_(model),
+      profile_(profile),
+      assembly_(model),
+      force_floor_(ForceFloor(model)),
+      energy_rounding_(EnergyRounding(model)) {
   unknowns_ = model.patches().size();
   for (const auto& free : assembly_.matrix().free) unknowns_ += std::count(free.begin(), free.end(), true);
   const LinearSolver choice = model.scene().method.linear_solver;
@@ -65,6 +86,7 @@ NewtonSystem::Evaluation NewtonSystem::Evaluate(const IncrementalPotential& pote
   Smooth(potential, pressure);
   const ElementEvaluation elements = EvaluateElements(model_, potential, x, acting_, team, forces_, force);
   Evaluation total;
+  total.energy_rounding = energy_rounding_;
   total.energy = elements.energy;
   total.smallest_ratio = elements.smallest_ratio;
   total.valid = potential.untangling || (total.smallest_ratio > 0 && patches_valid);

@@ -28,11 +28,12 @@ class NewtonSystem {
 
   // Force f on all nodes (unknown and prescribed) and the merit function's parts at x with pressures p.
   struct Evaluation {
-    double smallest_ratio = 1;  // least J of all points
-    double rounding = 0;        // of the force of inertia, a small difference of positions times a large number [N]
-    bool valid = false;         // J > 0 at all points, theta > 0, all finite
-    double energy = 0;          // Phi without patches [J]
-    double force_scale = 0;     // norm of all element forces and loads [N]: what f is small against
+    double smallest_ratio = 1;   // least J of all points
+    double rounding = 0;         // of the force of inertia, a small difference of positions times a large number [N]
+    bool valid = false;          // J > 0 at all points, theta > 0, all finite
+    double energy = 0;           // Phi without patches [J]
+    double energy_rounding = 0;  // of elastic energies, small differences of larger terms [J]
+    double force_scale = 0;      // norm of all element forces and loads [N]: what f is small against
   };
   Evaluation Evaluate(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
                       ThreadTeam& team, NodalVector& force);
@@ -77,6 +78,7 @@ class NewtonSystem {
   bool prefers_iterative_ = false, is_iterative_ = false;
   ForceWorkspace forces_;
   double force_floor_ = 0;      // [N]
+  double energy_rounding_ = 0;  // [J]
   std::vector<double> acting_;  // W p of each patch [Pa]
   void Assemble(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
                 const NodalVector& force, const NodalVector& prescribed, ThreadTeam& team);
