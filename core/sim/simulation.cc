@@ -127,9 +127,9 @@ struct Simulation::Impl {
     return archive.AtEnd();
   }
 
-  StepReport Step(double end) {
+  StepReport Step(double end, const std::stop_token& stop) {
     const StageTimer timer(profile, "step");
-    return solver.Advance(state, end);
+    return solver.Advance(state, end, stop);
   }
 
   bool Put(FrameSink& sink, Frame frame, std::string checkpoint) {
@@ -188,7 +188,8 @@ Outcome Simulation::Run(FrameSink& sink, std::stop_token stop, std::chrono::mill
     const double frame_time = run.TimeOfFrame(run.next_frame);
     while (run.state.time < frame_time) {
       if (stop.stop_requested()) return {Outcome::Kind::kCancelled, {}};
-      const StepReport report = run.Step(frame_time);
+      const StepReport report = run.Step(frame_time, stop);
+      if (report.problem == StepProblem::kStopped) return {Outcome::Kind::kCancelled, {}};
       if (report.problem != StepProblem::kNone) return {Outcome::Kind::kFailed, run.FailureOf(report)};
       sink.PutProgress(run.ProgressNow());
     }

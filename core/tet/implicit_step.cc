@@ -68,6 +68,8 @@ StepProblem ProblemOf(const NewtonResult& result) {
   switch (result.end) {
     case NewtonResult::End::kConverged:
       return StepProblem::kNone;
+    case NewtonResult::End::kStopped:
+      return StepProblem::kStopped;
     case NewtonResult::End::kInvalid:
       return StepProblem::kInvertedElement;
     default:
@@ -91,6 +93,7 @@ StepReport TetSolver::AdvanceImplicit(TetState& state, double end) {
       std::swap(state, next_);
       return report;
     }
+    if (report.problem == StepProblem::kStopped) return report;
     state.next_step = dt / 2;
     if (dt / 2 < kShortestStep * model_.scene().duration) return Fail(state, report);
   }
@@ -122,7 +125,7 @@ StepReport TetSolver::StepImplicit(const TetState& now, double dt, TetState& nex
   }
   const NewtonResult result = [&] {
     const StageTimer timer(profile_, "Newton");
-    return newton_->Solve(potential_, target, {method_.newton_tolerance, 50}, next.positions, next.pressures);
+    return newton_->Solve(potential_, target, {method_.newton_tolerance, 50, stop_}, next.positions, next.pressures);
   }();
 
   StepReport report;

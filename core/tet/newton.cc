@@ -50,10 +50,12 @@ NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const No
   // the same: from where it is in order, and if that is no good, from rest.
   for (int attempt = 0; attempt < 2 && result.end == NewtonResult::End::kInvalid; ++attempt) {
     if (attempt == 1) x = model_.rest_positions();
-    if (!Untangle(target, x, result)) continue;
+    const bool untangled = Untangle(target, options.stop, x, result);
+    if (result.end == NewtonResult::End::kStopped) break;
+    if (!untangled) continue;
     pressure.assign(pressure.size(), 0.0);
     Iterate(potential, target, options, x, pressure, result);
-    if (attempt == 0 && result.end != NewtonResult::End::kConverged) result.end = NewtonResult::End::kInvalid;
+    if (attempt == 0 && result.end == NewtonResult::End::kNotConverged) result.end = NewtonResult::End::kInvalid;
   }
   result.solves = system_.solves();
   return result;
@@ -65,6 +67,10 @@ void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVec
   result.end = NewtonResult::End::kNotConverged;
   double projection = 0, norm_before = 0;
   for (int iteration = 0;; ++iteration) {
+    if (options.stop.stop_requested()) {
+      result.end = NewtonResult::End::kStopped;
+      return;
+    }
     const bool prescribed_move = FindRemaining(target, x);
     now_ = system_.Evaluate(potential, x, pressure, team_, force_);
     if (!now_.valid) {
@@ -97,7 +103,8 @@ void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVec
 
 // Brings prescribed components to their place and all elements to a positive volume by projected Newton on
 // UntanglingLaw, which lowers its energy at every step. False when some element stays inverted.
-bool NewtonSolver::Untangle(const NodalVector& target, NodalVector& x, NewtonResult& result) {
+bool NewtonSolver::Untangle(const NodalVector& target, const std::stop_token& stop, NodalVector& x,
+                            NewtonResult& result) {
   IncrementalPotential potential;
   potential.untangling = true;
   const NodalVector no_load(x.size(), Vec3::Zero());
@@ -111,6 +118,10 @@ bool NewtonSolver::Untangle(const NodalVector& target, NodalVector& x, NewtonRes
   PlacePrescribed(target, x);
   remaining_.assign(x.size(), Vec3::Zero());
   for (int i = 0; i < kMaxUntangling; ++i) {
+    if (stop.stop_requested()) {
+      result.end = NewtonResult::End::kStopped;
+      return false;
+    }
     potential.inertia_centre = x;
     const NewtonSystem::Evaluation now = system_.Evaluate(potential, x, no_pressure, team_, force_);
     now_ = now;

@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_TET_NEWTON_H_
 
 #include <memory>
+#include <stop_token>
 
 #include "core/tet/newton_system.h"
 
@@ -10,10 +11,11 @@ namespace fascicle {
 struct NewtonOptions {
   double tolerance = 1e-8;  // of the force, relative to the norm of all element forces
   int max_iterations = 50;
+  std::stop_token stop;  // looked at before every iteration
 };
 
 struct NewtonResult {
-  enum class End { kConverged, kNotConverged, kInvalid };
+  enum class End { kConverged, kNotConverged, kInvalid, kStopped };
   End end = End::kNotConverged;
   int iterations = 0;    // factorizations
   double residual = 0;   // largest |force| on an unknown component over the norm of all element forces [1]
@@ -45,7 +47,7 @@ class NewtonSolver {
  private:
   double TakeStep(const IncrementalPotential& potential, double projection, bool same_point, bool prescribed_move,
                   NodalVector& x, std::vector<double>& pressure);
-  bool Untangle(const NodalVector& target, NodalVector& x, NewtonResult& result);
+  bool Untangle(const NodalVector& target, const std::stop_token& stop, NodalVector& x, NewtonResult& result);
   void Iterate(const IncrementalPotential& potential, const NodalVector& target, const NewtonOptions& options,
                NodalVector& x, std::vector<double>& pressure, NewtonResult& result);
   void Move(const NodalVector& x, double part);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace fascicle {
 namespace {
@@ -65,7 +66,8 @@ void TetSolver::SetFirstAcceleration(TetState& state) {
   }
 }
 
-StepReport TetSolver::Advance(TetState& state, double end) {
+StepReport TetSolver::Advance(TetState& state, double end, std::stop_token stop) {
+  stop_ = std::move(stop);
   return IsImplicit() ? AdvanceImplicit(state, end) : AdvanceExplicit(state, end);
 }
 

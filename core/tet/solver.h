@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_TET_SOLVER_H_
 
 #include <memory>
+#include <stop_token>
 
 #include "core/base/profile.h"
 #include "core/linalg/conjugate_gradient.h"
@@ -22,7 +23,8 @@ enum class StepProblem {
   kNotConverged,  // the linear solve of the damping
   kUnstable,
   kStepTooSmall,
-  kNoEquilibrium  // Newton's method of implicit and quasi-static steps
+  kNoEquilibrium,  // Newton's method of implicit and quasi-static steps
+  kStopped         // as asked
 };
 
 struct StepReport {
@@ -49,8 +51,9 @@ class TetSolver {
   // Makes one step towards `end` [s], which it never passes and hits exactly. A step that inverts or crushes an
   // element, gives values that are not finite or gains energy from instability is made again with half the length, up
   // to kMaxCuts times. Implicit and quasi-static steps go as far as Newton's method converges: from all the way at
-  // first, halved when it does not and doubled when it was easy. On a problem the state keeps its time and motion.
-  StepReport Advance(TetState& state, double end);
+  // first, halved when it does not and doubled when it was easy. On a problem the state keeps its time and motion. Long
+  // steps, those of Newton's method, end early when `stop` asks for it.
+  StepReport Advance(TetState& state, double end, std::stop_token stop = {});
 
   // One attempt to step from `now` to `next_time`, without cutting; fills all of `next` but what Advance looks after.
   StepReport Step(const TetState& now, double next_time, TetState& next);
@@ -96,6 +99,7 @@ class TetSolver {
   Profile* const profile_;
   const TetMethod& method_;
   // Scratch: nothing here outlives a step.
+  std::stop_token stop_;
   TetControls controls_now_, controls_next_;
   NodalVector external_now_, external_next_;
   NodalVector right_side_, inverse_diagonal_;

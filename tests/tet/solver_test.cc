@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <chrono>
 #include <cmath>
+#include <stop_token>
+#include <thread>
 
 #include "core/tet/diagnostics.h"
 #include "tet_scenes.h"
@@ -176,6 +179,30 @@ TEST_P(NonlinearConvergence, Order) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Steppings, NonlinearConvergence, ::testing::Values(Stepping::kExplicit, Stepping::kMixed));
+
+// Newton's method ends when it is asked to, and the step that is made later is the one that would have been made.
+TEST(StopTest, EndsALongStepAndLeavesNoTrace) {
+  Scene scene = OneBody(BoxBody(Vec3(0.02, 0.02, 0.06), {8, 8, 24}, NeoHookean(std::array{2e4, 0.4})));
+  scene.method.stepping = Stepping::kQuasiStatic;
+  scene.bodies[0].constraints = {Fix(kZ0)};
+  scene.gravity.acceleration = Vec3(9.81, 0, 0);
+  const TetModel model(scene);
+  ThreadTeam team(1);
+  TetSolver disturbed(model, team), undisturbed(model, team);
+  TetState state = disturbed.InitialState(), expected = state;
+  std::stop_source source;
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    source.request_stop();
+  });
+  const StepReport stopped = disturbed.Advance(state, 1, source.get_token());
+  stopper.join();
+  ASSERT_EQ(stopped.problem, StepProblem::kStopped) << "the step was too short for this test";
+  EXPECT_EQ(state.time, 0);
+  EXPECT_EQ(disturbed.Advance(state, 1).problem, StepProblem::kNone);
+  EXPECT_EQ(undisturbed.Advance(expected, 1).problem, StepProblem::kNone);
+  EXPECT_EQ(state.positions, expected.positions);
+}
 
 // x = g t^2 / 2 and v = g t at every step, for both steppings: quadratic motion is integrated without error.
 TEST(FreeFallTest, IsExact) {
