@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/geometry/unused_nodes.h"
 
 namespace fascicle {
 namespace {
@@ -36,7 +37,7 @@ class Stuffing {
     FindCuts();
     Warp();
     for (const Tetrahedron& tetrahedron : kept_) Fill(tetrahedron);
-    DropUnusedNodes();
+    DropUnusedNodes(mesh_.nodes, mesh_.tetrahedra);
     return std::move(mesh_);
   }
 
@@ -223,23 +224,6 @@ class Stuffing {
     const std::int32_t cut = Cut(in[0], o);
     Add(cut, in[0], in[1], in[2]);
     AddPyramid(cut, in[1], in[2], o);
-  }
-
-  void DropUnusedNodes() {
-    std::vector<std::int32_t> number(mesh_.nodes.size(), -1);
-    for (const Tetrahedron& t : mesh_.tetrahedra) {
-      for (const std::int32_t n : t) number[n] = 0;
-    }
-    std::int32_t count = 0;
-    for (std::size_t n = 0; n < number.size(); ++n) {
-      if (number[n] < 0) continue;
-      mesh_.nodes[count] = mesh_.nodes[n];
-      number[n] = count++;
-    }
-    mesh_.nodes.resize(count);
-    for (Tetrahedron& t : mesh_.tetrahedra) {
-      for (std::int32_t& n : t) n = number[n];
-    }
   }
 
   const Lattice& lattice_;

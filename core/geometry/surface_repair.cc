@@ -14,6 +14,7 @@
 
 #include "core/geometry/faces.h"
 #include "core/geometry/triangle_tree.h"
+#include "core/geometry/unused_nodes.h"
 
 namespace fascicle {
 namespace {
@@ -109,24 +110,6 @@ void JoinNodes(TriangleMesh& surface) {
   }
   for (Triangle& triangle : surface.triangles) {
     for (std::int32_t& n : triangle) n = joined[n];
-  }
-}
-
-// Nodes that no triangle has any more go.
-void DropUnusedNodes(TriangleMesh& surface) {
-  std::vector<std::int32_t> number(surface.nodes.size(), -1);
-  for (const Triangle& triangle : surface.triangles) {
-    for (const std::int32_t n : triangle) number[n] = 0;
-  }
-  std::int32_t count = 0;
-  for (std::size_t n = 0; n < number.size(); ++n) {
-    if (number[n] < 0) continue;
-    surface.nodes[count] = surface.nodes[n];
-    number[n] = count++;
-  }
-  surface.nodes.resize(count);
-  for (Triangle& triangle : surface.triangles) {
-    for (std::int32_t& n : triangle) n = number[n];
   }
 }
 
@@ -415,7 +398,7 @@ SurfaceReport RepairSurface(TriangleMesh& surface, double largest_hole, Problems
   const std::size_t before = problems.count();
   JoinNodes(surface);
   RemoveTriangles(surface, report);
-  DropUnusedNodes(surface);
+  DropUnusedNodes(surface.nodes, surface.triangles);
   if (surface.triangles.empty()) {
     problems.Add("", "the surface has no triangles with an area", "is it flat, or scaled to nothing?");
     return report;

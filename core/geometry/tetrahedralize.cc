@@ -9,6 +9,7 @@
 #include "core/geometry/mesh_improvement.h"
 #include "core/geometry/octree_lattice.h"
 #include "core/geometry/triangle_tree.h"
+#include "core/geometry/unused_nodes.h"
 
 namespace fascicle {
 namespace {
@@ -126,25 +127,8 @@ class Meshing {
     }
     std::size_t t = 0;
     std::erase_if(mesh_.tetrahedra, [&](const Tetrahedron&) { return part[t++] != largest; });
-    DropUnusedNodes();
+    DropUnusedNodes(mesh_.nodes, mesh_.tetrahedra);
     return true;
-  }
-
-  void DropUnusedNodes() {
-    std::vector<std::int32_t> number(mesh_.nodes.size(), -1);
-    for (const Tetrahedron& tetrahedron : mesh_.tetrahedra) {
-      for (const std::int32_t n : tetrahedron) number[n] = 0;
-    }
-    std::int32_t count = 0;
-    for (std::size_t n = 0; n < number.size(); ++n) {
-      if (number[n] < 0) continue;
-      mesh_.nodes[count] = mesh_.nodes[n];
-      number[n] = count++;
-    }
-    mesh_.nodes.resize(count);
-    for (Tetrahedron& tetrahedron : mesh_.tetrahedra) {
-      for (std::int32_t& n : tetrahedron) n = number[n];
-    }
   }
 
   // The volume of a surface that cuts itself is not known beforehand.
