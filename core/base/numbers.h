@@ -1,7 +1,10 @@
 #ifndef FASCICLE_CORE_BASE_NUMBERS_H_
 #define FASCICLE_CORE_BASE_NUMBERS_H_
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 // What formulas that are written once for one number and for many side by side (Lanes) do with their numbers. Here for
 // double; in lanes.h for Lanes. A branch is a Select, and both its sides are evaluated.
@@ -12,6 +15,31 @@ inline double Sqrt(double x) { return std::sqrt(x); }
 inline double Log(double x) { return std::log(x); }
 inline double Exp(double x) { return std::exp(x); }
 inline double Expm1(double x) { return std::expm1(x); }
+
+// x^(-1/3) from a y that is right to 10 %: with r = 1 - x y^3 the result is y (1 - r)^(-1/3), of whose series the first
+// terms are taken, twice.
+template <class T>
+T RefinedInverseCubeRoot(const T& x, const T& guess) {
+  const T r = 1 - x * guess * guess * guess;
+  const T square = r * r;
+  const T series = (1.0 / 3.0 + 2.0 / 9.0 * r) + square * ((14.0 / 81.0 + 35.0 / 243.0 * r) + 91.0 / 729.0 * square);
+  const T y = guess + guess * (r * series);
+  const T left = 1 - x * y * y * y;
+  return y + y * (left * (1.0 / 3.0 + 2.0 / 9.0 * left));
+}
+// x^(-1/3), not a number where x is not positive or below the normal numbers: step by step what Lanes do, so that both
+// give the same bits. An ulp of it is many where an exponential curve of the fibre's stretch follows.
+inline double InverseCubeRoot(double x) {
+  if (!(x >= std::numeric_limits<double>::min())) return std::nan("");
+  constexpr std::uint64_t kOne = 0x3ff0000000000000u, kRootHalf = 0x3fe6a09e667f3bcdu;  // 1 and sqrt(1/2)
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  const std::uint64_t exponent = (bits + (kOne - kRootHalf)) >> 52;
+  const double f = std::bit_cast<double>(bits - (exponent << 52) + kOne) - 1;
+  constexpr double kMagic = 1.5 * 0x1p32;
+  const double t = (static_cast<double>(exponent) - 1023 + f * 1.4) * (-1.0 / 3.0) + (kMagic - 0.04);
+  const std::uint64_t power = (std::bit_cast<std::uint64_t>(t) - std::bit_cast<std::uint64_t>(kMagic)) << 32;
+  return RefinedInverseCubeRoot(x, std::bit_cast<double>(power + kOne));
+}
 
 // f of each number by itself, for what has no formula without branches.
 template <class Function>

@@ -27,23 +27,27 @@ struct MatrixModuli {
 // What the terms need of one F. Where J <= 0 `log_J` and all that follows from it are not finite.
 template <class T>
 struct IsochoricKinematics {
-  explicit IsochoricKinematics(const Matrix3<T>& F)
-      : C(Transpose(F) * F), I1(Trace(C)), I2(0.5 * (I1 * I1 - SquaredNorm(C))) {
-    const Matrix3<T> cofactor = Cofactor(F);
+  explicit IsochoricKinematics(const Matrix3<T>& F) : C(Transpose(F) * F), I1(Trace(C)), cofactor(Cofactor(F)) {
+    I2 = C(0, 0) * C(1, 1) + C(1, 1) * C(2, 2) + C(2, 2) * C(0, 0) -
+         (C(0, 1) * C(0, 1) + C(1, 2) * C(1, 2) + C(2, 0) * C(2, 0));
     const T J = DeterminantOf(F, cofactor);
-    inverse_transpose = (1 / J) * cofactor;
+    inverse_J = 1 / J;
     log_J = Log(J);
-    scale = Exp(-2.0 / 3.0 * log_J);
+    const T inverse_length = InverseCubeRoot(J);
+    scale = inverse_length * inverse_length;
   }
 
+  // F^-T.
+  Matrix3<T> InverseTranspose() const { return inverse_J * cofactor; }
   // Isochoric fibre stretch.
   T FibreStretch(const Vector3<T>& a0) const { return Sqrt(scale * Dot(a0, C * a0)); }
 
   Matrix3<T> C;
   T I1, I2;
-  Matrix3<T> inverse_transpose;  // F^-T
-  T log_J;                       // ln J
-  T scale;                       // J^(-2/3)
+  Matrix3<T> cofactor;  // J F^-T
+  T inverse_J;          // 1/J
+  T log_J;              // ln J
+  T scale;              // J^(-2/3)
 };
 
 // The energy without the fibres' [J/m^3].
@@ -52,18 +56,25 @@ T MatrixEnergy(const MatrixModuli& m, const IsochoricKinematics<T>& k) {
   return m.c1 * (k.scale * k.I1 - 3) + m.c2 * (k.scale * k.scale * k.I2 - 3) + 0.5 * m.bulk * k.log_J * k.log_J;
 }
 
-// P = 2 J^(-2/3) F N + 2 c2 J^(-4/3) F (I1 I - C) + [K ln J - 2/3 J^(-2/3) C:N - 4/3 c2 J^(-4/3) I2] F^-T.
+// P = 2 J^(-2/3) F N + 2 c2 J^(-4/3) F (I1 I - C) + [K ln J - 2/3 J^(-2/3) C:N - 4/3 c2 J^(-4/3) I2] F^-T with
+// N = c1 I + W4 a0 a0^T.
 template <class T>
-Matrix3<T> NearlyIncompressibleStress(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const Matrix3<T>& N,
-                                      double c2, double bulk) {
+Matrix3<T> NearlyIncompressibleStress(const MatrixModuli& m, const Matrix3<T>& F, const IsochoricKinematics<T>& k,
+                                      const T& W4, const Vector3<T>& a0) {
   const T s1 = 2 * k.scale;
-  const T s2 = 2 * c2 * k.scale * k.scale;
-  const Matrix3<T> S = PlusDiagonal(s1 * N - s2 * k.C, s2 * k.I1);
-  const T pressure = bulk * k.log_J - (1.0 / 3.0) * (s1 * Contract(k.C, N) + 2 * s2 * k.I2);
-  return F * S + pressure * k.inverse_transpose;
+  const T s2 = 2 * m.c2 * k.scale * k.scale;
+  const Matrix3<T> S = PlusDiagonal(ScaledSquare(s1 * W4, a0) - s2 * k.C, s1 * m.c1 + s2 * k.I1);
+  const T contraction = m.c1 * k.I1 + W4 * Dot(a0, k.C * a0);  // C:N
+  const T pressure = m.bulk * k.log_J - (1.0 / 3.0) * (s1 * contraction + 2 * s2 * k.I2);
+  return F * S + (pressure * k.inverse_J) * k.cofactor;
+}
+// Without fibres.
+template <class T>
+Matrix3<T> NearlyIncompressibleStress(const MatrixModuli& m, const Matrix3<T>& F, const IsochoricKinematics<T>& k) {
+  return NearlyIncompressibleStress(m, F, k, T(0.0), {T(0.0), T(0.0), T(0.0)});
 }
 
-// Adds d/dF of the stress above with N held fixed; symmetric.
+// Adds d/dF of the stress above for any N, held fixed; symmetric.
 template <class T, class Terms>
 void AddNearlyIncompressibleTangent(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const Matrix3<T>& N,
                                     double c2, double bulk, Terms& terms) {
@@ -71,7 +82,7 @@ void AddNearlyIncompressibleTangent(const Matrix3<T>& F, const IsochoricKinemati
   const T s2 = 2 * c2 * k.scale * k.scale;
   const T contraction = Contract(k.C, N);
   const T pressure = bulk * k.log_J - (1.0 / 3.0) * (s1 * contraction + 2 * s2 * k.I2);
-  const Matrix3<T>& h = k.inverse_transpose;
+  const Matrix3<T> h = k.InverseTranspose();
 
   // Both isochoric terms are a power of J times a function g of C; the cross terms are dg x dJ + dJ x dg.
   const Matrix3<T> S2 = PlusDiagonal(-s2 * k.C, s2 * k.I1);
@@ -90,7 +101,7 @@ void AddNearlyIncompressibleTangent(const Matrix3<T>& F, const IsochoricKinemati
 template <class T>
 Matrix3<T> FibreStretchSquaredGradient(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const Vector3<T>& a0) {
   const Vector3<T> a = F * a0;
-  return (2 * k.scale) * (Outer(a, a0) - (1.0 / 3.0 * Dot(a, a)) * k.inverse_transpose);
+  return (2 * k.scale) * (Outer(a, a0) - (1.0 / 3.0 * Dot(a, a)) * k.InverseTranspose());
 }
 
 // Derivatives of the fibre energy F2 by lambda^2.

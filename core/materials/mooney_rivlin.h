@@ -30,7 +30,7 @@ class MooneyRivlin : public LawFunctions<MooneyRivlin> {
 
   template <class T>
   Matrix3<T> StressAt(const Matrix3<T>& F, const Fibre<T>&) const {
-    return NearlyIncompressibleStress(F, IsochoricKinematics<T>(F), Diagonal(T(moduli_.c1)), moduli_.c2, moduli_.bulk);
+    return NearlyIncompressibleStress(moduli_, F, IsochoricKinematics<T>(F));
   }
 
   template <class T, class Terms>

@@ -66,7 +66,7 @@ class Muscle : public LawFunctions<Muscle> {
     const IsochoricKinematics<T> k(F);
     const T stretch = k.FibreStretch(fibre.direction);
     const T W4 = Slope(stretch, fibre) / (2 * stretch);
-    return NearlyIncompressibleStress(F, k, FibreWeight(moduli_.c1, W4, fibre.direction), moduli_.c2, moduli_.bulk);
+    return NearlyIncompressibleStress(moduli_, F, k, W4, fibre.direction);
   }
 
   template <class T, class Terms>

@@ -44,7 +44,7 @@ class Tendon : public LawFunctions<Tendon> {
     const IsochoricKinematics<T> k(F);
     const T stretch = k.FibreStretch(fibre.direction);
     const T W4 = curve_.Value(stretch) / (2 * stretch * stretch);
-    return NearlyIncompressibleStress(F, k, FibreWeight(moduli_.c1, W4, fibre.direction), moduli_.c2, moduli_.bulk);
+    return NearlyIncompressibleStress(moduli_, F, k, W4, fibre.direction);
   }
 
   template <class T, class Terms>

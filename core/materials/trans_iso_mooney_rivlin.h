@@ -54,8 +54,7 @@ class TransIsoMooneyRivlin : public LawFunctions<TransIsoMooneyRivlin> {
     const IsochoricKinematics<T> k(F);
     const T stretch = k.FibreStretch(a0);
     const T W4 = curve_.Value(stretch) / (2 * stretch * stretch);
-    const Matrix3<T> passive =
-        NearlyIncompressibleStress(F, k, FibreWeight(moduli_.c1, W4, a0), moduli_.c2, moduli_.bulk);
+    const Matrix3<T> passive = NearlyIncompressibleStress(moduli_, F, k, W4, a0);
     return passive + (active_stress_ * fibre.activation) * Outer(F * a0, a0);
   }
 

@@ -1,6 +1,8 @@
 #ifndef FASCICLE_CORE_TET_KERNELS_IMPL_H_
 #define FASCICLE_CORE_TET_KERNELS_IMPL_H_
 
+#include <utility>
+
 #include "core/base/lanes.h"
 #include "core/geometry/quadratic_tetrahedron.h"
 #include "core/materials/material.h"
@@ -61,6 +63,7 @@ Vector3<L> LoadVector(const Vector& block, int lane) {
 // The functions of one law on a block of points.
 template <class S>
 struct LawKernels {
+  bool needs_fibres;
   void (*stress)(const void* law, const PointBlock<S>&, BlockMatrix<S>& P);
   void (*energy)(const void* law, const PointBlock<S>&, S* density);
   void (*product)(const void* law, const PointBlock<S>&, const BlockMatrix<S>& dF, BlockMatrix<S>& dP);
@@ -101,7 +104,7 @@ struct LawOnBlocks {
       for (int i = 0; i < TangentMatrix<L>::kEntries; ++i) terms[i].Store(&H[i][k]);
     }
   }
-  static constexpr LawKernels<S> kKernels = {&Stress, &Energy, &Product, &Tangent};
+  static constexpr LawKernels<S> kKernels = {Law::kNeedsFibres, &Stress, &Energy, &Product, &Tangent};
 };
 
 template <class L, class List>
@@ -111,38 +114,78 @@ struct LawList<L, std::variant<Laws...>> {
   static constexpr LawKernels<typename L::Scalar> kKernels[] = {LawOnBlocks<L, Laws>::kKernels...};
 };
 
-// Rows (x, y, z, w) of four numbers into vectors of x, y, z and w, and back.
+// Rows (x, y, z, w) of four numbers into vectors of x, y, z and w, and back. As many rows at once as a vector has lanes
+// (but four at least): what is stored here is loaded elsewhere as whole vectors, and a load that spans several stores
+// waits until they have left the processor.
 template <class L>
 struct Rows {
   using S = typename L::Scalar;
+  static constexpr int kWidth = L::kLanes < 4 ? 4 : L::kLanes;
+  static constexpr int kGroups = kWidth / 4;
   typedef S Row __attribute__((vector_size(4 * sizeof(S))));
+  typedef S Wide __attribute__((vector_size(kWidth * sizeof(S))));
 
-  static Row Load(const S* p) {
-    Row r;
+  template <class Vector>
+  static Vector Load(const S* p) {
+    Vector r;
     __builtin_memcpy(&r, p, sizeof r);
     return r;
   }
-  static void Store(Row r, S* p) { __builtin_memcpy(p, &r, sizeof r); }
+  template <class Vector>
+  static void Store(const Vector& r, S* p) {
+    __builtin_memcpy(p, &r, sizeof r);
+  }
 
-  static void Transpose(Row r[4]) {
-    if constexpr (sizeof(S) == 8) {
-      const Row a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6),
-                b = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
-      const Row c = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6),
-                d = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
-      r[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
-      r[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
-      r[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
-      r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+  // The rows of nodes first, first + 4, first + 8 and so on, side by side.
+  static Wide Join(const S* rows, const std::uint16_t* first) {
+    const auto row = [&](int group) { return Load<Row>(rows + 4 * std::size_t{first[4 * group]}); };
+    if constexpr (kGroups == 1) {
+      return row(0);
+    } else if constexpr (kGroups == 2) {
+      return __builtin_shufflevector(row(0), row(1), 0, 1, 2, 3, 4, 5, 6, 7);
     } else {
-      const Row a = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5),
-                b = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5);
-      const Row c = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7),
-                d = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
-      r[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
-      r[1] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
-      r[2] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
-      r[3] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
+      const auto low = __builtin_shufflevector(row(0), row(1), 0, 1, 2, 3, 4, 5, 6, 7);
+      const auto high = __builtin_shufflevector(row(2), row(3), 0, 1, 2, 3, 4, 5, 6, 7);
+      return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    }
+  }
+  template <int kGroup>
+  static Row Part(const Wide& r) {
+    if constexpr (kGroups == 1) {
+      return r;
+    } else {
+      return __builtin_shufflevector(r, r, 4 * kGroup, 4 * kGroup + 1, 4 * kGroup + 2, 4 * kGroup + 3);
+    }
+  }
+
+  // Numbers a, b, c, d of each group of four of x, 4 to 7 being those of y.
+  template <int a, int b, int c, int d, int... lane>
+  static Wide Mix(const Wide& x, const Wide& y, std::integer_sequence<int, lane...>) {
+    constexpr int kFrom[4] = {a, b, c, d};
+    return __builtin_shufflevector(x, y,
+                                   (lane - lane % 4 + kFrom[lane % 4] % 4 + (kFrom[lane % 4] < 4 ? 0 : kWidth))...);
+  }
+  template <int a, int b, int c, int d>
+  static Wide Mix(const Wide& x, const Wide& y) {
+    return Mix<a, b, c, d>(x, y, std::make_integer_sequence<int, kWidth>());
+  }
+
+  // Of each group of four.
+  static void Transpose(Wide r[4]) {
+    if constexpr (sizeof(S) == 8) {
+      const Wide a = Mix<0, 4, 2, 6>(r[0], r[1]), b = Mix<1, 5, 3, 7>(r[0], r[1]);
+      const Wide c = Mix<0, 4, 2, 6>(r[2], r[3]), d = Mix<1, 5, 3, 7>(r[2], r[3]);
+      r[0] = Mix<0, 1, 4, 5>(a, c);
+      r[1] = Mix<0, 1, 4, 5>(b, d);
+      r[2] = Mix<2, 3, 6, 7>(a, c);
+      r[3] = Mix<2, 3, 6, 7>(b, d);
+    } else {
+      const Wide a = Mix<0, 4, 1, 5>(r[0], r[1]), b = Mix<0, 4, 1, 5>(r[2], r[3]);
+      const Wide c = Mix<2, 6, 3, 7>(r[0], r[1]), d = Mix<2, 6, 3, 7>(r[2], r[3]);
+      r[0] = Mix<0, 1, 4, 5>(a, b);
+      r[1] = Mix<2, 3, 6, 7>(a, b);
+      r[2] = Mix<0, 1, 4, 5>(c, d);
+      r[3] = Mix<2, 3, 6, 7>(c, d);
     }
   }
 };
@@ -152,6 +195,7 @@ struct ChunkKernels {
   using S = typename L::Scalar;
   using R = Rows<L>;
   using Row = typename R::Row;
+  using Wide = typename R::Wide;
   static constexpr int kNodes = Shape::kNodes, kPoints = Shape::kPoints;
 
   // Rows of the nodes of a chunk.
@@ -168,10 +212,11 @@ struct ChunkKernels {
                        NodeRows& rows) {
     for (std::size_t i = 0; i < task.node_count; ++i) {
       const double* value = values + 3 * task.nodes[i];
-      S* row = rows.at + 4 * i;
-      for (int c = 0; c < 3; ++c) row[c] = static_cast<S>(value[c] - origin[c]);
       const bool has_patch = of_patch != nullptr && task.patch[i] != Sharing::kNone;
-      row[3] = has_patch ? static_cast<S>(of_patch[task.patch[i]]) : S(0);
+      const S fourth = has_patch ? static_cast<S>(of_patch[task.patch[i]]) : S(0);
+      const Row row = {static_cast<S>(value[0] - origin[0]), static_cast<S>(value[1] - origin[1]),
+                       static_cast<S>(value[2] - origin[2]), fourth};
+      R::Store(row, rows.at + 4 * i);
     }
   }
   // Positions of a chunk count from its first node: in float, they lose no digits to the distance from the origin.
@@ -186,10 +231,10 @@ struct ChunkKernels {
 
   static void Gather(const NodeRows& rows, const std::uint16_t* local, NodeValues& values) {
     for (int a = 0; a < kNodes; ++a) {
-      for (int k = 0; k < kBlock; k += 4) {
+      for (int k = 0; k < kBlock; k += R::kWidth) {
         const std::uint16_t* node = local + a * kBlock + k;
-        Row r[4] = {R::Load(rows.at + 4 * node[0]), R::Load(rows.at + 4 * node[1]), R::Load(rows.at + 4 * node[2]),
-                    R::Load(rows.at + 4 * node[3])};
+        Wide r[4] = {R::Join(rows.at, node), R::Join(rows.at, node + 1), R::Join(rows.at, node + 2),
+                     R::Join(rows.at, node + 3)};
         R::Transpose(r);
         for (int c = 0; c < 4; ++c) R::Store(r[c], &values.at[a][c][k]);
       }
@@ -197,18 +242,27 @@ struct ChunkKernels {
   }
   // Adds components 0 to 2, element by element and node by node whatever the number of lanes.
   static void Scatter(const NodeValues& values, const std::uint16_t* local, NodeRows& rows) {
-    for (int k = 0; k < kBlock; k += 4) {
-      Row r[kNodes][4];
+    for (int k = 0; k < kBlock; k += R::kWidth) {
+      Wide r[kNodes][4];
       for (int a = 0; a < kNodes; ++a) {
-        for (int c = 0; c < 3; ++c) r[a][c] = R::Load(&values.at[a][c][k]);
-        r[a][3] = Row{};
+        for (int c = 0; c < 3; ++c) r[a][c] = R::template Load<Wide>(&values.at[a][c][k]);
+        r[a][3] = Wide{};
         R::Transpose(r[a]);
       }
-      for (int lane = 0; lane < 4; ++lane) {
-        for (int a = 0; a < kNodes; ++a) {
-          S* row = rows.at + 4 * local[a * kBlock + k + lane];
-          R::Store(R::Load(row) + r[a][lane], row);
-        }
+      AddGroup<0>(r, local + k, rows);
+      if constexpr (R::kGroups > 1) AddGroup<1>(r, local + k + 4, rows);
+      if constexpr (R::kGroups > 2) {
+        AddGroup<2>(r, local + k + 8, rows);
+        AddGroup<3>(r, local + k + 12, rows);
+      }
+    }
+  }
+  template <int kGroup>
+  static void AddGroup(const Wide (&r)[kNodes][4], const std::uint16_t* local, NodeRows& rows) {
+    for (int lane = 0; lane < 4; ++lane) {
+      for (int a = 0; a < kNodes; ++a) {
+        S* row = rows.at + 4 * std::size_t{local[a * kBlock + lane]};
+        R::Store(R::template Load<Row>(row) + R::template Part<kGroup>(r[a][lane]), row);
       }
     }
   }
@@ -287,16 +341,28 @@ struct ChunkKernels {
       for (std::size_t at = 0; at < bytes; at += 64) __builtin_prefetch(static_cast<const char*>(begin) + at);
     };
     fetch(task.points + kPoints * b, kPoints * sizeof(RestPoint<S>));
-    fetch(task.fibres + b, sizeof(BlockFibres<S>));
+    if (HasFibres(task)) fetch(task.fibres + b, sizeof(BlockFibres<S>));
     fetch(task.local + b * kNodes * kBlock, kNodes * kBlock * sizeof(std::uint16_t));
   }
 
+  // Others are told nothing of them, which spares the way from memory.
+  static bool HasFibres(const ChunkTask<S>& task) {
+    return task.law != nullptr && LawList<L, Material>::kKernels[task.law_kind].needs_fibres;
+  }
   static void SetActivation(const ChunkTask<S>& task, const BlockFibres<S>& fibres, PointBlock<S>& point) {
     point.fibres = &fibres;
     point.inverse_step = task.inverse_step;
+    if (!HasFibres(task)) return;
+    std::int32_t different = 0;
+    for (int k = 0; k < kBlock; ++k) different |= fibres.activation[k] ^ fibres.activation[0];
+    const S first = static_cast<S>(task.activation[fibres.activation[0]]);
+    for (int k = 0; k < kBlock; ++k) {
+      point.activation[k] = first * fibres.activation_scale[k];
+      point.previous_stretch[k] = 1;
+    }
+    if (different == 0) return;
     for (int k = 0; k < kBlock; ++k) {
       point.activation[k] = static_cast<S>(task.activation[fibres.activation[k]]) * fibres.activation_scale[k];
-      point.previous_stretch[k] = 1;
     }
   }
   static bool HasRate(const ChunkTask<S>& task) { return task.inverse_step != 0 && task.law != nullptr; }
@@ -307,7 +373,7 @@ struct ChunkKernels {
     for (int k = 0; k < kBlock; k += L::kLanes) {
       const Matrix3<L> F = Gradient(previous, rest, q, k);
       const Vector3<L> a = F * LoadVector<L>(point.fibres->direction, k);
-      (Sqrt(Dot(a, a)) * Exp(-1.0 / 3.0 * Log(Determinant(F)))).Store(&point.previous_stretch[k]);
+      (Sqrt(Dot(a, a)) * InverseCubeRoot(Determinant(F))).Store(&point.previous_stretch[k]);
     }
   }
 
@@ -347,51 +413,70 @@ struct ChunkKernels {
     LaneSums power, energy, squares, not_finite;
     alignas(64) S smallest[kBlock];
     for (S& s : smallest) s = 1;
-    NodeValues positions, previous, rates, forces;
-    PointBlock<S> point;
-    BlockMatrix<S> P;
-    alignas(64) S density[kBlock];
+    // Of two blocks: the next one's F are made before the forces of this one are added up, which have to wait for its
+    // law.
+    NodeValues positions[2], previous[2], rates[2];
+    PointBlock<S> points[2][kPoints];
+    BlockMatrix<S> P[kPoints];
+    alignas(64) S density[kPoints][kBlock];
+    NodeValues forces;
     const std::size_t blocks = (task.elements + kBlock - 1) / kBlock;
     const LawKernels<S>& law = LawList<L, Material>::kKernels[task.law_kind];
-    for (std::size_t b = 0; b < blocks; ++b) {
-      Prefetch(task, b + 1);
-      const std::uint16_t* local = task.local + b * kNodes * kBlock;
-      Gather(x, local, positions);
-      if (needs_previous) Gather(before, local, previous);
-      if (viscous && task.v != nullptr) Gather(velocity, local, rates);
-      if (kNodes != 4) Clear(forces);
-      if (task.law != nullptr) SetActivation(task, task.fibres[b], point);
-      for (int q = 0; q < kPoints; ++q) {
-        const RestPoint<S>& rest = task.points[kPoints * b + q];
-        for (int k = 0; k < kBlock; k += L::kLanes) StoreMatrix(Gradient(positions, rest, q, k), k, point.F.m);
-        if (HasRate(task)) SetPreviousStretch(previous, rest, q, point);
-        if (task.law != nullptr) law.stress(task.law, point, P);
-        if (task.with_energy) law.energy(task.law, point, density);
-        for (int k = 0; k < kBlock; k += L::kLanes) {
-          const Matrix3<L> F = LoadMatrix<L>(point.F.m, k);
-          Matrix3<L> total = Diagonal(L(0.0));
-          if (task.law != nullptr) {
-            const Matrix3<L> cofactor = Cofactor(F);
-            const L J = DeterminantOf(F, cofactor);
-            const L least = L::Load(&smallest[k]);
-            Select(J < least, J, least).Store(&smallest[k]);
-            not_finite.Add(k, J * 0);
-            total = LoadMatrix<L>(P.m, k);
-            if (task.pressure != nullptr) total = total + FourthAt(positions, q, k) * cofactor;
+    for (std::size_t next = 0; next <= blocks; ++next) {
+      if (next < blocks) {
+        const int at = next % 2;
+        Prefetch(task, next + 1);
+        const std::uint16_t* local = task.local + next * kNodes * kBlock;
+        Gather(x, local, positions[at]);
+        if (needs_previous) Gather(before, local, previous[at]);
+        if (viscous && task.v != nullptr) Gather(velocity, local, rates[at]);
+        for (int q = 0; q < kPoints; ++q) {
+          PointBlock<S>& point = points[at][q];
+          const RestPoint<S>& rest = task.points[kPoints * next + q];
+          if (task.law != nullptr) SetActivation(task, task.fibres[next], point);
+          for (int k = 0; k < kBlock; k += L::kLanes) {
+            StoreMatrix(Gradient(positions[at], rest, q, k), k, point.F.m);
           }
-          const L volume = L::Load(&rest.volume[k]);
-          if (task.with_energy) energy.Add(k, volume * L::Load(&density[k]));
-          if (viscous) {
-            const Matrix3<L> E = StrainOf(task, F, task.v != nullptr ? rates : previous, rest, q, k);
-            const Matrix3<L> stress = ViscousStress(task, E);
-            total = total + F * stress;
-            power.Add(k, volume * Contract(stress, E));
-          }
-          AddForces(total, rest, q, k, forces);
+          if (HasRate(task)) SetPreviousStretch(previous[at], rest, q, point);
         }
       }
-      if (task.with_energy) AddSquares(forces, squares);
-      Scatter(forces, local, sums);
+      if (next > 0) {
+        const std::size_t b = next - 1;
+        const int at = b % 2;
+        if (kNodes != 4) Clear(forces);
+        for (int q = 0; q < kPoints; ++q) {
+          const RestPoint<S>& rest = task.points[kPoints * b + q];
+          for (int k = 0; k < kBlock; k += L::kLanes) {
+            const Matrix3<L> F = LoadMatrix<L>(points[at][q].F.m, k);
+            Matrix3<L> total = Diagonal(L(0.0));
+            if (task.law != nullptr) {
+              const Matrix3<L> cofactor = Cofactor(F);
+              const L J = DeterminantOf(F, cofactor);
+              const L least = L::Load(&smallest[k]);
+              Select(J < least, J, least).Store(&smallest[k]);
+              not_finite.Add(k, J * 0);
+              total = LoadMatrix<L>(P[q].m, k);
+              if (task.pressure != nullptr) total = total + FourthAt(positions[at], q, k) * cofactor;
+            }
+            const L volume = L::Load(&rest.volume[k]);
+            if (task.with_energy) energy.Add(k, volume * L::Load(&density[q][k]));
+            if (viscous) {
+              const Matrix3<L> E = StrainOf(task, F, task.v != nullptr ? rates[at] : previous[at], rest, q, k);
+              const Matrix3<L> stress = ViscousStress(task, E);
+              total = total + F * stress;
+              power.Add(k, volume * Contract(stress, E));
+            }
+            AddForces(total, rest, q, k, forces);
+          }
+        }
+        if (task.with_energy) AddSquares(forces, squares);
+        Scatter(forces, task.local + b * kNodes * kBlock, sums);
+      }
+      for (int q = 0; q < kPoints && next < blocks; ++q) {
+        const PointBlock<S>& point = points[next % 2][q];
+        if (task.law != nullptr) law.stress(task.law, point, P[q]);
+        if (task.with_energy) law.energy(task.law, point, density[q]);
+      }
     }
     ChunkReport report;
     report.finite = WriteVectors(task, sums);
@@ -685,15 +770,16 @@ struct ChunkKernels {
   }
 
   // `count` entries of each of `elements` elements, from side by side to one element after another.
+  using Four = Rows<Lanes<S, typename L::Tag, 4>>;
   static void Separate(const S (*entries)[kBlock], int count, int elements, double* out) {
     for (int first = 0; first < elements; first += 4) {
       int entry = 0;
       if constexpr (sizeof(S) == 8) {
         for (; first + 4 <= elements && entry + 4 <= count; entry += 4) {
           Row r[4];
-          for (int i = 0; i < 4; ++i) r[i] = R::Load(&entries[entry + i][first]);
-          R::Transpose(r);
-          for (int i = 0; i < 4; ++i) R::Store(r[i], reinterpret_cast<S*>(out) + count * (first + i) + entry);
+          for (int i = 0; i < 4; ++i) r[i] = Four::template Load<Row>(&entries[entry + i][first]);
+          Four::Transpose(r);
+          for (int i = 0; i < 4; ++i) Four::Store(r[i], reinterpret_cast<S*>(out) + count * (first + i) + entry);
         }
       }
       for (; entry < count; ++entry) {

@@ -68,6 +68,30 @@ TYPED_TEST(LanesTest, ExpAndExpm1ToTwoUlps) {
   EXPECT_LT(worst_expm1, 2);
 }
 
+TYPED_TEST(LanesTest, InverseCubeRootToTwoUlps) {
+  using S = TypeParam;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> exponent(std::log2(std::numeric_limits<S>::min()) + 1,
+                                                  std::log2(std::numeric_limits<S>::max()) - 1);
+  std::uniform_real_distribution<double> near(0.5, 2);
+  const auto root = [](S x) { return First<S>([](auto a) { return InverseCubeRoot(a); }, x); };
+  double worst = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const S x = static_cast<S>(i % 2 == 0 ? std::exp2(exponent(random)) : near(random));
+    worst = std::max(worst, Ulps(root(x), 1 / std::cbrt(static_cast<long double>(x))));
+    if constexpr (sizeof(S) == 8) {
+      ASSERT_EQ(root(x), InverseCubeRoot(x));
+    }
+  }
+  EXPECT_LT(worst, 2);
+  EXPECT_EQ(root(1), 1);
+  for (const double x : {0.0, -1.0, std::nan("")}) {
+    EXPECT_TRUE(std::isnan(root(static_cast<S>(x))));
+    EXPECT_TRUE(std::isnan(InverseCubeRoot(x)));
+  }
+  EXPECT_NEAR(InverseCubeRoot(8.0), 0.5, 1e-16);
+}
+
 TYPED_TEST(LanesTest, EndsOfTheRange) {
   using S = TypeParam;
   const auto log = [](S x) { return First<S>([](auto a) { return Log(a); }, x); };

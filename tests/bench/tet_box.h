@@ -24,9 +24,10 @@ inline constexpr double kActivation = 0.5;
 
 // A cube of 0.1 m with fibres askew, made ready for stepping.
 struct TetBox {
-  TetBox(int divisions, const Material& material, VolumeForm volume) : scene(MakeScene(divisions, material, volume)) {}
+  TetBox(int divisions, const Material& material, VolumeForm volume, Precision precision = Precision::kDouble)
+      : scene(MakeScene(divisions, material, volume, precision)) {}
 
-  static Scene MakeScene(int divisions, const Material& material, VolumeForm volume) {
+  static Scene MakeScene(int divisions, const Material& material, VolumeForm volume, Precision precision) {
     Body body;
     body.name = "box";
     body.mesh = MakeBox(Vec3::Zero(), Vec3::Constant(0.1), {divisions, divisions, divisions});
@@ -36,6 +37,7 @@ struct TetBox {
     Scene scene;
     scene.bodies.push_back(std::move(body));
     scene.method.volume = volume;
+    scene.method.precision = precision;
     scene.duration = 1;
     scene.output.frame_interval = 1;
     return scene;

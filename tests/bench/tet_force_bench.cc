@@ -75,7 +75,15 @@ void CompareWithEigen(const BoxSize& size) {
   CompareWithScalar(row, box, PlainMuscle<double>(kMuscle), 1e-10);
 }
 
-// The same with volumes averaged around nodes on both sides.
+// The same in single precision on both sides.
+void CompareFloatWithEigen(const BoxSize& size) {
+  const std::string row = std::string("tet_force_float_vs_eigen") + size.suffix;
+  if (!IsWanted(row)) return;
+  const TetBox box(size.divisions, Muscle(kMuscle), VolumeForm::kElement, Precision::kSingle);
+  CompareWithScalar(row, box, PlainMuscle<float>(kMuscle), 1e-4);
+}
+
+// As the first, with volumes averaged around nodes on both sides.
 void CompareNodalWithEigen(const BoxSize& size) {
   const std::string row = std::string("tet_force_nodal_vs_eigen") + size.suffix;
   if (!IsWanted(row)) return;
@@ -161,6 +169,7 @@ void CompareAll() {
   double threads = INFINITY;
   for (const BoxSize& size : kBoxSizes) {
     CompareWithEigen(size);
+    CompareFloatWithEigen(size);
     CompareNodalWithEigen(size);
     CompareLawsWithBullet(size);
     const double ratio = CompareThreads(size);

@@ -33,7 +33,7 @@ struct BulkCountedTwice : Muscle {
   BulkCountedTwice() : Muscle(kMuscle) {}
   Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
     const IsochoricKinematics k(ToNumbers(F));
-    return Muscle::Stress(F, fibre) + BulkModulus() * k.log_J * ToEigen(k.inverse_transpose);
+    return Muscle::Stress(F, fibre) + BulkModulus() * k.log_J * ToEigen(k.InverseTranspose());
   }
 };
 
@@ -57,7 +57,7 @@ struct TangentWithoutGeometricTerm : NeoHookean {
     const IsochoricKinematics k(ToNumbers(F));
     const double lambda = BulkModulus() - 2 * ShearModulus() / 3;
     Mat9 tangent = NeoHookean::Tangent(F, fibre);
-    AddTransposedProduct(lambda * k.log_J - ShearModulus(), ToEigen(k.inverse_transpose), tangent);
+    AddTransposedProduct(lambda * k.log_J - ShearModulus(), ToEigen(k.InverseTranspose()), tangent);
     return tangent;
   }
 };
