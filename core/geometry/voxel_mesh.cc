@@ -9,8 +9,8 @@ namespace {
 
 // Voxels of a slab at least, and slabs at most: enough of them for some threads, few enough that the planes which two
 // slabs touch are not many.
-constexpr std::int32_t kSlabVoxels = 4096;
-constexpr std::int32_t kMostSlabs = 64;
+constexpr std::int32_t kSlabVoxels = 16384;
+constexpr std::int32_t kMostSlabs = 32;
 
 // The run that holds i, among runs [begin, end) of one row; null if none.
 template <class Run>
@@ -145,10 +145,14 @@ std::array<std::int32_t, 2> VoxelMesh::NodeRunsOfPlane(std::int32_t k) const {
   return {node_row_begin_[row], node_row_begin_[row + size_[1] + 1]};
 }
 
-std::int32_t VoxelMesh::VoxelAt(const GridIndex& at) const {
-  if (at[1] < 0 || at[2] < 0 || at[1] >= size_[1] || at[2] >= size_[2]) return -1;
+const VoxelRun* VoxelMesh::RunAt(const GridIndex& at) const {
+  if (at[1] < 0 || at[2] < 0 || at[1] >= size_[1] || at[2] >= size_[2]) return nullptr;
   const std::size_t row = at[1] + static_cast<std::size_t>(size_[1]) * at[2];
-  const VoxelRun* const run = FindRun(runs_, row_begin_[row], row_begin_[row + 1], at[0]);
+  return FindRun(runs_, row_begin_[row], row_begin_[row + 1], at[0]);
+}
+
+std::int32_t VoxelMesh::VoxelAt(const GridIndex& at) const {
+  const VoxelRun* const run = RunAt(at);
   return run == nullptr ? -1 : run->first_voxel + at[0] - run->i;
 }
 

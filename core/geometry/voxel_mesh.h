@@ -58,6 +58,8 @@ class VoxelMesh {
   // Node runs of plane k, 0 <= k <= size()[2]: [begin, end).
   std::array<std::int32_t, 2> NodeRunsOfPlane(std::int32_t k) const;
 
+  // Null where there is none, also outside of the box. O(log(runs in a row)).
+  const VoxelRun* RunAt(const GridIndex& at) const;
   // -1 where there is none, also outside of the box. O(log(runs in a row)).
   std::int32_t VoxelAt(const GridIndex& at) const;
   std::int32_t NodeAt(const GridIndex& at) const;

@@ -50,16 +50,16 @@ struct TransferRun {
 struct TransferTask {
   const TransferRun* runs;
   std::int32_t run_count;
-  float* fine[3];
-  float* coarse[3];
+  const float* from[3];
+  float* to[3];
 };
 
 struct VoxelKernels {
   void (*product)(const ProductTask<double>&);
   void (*product_float)(const ProductTask<float>&);
   void (*packed)(const PackedTask&);
-  void (*prolongate)(const TransferTask&);  // fine += P coarse
-  void (*restrict_)(const TransferTask&);   // coarse += P^T fine
+  void (*interpolate)(const TransferTask&);             // to += P from, from coarse to fine
+  void (*interpolate_transposed)(const TransferTask&);  // to += P^T from, from fine to coarse
 };
 
 // The set must be available.

@@ -63,6 +63,7 @@ struct FaceModes {
 template <class L>
 struct RunProduct {
   using S = typename L::Scalar;
+  static constexpr int kAhead = 1024 / sizeof(S);  // nodes
 
   [[gnu::always_inline]] static void LoadFace(const ProductTask<S>& task, const VoxelRun& run, std::int32_t at,
                                               FaceModes<L>& face) {
@@ -107,6 +108,8 @@ struct RunProduct {
       for (int m = 0; m < 4; ++m) carried.m[d][m] = L(0.0);
     }
     for (std::int32_t at = 0; at < nodes; at += L::kLanes) {
+      // Rows are too short for the processor to see where they lead.
+      for (int d = 0; d < 3; ++d) __builtin_prefetch(task.x[d] + run.node[3] + at + kAhead);
       FaceModes<L> next;
       LoadFace(task, run, at + L::kLanes, next);
       L u[3][8], f[3][8];
@@ -191,14 +194,14 @@ template <class Set>
 struct Transfer {
   static constexpr int kPiece = 256;  // coarse nodes at a time
 
-  [[gnu::flatten]] static void Prolongate(const TransferTask& task) {
+  [[gnu::flatten]] static void Interpolate(const TransferTask& task) {
     for (std::int32_t r = 0; r < task.run_count; ++r) {
-      for (int d = 0; d < 3; ++d) ProlongateRun(task.runs[r], task.coarse[d], task.fine[d]);
+      for (int d = 0; d < 3; ++d) InterpolateRun(task.runs[r], task.from[d], task.to[d]);
     }
   }
-  [[gnu::flatten]] static void Restrict(const TransferTask& task) {
+  [[gnu::flatten]] static void Transpose(const TransferTask& task) {
     for (std::int32_t r = 0; r < task.run_count; ++r) {
-      for (int d = 0; d < 3; ++d) RestrictRun(task.runs[r], task.fine[d], task.coarse[d]);
+      for (int d = 0; d < 3; ++d) TransposeRun(task.runs[r], task.from[d], task.to[d]);
     }
   }
 
@@ -210,7 +213,7 @@ struct Transfer {
     return left < 2 * kPiece ? left : 2 * kPiece;
   }
 
-  static void ProlongateRun(const TransferRun& run, const float* coarse, float* fine) {
+  static void InterpolateRun(const TransferRun& run, const float* coarse, float* fine) {
     const float weight = WeightOf(run);
     for (std::int32_t piece = 0; 2 * piece < run.odd + run.length; piece += kPiece) {
       const std::int32_t fine_count = FineCount(run, piece);
@@ -231,7 +234,7 @@ struct Transfer {
     }
   }
 
-  static void RestrictRun(const TransferRun& run, const float* fine, float* coarse) {
+  static void TransposeRun(const TransferRun& run, const float* fine, float* coarse) {
     const float weight = WeightOf(run), half = 0.5f * weight;
     for (std::int32_t piece = 0; 2 * piece < run.odd + run.length; piece += kPiece) {
       const std::int32_t fine_count = FineCount(run, piece);
@@ -255,7 +258,7 @@ struct Transfer {
 template <class Set>
 constexpr VoxelKernels VoxelKernelsOf() {
   return {RunProduct<Lanes<double, Set>>::Add, RunProduct<Lanes<float, Set>>::Add, PackedProduct<Set>::Add,
-          Transfer<Set>::Prolongate, Transfer<Set>::Restrict};
+          Transfer<Set>::Interpolate, Transfer<Set>::Transpose};
 }
 
 }  // namespace fascicle

@@ -18,8 +18,8 @@ class VoxelField {
   static constexpr std::int32_t kPadding = 32;
 
   VoxelField() = default;
-  explicit VoxelField(std::int32_t nodes)
-      : nodes_(nodes), stride_((static_cast<std::size_t>(nodes) + kPadding + 15) / 16 * 16), values_(3 * stride_, S{0}) {}
+  explicit VoxelField(std::int32_t nodes) : nodes_(nodes), stride_(StrideOf(nodes)), values_(3 * stride_, S{0}) {}
+  static std::size_t StrideOf(std::int32_t nodes) { return (static_cast<std::size_t>(nodes) + kPadding + 15) / 16 * 16; }
 
   std::int32_t nodes() const { return nodes_; }
   // Numbers from one component to the next.

@@ -5,17 +5,30 @@
 #include "core/base/check.h"
 
 namespace fascicle {
+namespace {
 
-VoxelStiffness::VoxelStiffness(const VoxelMesh& m, const std::vector<VoxelMaterial>& materials, Dilatation dilatation,
-                               const std::vector<float>& scale_of_voxels)
-    : mesh(&m), moduli(1, BrickModuli<double>{0, 0, 0}), scale(scale_of_voxels) {
-  FASCICLE_CHECK(scale.empty() || scale.size() == static_cast<std::size_t>(m.voxels()), "a factor for each voxel");
+std::vector<BrickModuli<double>> ModuliOfAll(const std::vector<VoxelMaterial>& materials, Dilatation dilatation) {
+  std::vector<BrickModuli<double>> moduli(1, BrickModuli<double>{0, 0, 0});
   for (const VoxelMaterial& material : materials) moduli.push_back(ModuliOf(material, dilatation));
+  return moduli;
+}
+
+}  // namespace
+
+VoxelStiffness::VoxelStiffness(const VoxelMesh& m, std::vector<BrickModuli<double>> moduli_of_materials)
+    : mesh(&m), moduli(std::move(moduli_of_materials)), scale(m.voxels(), 1.0f) {
   for (const VoxelRun& run : m.runs()) {
     FASCICLE_CHECK(run.material < static_cast<std::int32_t>(moduli.size()), "a voxel of no material");
   }
-  scale.resize(m.voxels(), 1.0f);
   scale.resize(m.voxels() + VoxelField<float>::kPadding, 0.0f);
+}
+
+VoxelStiffness::VoxelStiffness(const VoxelMesh& m, const std::vector<VoxelMaterial>& materials, Dilatation dilatation,
+                               const std::vector<float>& scale_of_voxels)
+    : VoxelStiffness(m, ModuliOfAll(materials, dilatation)) {
+  if (scale_of_voxels.empty()) return;
+  FASCICLE_CHECK(scale_of_voxels.size() == static_cast<std::size_t>(m.voxels()), "a factor for each voxel");
+  std::copy(scale_of_voxels.begin(), scale_of_voxels.end(), scale.begin());
 }
 
 std::vector<float> StiffnessOfVoxels(const VoxelGrid& grid) {
@@ -39,43 +52,34 @@ template <class S>
 void VoxelOperator<S>::Apply(const VoxelField<S>& x, ThreadTeam& team, VoxelField<S>& y) const {
   const VoxelMesh& mesh = *stiffness_->mesh;
   FASCICLE_CHECK(x.nodes() == mesh.nodes() && y.nodes() == mesh.nodes() && x.data() != y.data(), "fields of this mesh");
-  ForSlabs(mesh, team, [&](std::size_t s) {
-    ClearSlab(mesh, s, y);
-    const VoxelSlab& slab = mesh.slabs()[s];
-    ProductTask<S> task;
-    task.runs = mesh.runs().data() + slab.first_run;
-    task.run_count = slab.end_run - slab.first_run;
-    task.scale = stiffness_->scale.data();
-    task.moduli = moduli_.data();
-    task.shape = &shape_;
-    for (int d = 0; d < 3; ++d) {
-      task.x[d] = x.component(d);
-      task.y[d] = y.component(d);
-    }
-    task.end_node = slab.end_node;
-    if constexpr (std::is_same_v<S, double>) {
-      kernels_->product(task);
-    } else {
-      kernels_->product_float(task);
-    }
-  });
+  ForSlabs(mesh, team, [&](std::size_t s) { ApplySlab(s, x, y); });
 }
 
 template <class S>
-void ClearSlab(const VoxelMesh& mesh, std::size_t s, VoxelField<S>& y) {
+void VoxelOperator<S>::ApplySlab(std::size_t s, const VoxelField<S>& x, VoxelField<S>& y) const {
+  const VoxelMesh& mesh = *stiffness_->mesh;
+  ClearSlab(mesh, s, y);
   const VoxelSlab& slab = mesh.slabs()[s];
-  const std::int32_t begin = s % 2 == 0 ? slab.first_node : slab.first_inner;
-  const std::int32_t end = s % 2 == 0 ? slab.end_node : slab.end_inner;
+  ProductTask<S> task;
+  task.runs = mesh.runs().data() + slab.first_run;
+  task.run_count = slab.end_run - slab.first_run;
+  task.scale = stiffness_->scale.data();
+  task.moduli = moduli_.data();
+  task.shape = &shape_;
   for (int d = 0; d < 3; ++d) {
-    // (A slab of one layer has no inner nodes.)
-    if (begin < end) std::fill(y.component(d) + begin, y.component(d) + end, S{0});
+    task.x[d] = x.component(d);
+    task.y[d] = y.component(d);
+  }
+  task.end_node = slab.end_node;
+  if constexpr (std::is_same_v<S, double>) {
+    kernels_->product(task);
+  } else {
+    kernels_->product_float(task);
   }
 }
 
 template class VoxelOperator<double>;
 template class VoxelOperator<float>;
-template void ClearSlab(const VoxelMesh&, std::size_t, VoxelField<double>&);
-template void ClearSlab(const VoxelMesh&, std::size_t, VoxelField<float>&);
 
 VoxelField<float> DiagonalOf(const VoxelStiffness& stiffness) {
   const VoxelMesh& mesh = *stiffness.mesh;

@@ -7,6 +7,7 @@
 #include "core/geometry/voxel_mesh.h"
 #include "core/voxel/brick.h"
 #include "core/voxel/kernels.h"
+#include "core/voxel/slabs.h"
 #include "core/voxel/voxel_field.h"
 
 namespace fascicle {
@@ -17,6 +18,9 @@ struct VoxelStiffness {
   // everywhere.
   VoxelStiffness(const VoxelMesh& mesh, const std::vector<VoxelMaterial>& materials, Dilatation dilatation,
                  const std::vector<float>& scale_of_voxels = {});
+
+  // Moduli by number of the material; factors of 1.
+  VoxelStiffness(const VoxelMesh& mesh, std::vector<BrickModuli<double>> moduli);
 
   const VoxelMesh* mesh;
   std::vector<BrickModuli<double>> moduli;  // by number of the material; that of 0 is not used
@@ -36,6 +40,8 @@ class VoxelOperator {
 
   // x, y: of the mesh's nodes, not the same one; y is overwritten [N, for x in m].
   void Apply(const VoxelField<S>& x, ThreadTeam& team, VoxelField<S>& y) const;
+  // Its part of one slab, for loops over slabs that do more (ForSlabs).
+  void ApplySlab(std::size_t slab, const VoxelField<S>& x, VoxelField<S>& y) const;
 
  private:
   const VoxelStiffness* stiffness_;
@@ -43,21 +49,6 @@ class VoxelOperator {
   std::vector<BrickModuli<S>> moduli_;
   BrickShape<S> shape_;
 };
-
-// Calls body(slab) for the even slabs of a mesh, then for the odd ones, in parallel.
-template <class Body>
-void ForSlabs(const VoxelMesh& mesh, ThreadTeam& team, const Body& body) {
-  const std::size_t slabs = mesh.slabs().size();
-  for (std::size_t parity = 0; parity < 2; ++parity) {
-    team.For((slabs + 1 - parity) / 2, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t s = begin; s < end; ++s) body(2 * s + parity);
-    });
-  }
-}
-
-// Zeros where slab s is the first to add to y, when slabs come as in ForSlabs.
-template <class S>
-void ClearSlab(const VoxelMesh& mesh, std::size_t s, VoxelField<S>& y);
 
 // The diagonal of K without bricks that have their own matrices, for every node [N/m].
 VoxelField<float> DiagonalOf(const VoxelStiffness& stiffness);
