@@ -14,7 +14,7 @@ using GridIndex = std::array<std::int32_t, 3>;
 
 // A box of voxels, some of them solid. Plain data.
 struct VoxelGrid {
-  GridIndex size = {0, 0, 0};  // voxels along i, j, k
+  GridIndex size = {0, 0, 0};   // voxels along i, j, k
   Vec3 spacing = Vec3::Ones();  // of a voxel [m]
   // Corner (i, j, k) is at origin + direction * (spacing times (i, j, k)) [m]. (Images give the centre of the first
   // voxel, half a voxel further.)
@@ -27,7 +27,8 @@ struct VoxelGrid {
 
   std::size_t voxels() const { return static_cast<std::size_t>(size[0]) * size[1] * size[2]; }
   std::size_t IndexOf(const GridIndex& at) const {
-    return static_cast<std::size_t>(at[0]) + static_cast<std::size_t>(size[0]) * (at[1] + static_cast<std::size_t>(size[1]) * at[2]);
+    return static_cast<std::size_t>(at[0]) +
+           static_cast<std::size_t>(size[0]) * (at[1] + static_cast<std::size_t>(size[1]) * at[2]);
   }
   bool Contains(const GridIndex& at) const {
     return at[0] >= 0 && at[1] >= 0 && at[2] >= 0 && at[0] < size[0] && at[1] < size[1] && at[2] < size[2];

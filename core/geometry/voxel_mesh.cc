@@ -15,8 +15,8 @@ constexpr std::int32_t kMostSlabs = 32;
 // The run that holds i, among runs [begin, end) of one row; null if none.
 template <class Run>
 const Run* FindRun(const std::vector<Run>& runs, std::int32_t begin, std::int32_t end, std::int32_t i) {
-  const auto after =
-      std::upper_bound(runs.begin() + begin, runs.begin() + end, i, [](std::int32_t at, const Run& r) { return at < r.i; });
+  const auto after = std::upper_bound(runs.begin() + begin, runs.begin() + end, i,
+                                      [](std::int32_t at, const Run& r) { return at < r.i; });
   if (after == runs.begin() + begin) return nullptr;
   const Run& run = *(after - 1);
   return i < run.i + run.length ? &run : nullptr;

@@ -112,7 +112,8 @@ VoxelMesh VoxelMesh::Coarser(const VoxelMesh& fine, const MaterialOf& material_o
   for (std::int32_t k = 0; k < mesh.size_[2]; ++k) {
     for (std::int32_t j = 0; j < mesh.size_[1]; ++j) {
       for (const Interval& interval : fine.CoarseIntervals(j, k)) {
-        for (std::int32_t i = interval.first; i < interval.end; ++i) mesh.AddRun({i, j, k}, 1, material_of(GridIndex{i, j, k}));
+        for (std::int32_t i = interval.first; i < interval.end; ++i)
+          mesh.AddRun({i, j, k}, 1, material_of(GridIndex{i, j, k}));
       }
     }
   }

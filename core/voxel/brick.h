@@ -7,7 +7,8 @@
 #include "core/voxel/brick_modes.h"
 
 // The element of the method: a brick of eight nodes, isotropic linear elasticity, integrated by 2x2x2 Gauss points.
-// Corner c is at ((c & 1), (c >> 1 & 1), (c >> 2)) times the spacing; unknown 3 c + d is component d of its displacement.
+// Corner c is at ((c & 1), (c >> 1 & 1), (c >> 2)) times the spacing; unknown 3 c + d is component d of its
+// displacement.
 namespace fascicle {
 
 using BrickMatrix = Eigen::Matrix<double, 24, 24>;

@@ -3,10 +3,10 @@
 
 // The stiffness of a brick of eight nodes in even and odd modes.
 //
-// Trilinear displacements of a brick are sums of the eight products of 1, xi, eta, zeta (coordinates from -1 to 1). Sums
-// and differences of the corners' values (a Hadamard transform of length eight) are the coefficients, times eight. The
-// products are orthogonal over the brick, so that with isotropic stiffness most of them don't know of each other: of
-// 24 x 24 entries 45 are left. Two Gauss points along each edge integrate all of them exactly:
+// Trilinear displacements of a brick are sums of the eight products of 1, xi, eta, zeta (coordinates from -1 to 1).
+// Sums and differences of the corners' values (a Hadamard transform of length eight) are the coefficients, times eight.
+// The products are orthogonal over the brick, so that with isotropic stiffness most of them don't know of each other:
+// of 24 x 24 entries 45 are left. Two Gauss points along each edge integrate all of them exactly:
 //   mean of xi^2 = 1/3, of xi^2 eta^2 = 1/9.
 namespace fascicle {
 
@@ -21,8 +21,8 @@ struct BrickModuli {
   T mu;          // [Pa]
 };
 
-// What the spacing h [m] does: constant gradients a_d = sqrt(V)/(4 h_d), those that vary in one direction b = a/sqrt(3),
-// in two q = a/3 [m^(1/2)].
+// What the spacing h [m] does: constant gradients a_d = sqrt(V)/(4 h_d), those that vary in one direction b =
+// a/sqrt(3), in two q = a/3 [m^(1/2)].
 template <class S>
 struct BrickShape {
   S a[3], b[3], q[3];

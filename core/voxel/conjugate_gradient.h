@@ -14,9 +14,9 @@ struct VoxelCgResult {
   double residual = 0;  // |r| over |r| at the start [1]
 };
 
-// Solves K x = b for the components that are free by conjugate gradients [Shewchuk 1994, B3], preconditioned by a cycle of
-// `multigrid`. Prescribed components keep the value they have in x: b and x are those of the whole mesh. Ends when |r| is
-// at most `tolerance` times |r| at the start. The same bits for any number of threads.
+// Solves K x = b for the components that are free by conjugate gradients [Shewchuk 1994, B3], preconditioned by a cycle
+// of `multigrid`. Prescribed components keep the value they have in x: b and x are those of the whole mesh. Ends when
+// |r| is at most `tolerance` times |r| at the start. The same bits for any number of threads.
 //   fixed_numbers  numbers in the fields that are prescribed
 inline VoxelCgResult SolveVoxels(ThreadTeam& team, const VoxelOperator<double>& K, VoxelMultigrid& multigrid,
                                  const std::vector<std::size_t>& fixed_numbers, const VoxelField<double>& b,
@@ -42,7 +42,8 @@ inline VoxelCgResult SolveVoxels(ThreadTeam& team, const VoxelOperator<double>& 
     rz = size * Dot(team, r, multigrid.result());
     const double beta = result.iterations == 0 ? 0 : rz / rz_before;
     const double of_z = size;
-    ForNumbers(team, p.size(), [&](std::size_t k) { p.data()[k] = of_z * static_cast<double>(z[k]) + beta * p.data()[k]; });
+    ForNumbers(team, p.size(),
+               [&](std::size_t k) { p.data()[k] = of_z * static_cast<double>(z[k]) + beta * p.data()[k]; });
     K.Apply(p, team, q);
     clear_fixed(q);
     const double alpha = rz / Dot(team, p, q);

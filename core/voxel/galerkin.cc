@@ -124,25 +124,26 @@ void LevelStiffness::FindOwn(const LevelStiffness& fine, const FixedComponents& 
     slab_begin_[s] = static_cast<std::int32_t>(blocks_.size());
     int lane = kBrickBlock;  // a block is of one slab
     for (std::int32_t r = slab.first_run; r < slab.end_run; ++r) {
-      ForVoxelsOfRun(mesh_->runs()[r], [&](std::int32_t voxel, const GridIndex& at, const std::array<std::int32_t, 8>& nodes) {
-        const Children children = ChildrenOf(*fine.mesh_, at);
-        if (AreAlike(children, fine.stiffness_.scale, fixed)) {
-          stiffness_.scale[voxel] = fine.stiffness_.scale[children[0].voxel];
-          return;
-        }
-        stiffness_.scale[voxel] = 0;
-        if (lane == kBrickBlock) {
-          blocks_.emplace_back();
-          lane = 0;
-        }
-        PackedBricks& block = blocks_.back();
-        for (int k = lane; k < kBrickBlock; ++k) {
-          for (int row = 0; row < 4; ++row) block.node[row][k] = nodes[2 * row];
-        }
-        own_[voxel] = kBrickBlock * static_cast<std::int32_t>(blocks_.size() - 1) + lane++;
-        block.bricks = lane;
-        ++own_count_;
-      });
+      ForVoxelsOfRun(mesh_->runs()[r],
+                     [&](std::int32_t voxel, const GridIndex& at, const std::array<std::int32_t, 8>& nodes) {
+                       const Children children = ChildrenOf(*fine.mesh_, at);
+                       if (AreAlike(children, fine.stiffness_.scale, fixed)) {
+                         stiffness_.scale[voxel] = fine.stiffness_.scale[children[0].voxel];
+                         return;
+                       }
+                       stiffness_.scale[voxel] = 0;
+                       if (lane == kBrickBlock) {
+                         blocks_.emplace_back();
+                         lane = 0;
+                       }
+                       PackedBricks& block = blocks_.back();
+                       for (int k = lane; k < kBrickBlock; ++k) {
+                         for (int row = 0; row < 4; ++row) block.node[row][k] = nodes[2 * row];
+                       }
+                       own_[voxel] = kBrickBlock * static_cast<std::int32_t>(blocks_.size() - 1) + lane++;
+                       block.bricks = lane;
+                       ++own_count_;
+                     });
     }
   }
   slab_begin_.back() = static_cast<std::int32_t>(blocks_.size());
@@ -172,17 +173,18 @@ void LevelStiffness::FillOwn(const LevelStiffness& fine, const FixedComponents& 
   };
   team.For(mesh_->runs().size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
-      ForVoxelsOfRun(mesh_->runs()[r], [&](std::int32_t voxel, const GridIndex& at, const std::array<std::int32_t, 8>&) {
-        if (own_[voxel] < 0) return;
-        const BrickMatrix K = matrix_of(at);
-        PackedBricks& block = blocks_[own_[voxel] / kBrickBlock];
-        const int lane = own_[voxel] % kBrickBlock;
-        for (int row = 0, entry = 0; row < 24; ++row) {
-          for (int column = 0; column <= row; ++column, ++entry) {
-            block.entries[entry][lane] = static_cast<float>(K(row, column));
-          }
-        }
-      });
+      ForVoxelsOfRun(mesh_->runs()[r],
+                     [&](std::int32_t voxel, const GridIndex& at, const std::array<std::int32_t, 8>&) {
+                       if (own_[voxel] < 0) return;
+                       const BrickMatrix K = matrix_of(at);
+                       PackedBricks& block = blocks_[own_[voxel] / kBrickBlock];
+                       const int lane = own_[voxel] % kBrickBlock;
+                       for (int row = 0, entry = 0; row < 24; ++row) {
+                         for (int column = 0; column <= row; ++column, ++entry) {
+                           block.entries[entry][lane] = static_cast<float>(K(row, column));
+                         }
+                       }
+                     });
     }
   });
 }

@@ -48,7 +48,7 @@ class LevelStiffness {
   std::vector<BrickMatrix> of_material_;
   const VoxelKernels* kernels_ = &VoxelKernelsFor(PreferredInstructionSet());
   std::size_t own_count_ = 0;
-  std::vector<std::int32_t> own_;         // of each voxel: kBrickBlock * block + lane, or -1; empty: none
+  std::vector<std::int32_t> own_;  // of each voxel: kBrickBlock * block + lane, or -1; empty: none
   std::vector<PackedBricks> blocks_;
   std::vector<std::int32_t> slab_begin_;  // first block of each slab, and the end
 };

@@ -5,8 +5,8 @@
 #include "core/geometry/voxel_mesh.h"
 #include "core/voxel/brick_modes.h"
 
-// The loops over voxels, compiled for each instruction set. Plain numbers and pointers: whatever is compiled for one set
-// must not be of use to code for another.
+// The loops over voxels, compiled for each instruction set. Plain numbers and pointers: whatever is compiled for one
+// set must not be of use to code for another.
 namespace fascicle {
 
 // Bricks with matrices of their own come in blocks, entry by entry: 300 entries (row >= column) of that many bricks.
@@ -23,12 +23,12 @@ template <class S>
 struct ProductTask {
   const VoxelRun* runs;
   std::int32_t run_count;
-  const float* scale;                 // of each voxel, kPadding beyond the last
-  const BrickModuli<S>* moduli;       // of each material, from 1
+  const float* scale;            // of each voxel, kPadding beyond the last
+  const BrickModuli<S>* moduli;  // of each material, from 1
   const BrickShape<S>* shape;
-  const S* x[3];                      // readable kPadding beyond the last node
+  const S* x[3];  // readable kPadding beyond the last node
   S* y[3];
-  std::int32_t end_node;              // zeros may be added to y before that
+  std::int32_t end_node;  // zeros may be added to y before that
 };
 
 struct PackedTask {
@@ -40,7 +40,7 @@ struct PackedTask {
 
 // Nodes of one row, and the rows of twice the spacing that they are interpolated from.
 struct TransferRun {
-  std::int32_t first;      // fine node
+  std::int32_t first;  // fine node
   std::int32_t length;
   std::int32_t odd;        // 1 where the first node is between two coarse ones
   std::int32_t rows;       // 1, 2 or 4

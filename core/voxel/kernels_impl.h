@@ -11,8 +11,9 @@
 // Nothing of Eigen or the standard library is called.
 //
 // Lanes are voxels one behind the other along i, so that corners are read as they stand in memory. Sums and differences
-// across a face of corners (eta, zeta) are made once and serve the voxels on both of its sides; then one lane further is
-// the other side. On the way back the two sides of a face are joined first, in the same order for any number of lanes.
+// across a face of corners (eta, zeta) are made once and serve the voxels on both of its sides; then one lane further
+// is the other side. On the way back the two sides of a face are joined first, in the same order for any number of
+// lanes.
 namespace fascicle {
 
 // Lanes 1, 2, ... of `a`, then the first of `b`.

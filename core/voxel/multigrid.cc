@@ -34,6 +34,7 @@ struct VoxelMultigrid::Level {
     }
     for (const std::size_t k : fixed_numbers) inverse_diagonal.data()[k] = 0;
     for (VoxelField<float>* field : {&r, &x, &d, &q}) *field = VoxelField<float>(mesh->nodes());
+    if (mesh == &own_mesh) first_result = VoxelField<float>(mesh->nodes());
     FindLargestEigenvalue(team);
   }
 
@@ -41,14 +42,16 @@ struct VoxelMultigrid::Level {
   void FindLargestEigenvalue(ThreadTeam& team) {
     for (int c = 0; c < 3; ++c) {
       for (std::int32_t n = 0; n < mesh->nodes(); ++n) {
-        d(n, c) = inverse_diagonal(n, c) > 0 ? static_cast<float>(HashedUnit(3 * static_cast<std::uint64_t>(n) + c)) : 0;
+        d(n, c) =
+            inverse_diagonal(n, c) > 0 ? static_cast<float>(HashedUnit(3 * static_cast<std::uint64_t>(n) + c)) : 0;
       }
     }
     double length = std::sqrt(Dot(team, d, d));
     for (int i = 0; i < kPowerIterations && length > 0; ++i) {
       K.Apply(d, team, q);
       const auto scale = static_cast<float>(1 / length);
-      ForNumbers(team, d.size(), [this, scale](std::size_t k) { d.data()[k] = inverse_diagonal.data()[k] * q.data()[k] * scale; });
+      ForNumbers(team, d.size(),
+                 [this, scale](std::size_t k) { d.data()[k] = inverse_diagonal.data()[k] * q.data()[k] * scale; });
       length = std::sqrt(Dot(team, d, d));
     }
     largest_eigenvalue = static_cast<float>(kEigenvalueMargin * length);
@@ -105,7 +108,8 @@ struct VoxelMultigrid::Level {
   std::unique_ptr<VoxelTransfer> to_coarser;
   VoxelField<float> inverse_diagonal;  // zero where a component is prescribed
   float largest_eigenvalue = 0;
-  VoxelField<float> r, x, d, q;  // residual, result, step, K times the step
+  VoxelField<float> first_result;  // of the first of two cycles; not of the finest level
+  VoxelField<float> r, x, d, q;    // residual, result, step, K times the step
 };
 
 VoxelMultigrid::VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stiffness, const FixedComponents& fixed,
@@ -122,7 +126,8 @@ VoxelMultigrid::VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stif
   while (level->mesh->nodes() > kCoarsest) {
     VoxelMesh coarser = LevelStiffness::CoarserMesh(*level->mesh);
     if (coarser.nodes() >= level->mesh->nodes()) break;
-    levels_.push_back(std::make_unique<Level>(std::move(coarser), level->K, levels_.size() == 1 ? fixed_ : FixedComponents(), team));
+    levels_.push_back(
+        std::make_unique<Level>(std::move(coarser), level->K, levels_.size() == 1 ? fixed_ : FixedComponents(), team));
     Level* const next = levels_.back().get();
     next->SetUp({}, team);
     level->to_coarser = std::make_unique<VoxelTransfer>(*level->mesh, *next->mesh);
@@ -156,6 +161,7 @@ void VoxelMultigrid::CycleFrom(std::size_t l, ThreadTeam& team) {
   clear_fixed(level.r);
   level.to_coarser->Transpose(level.r, team, next.r);
   CycleFrom(l + 1, team);
+  if (l + 2 < levels_.size()) ImproveBySecondCycle(l, team);
   level.to_coarser->Interpolate(next.x, team, level.d);
   clear_fixed(level.d);
   level.K.Apply(level.d, team, level.q);
@@ -164,6 +170,18 @@ void VoxelMultigrid::CycleFrom(std::size_t l, ThreadTeam& team) {
     level.r.data()[k] -= level.q.data()[k];
   });
   level.Smooth(Level::Start::kX, /*with_residual=*/false, team);
+}
+
+void VoxelMultigrid::ImproveBySecondCycle(std::size_t l, ThreadTeam& team) {
+  Level& level = *levels_[l];
+  Level& next = *levels_[l + 1];
+  VoxelField<float>& first = next.first_result;
+  std::swap(first, next.x);
+  level.to_coarser->Transpose(level.r, team, next.r);
+  next.K.Apply(first, team, next.q);
+  next.SubtractProduct(team);
+  CycleFrom(l + 1, team);
+  ForNumbers(team, first.size(), [&](std::size_t k) { next.x.data()[k] += first.data()[k]; });
 }
 
 void VoxelMultigrid::Apply(const VoxelField<double>& r, ThreadTeam& team, VoxelField<double>& z) {
@@ -237,7 +255,7 @@ std::string VoxelMultigrid::Description() const {
 std::size_t VoxelMultigrid::bytes() const {
   std::size_t sum = 0;
   for (const auto& level : levels_) {
-    sum += level->K.bytes() + 5 * level->r.size() * sizeof(float);
+    sum += level->K.bytes() + (5 * level->r.size() + level->first_result.size()) * sizeof(float);
   }
   return sum;
 }

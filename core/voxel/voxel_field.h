@@ -10,8 +10,8 @@
 
 namespace fascicle {
 
-// Three components for each node of a VoxelMesh, component by component, along the axes of the grid. Behind each component
-// are zeros, so that vector instructions may read beyond the last node; all sums and products keep them zero.
+// Three components for each node of a VoxelMesh, component by component, along the axes of the grid. Behind each
+// component are zeros, so that vector instructions may read beyond the last node; all sums and products keep them zero.
 template <class S>
 class VoxelField {
  public:
@@ -19,7 +19,9 @@ class VoxelField {
 
   VoxelField() = default;
   explicit VoxelField(std::int32_t nodes) : nodes_(nodes), stride_(StrideOf(nodes)), values_(3 * stride_, S{0}) {}
-  static std::size_t StrideOf(std::int32_t nodes) { return (static_cast<std::size_t>(nodes) + kPadding + 15) / 16 * 16; }
+  static std::size_t StrideOf(std::int32_t nodes) {
+    return (static_cast<std::size_t>(nodes) + kPadding + 15) / 16 * 16;
+  }
 
   std::int32_t nodes() const { return nodes_; }
   // Numbers from one component to the next.

@@ -85,7 +85,8 @@ VoxelField<float> DiagonalOf(const VoxelStiffness& stiffness) {
   const VoxelMesh& mesh = *stiffness.mesh;
   VoxelField<float> diagonal(mesh.nodes());
   std::vector<Vec3> of_material;
-  for (const BrickModuli<double>& moduli : stiffness.moduli) of_material.push_back(BrickDiagonal(mesh.spacing(), moduli));
+  for (const BrickModuli<double>& moduli : stiffness.moduli)
+    of_material.push_back(BrickDiagonal(mesh.spacing(), moduli));
   for (const VoxelRun& run : mesh.runs()) {
     for (int d = 0; d < 3; ++d) {
       const auto full = static_cast<float>(of_material[run.material][d]);

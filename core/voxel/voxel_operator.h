@@ -24,19 +24,21 @@ struct VoxelStiffness {
 
   const VoxelMesh* mesh;
   std::vector<BrickModuli<double>> moduli;  // by number of the material; that of 0 is not used
-  // Of each voxel [1], then zeros: vector instructions read beyond the last. Zero for bricks with matrices of their own.
+  // Of each voxel [1], then zeros: vector instructions read beyond the last. Zero for bricks with matrices of their
+  // own.
   std::vector<float> scale;
 };
 // Factors of the solid voxels of a grid, in the order of its mesh.
 std::vector<float> StiffnessOfVoxels(const VoxelGrid& grid);
 
-// y = K x over the solid voxels of a mesh, without a matrix. S: double or float. The same bits for any number of threads
-// and every instruction set. Const functions may be called by several threads at once, each with its own team.
+// y = K x over the solid voxels of a mesh, without a matrix. S: double or float. The same bits for any number of
+// threads and every instruction set. Const functions may be called by several threads at once, each with its own team.
 template <class S>
 class VoxelOperator {
  public:
   // The mesh and the stiffness must outlive the operator.
-  explicit VoxelOperator(const VoxelStiffness& stiffness, const VoxelKernels* kernels = &VoxelKernelsFor(PreferredInstructionSet()));
+  explicit VoxelOperator(const VoxelStiffness& stiffness,
+                         const VoxelKernels* kernels = &VoxelKernelsFor(PreferredInstructionSet()));
 
   // x, y: of the mesh's nodes, not the same one; y is overwritten [N, for x in m].
   void Apply(const VoxelField<S>& x, ThreadTeam& team, VoxelField<S>& y) const;

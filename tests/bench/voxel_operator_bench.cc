@@ -15,7 +15,8 @@ template <class S>
 VoxelField<S> SomeField(std::int32_t nodes) {
   VoxelField<S> x(nodes);
   for (int d = 0; d < 3; ++d) {
-    for (std::int32_t n = 0; n < nodes; ++n) x(n, d) = static_cast<S>(HashedUnit(3 * static_cast<std::uint64_t>(n) + d));
+    for (std::int32_t n = 0; n < nodes; ++n)
+      x(n, d) = static_cast<S>(HashedUnit(3 * static_cast<std::uint64_t>(n) + d));
   }
   return x;
 }

@@ -8,8 +8,8 @@
 namespace fascicle {
 namespace {
 
-using ::testing::ElementsAre;
 using testing::BoxGrid;
+using ::testing::ElementsAre;
 using testing::SpongeGrid;
 
 TEST(VoxelGrid, PlacesCornersByOriginSpacingAndDirection) {

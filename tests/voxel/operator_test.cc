@@ -90,14 +90,16 @@ template <class S>
 double LargestDifference(const VoxelField<S>& y, const Eigen::VectorXd& expected) {
   double largest = 0;
   for (std::int32_t n = 0; n < y.nodes(); ++n) {
-    largest = std::max(largest, (y.At(n) - expected.segment<3>(3 * static_cast<Eigen::Index>(n))).cwiseAbs().maxCoeff());
+    largest =
+        std::max(largest, (y.At(n) - expected.segment<3>(3 * static_cast<Eigen::Index>(n))).cwiseAbs().maxCoeff());
   }
   return largest / expected.cwiseAbs().maxCoeff();
 }
 
 struct Sponge {
   explicit Sponge(const GridIndex& size, Dilatation dilatation = Dilatation::kFull)
-      : grid(SpongeGrid(size, kSpacing)), mesh(grid),
+      : grid(SpongeGrid(size, kSpacing)),
+        mesh(grid),
         stiffness(mesh, {kMuscle, {1e6, 0.3}}, dilatation, StiffnessOfVoxels(grid)) {}
   VoxelGrid grid;
   VoxelMesh mesh;
@@ -107,7 +109,8 @@ struct Sponge {
 // Sizes around the widths of vectors, and one with several slabs.
 TEST(VoxelOperator, IsTheSumOfItsBricks) {
   ThreadTeam team(1);
-  for (const GridIndex& size : {GridIndex{1, 1, 1}, {2, 3, 1}, {7, 2, 3}, {8, 3, 2}, {15, 5, 4}, {16, 4, 5}, {17, 6, 6}, {37, 30, 33}}) {
+  for (const GridIndex& size :
+       {GridIndex{1, 1, 1}, {2, 3, 1}, {7, 2, 3}, {8, 3, 2}, {15, 5, 4}, {16, 4, 5}, {17, 6, 6}, {37, 30, 33}}) {
     for (const Dilatation dilatation : {Dilatation::kFull, Dilatation::kMean}) {
       const Sponge s(size, dilatation);
       if (s.mesh.voxels() == 0) continue;

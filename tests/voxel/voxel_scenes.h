@@ -32,7 +32,8 @@ template <class S>
 VoxelField<S> RandomField(std::int32_t nodes) {
   VoxelField<S> field(nodes);
   for (int d = 0; d < 3; ++d) {
-    for (std::int32_t n = 0; n < nodes; ++n) field(n, d) = static_cast<S>(HashedUnit(3 * static_cast<std::uint64_t>(n) + d));
+    for (std::int32_t n = 0; n < nodes; ++n)
+      field(n, d) = static_cast<S>(HashedUnit(3 * static_cast<std::uint64_t>(n) + d));
   }
   return field;
 }
