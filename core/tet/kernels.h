@@ -1,21 +1,12 @@
 #ifndef FASCICLE_CORE_TET_KERNELS_H_
 #define FASCICLE_CORE_TET_KERNELS_H_
 
+#include "core/base/instruction_set.h"
 #include "core/tet/element_blocks.h"
 
 // The loops over the elements of a chunk, compiled for each instruction set. Plain numbers and pointers: whatever is
 // compiled for one set must not be of use to code for another.
 namespace fascicle {
-
-enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
-inline constexpr InstructionSet kInstructionSets[] = {InstructionSet::kBaseline, InstructionSet::kAvx2,
-                                                      InstructionSet::kAvx512};
-
-// Whether this build and this machine have it.
-bool IsAvailable(InstructionSet set);
-// The widest one there is, or what the environment variable FASCICLE_INSTRUCTION_SET says (baseline, avx2, avx512) if
-// that is available. Results are the same bits with each.
-InstructionSet PreferredInstructionSet();
 
 // One chunk and what acts on it. Nodal values are of all nodes, three a node.
 template <class S>

@@ -1,0 +1,48 @@
+#include "core/voxel/fields.h"
+
+namespace fascicle {
+namespace {
+
+SymmetricTensor StrainOf(const Eigen::Matrix<double, 3, 8>& gradients, const VoxelField<double>& u,
+                         const std::array<std::int32_t, 8>& nodes) {
+  Mat3 grad = Mat3::Zero();  // (i, j) = du_i/dx_j
+  for (int c = 0; c < 8; ++c) grad += u.At(nodes[c]) * gradients.col(c).transpose();
+  return {grad(0, 0),
+          grad(1, 1),
+          grad(2, 2),
+          0.5 * (grad(0, 1) + grad(1, 0)),
+          0.5 * (grad(1, 2) + grad(2, 1)),
+          0.5 * (grad(2, 0) + grad(0, 2))};
+}
+
+// Calls body(run, voxel, strain) for all voxels.
+template <class Body>
+void ForStrains(const VoxelModel& model, const VoxelField<double>& u, const Body& body) {
+  const Eigen::Matrix<double, 3, 8> gradients = BrickGradients(model.mesh().spacing(), Vec3::Zero());
+  for (const VoxelRun& run : model.mesh().runs()) {
+    ForVoxelsOfRun(run, [&](std::int32_t voxel, const GridIndex&, const std::array<std::int32_t, 8>& nodes) {
+      body(run, voxel, StrainOf(gradients, u, nodes));
+    });
+  }
+}
+
+}  // namespace
+
+std::vector<SymmetricTensor> StrainAtCentres(const VoxelModel& model, const VoxelField<double>& u) {
+  std::vector<SymmetricTensor> strains(model.mesh().voxels());
+  ForStrains(model, u, [&](const VoxelRun&, std::int32_t voxel, const SymmetricTensor& e) { strains[voxel] = e; });
+  return strains;
+}
+
+std::vector<SymmetricTensor> StressAtCentres(const VoxelModel& model, const VoxelField<double>& u) {
+  std::vector<SymmetricTensor> stresses(model.mesh().voxels());
+  ForStrains(model, u, [&](const VoxelRun& run, std::int32_t voxel, const SymmetricTensor& e) {
+    const BrickModuli<double>& moduli = model.stiffness().moduli[run.material];
+    const auto scale = static_cast<double>(model.stiffness().scale[voxel]);
+    const double pressure = scale * moduli.lambda * (e[0] + e[1] + e[2]);
+    for (int c = 0; c < 6; ++c) stresses[voxel][c] = 2 * scale * moduli.mu * e[c] + (c < 3 ? pressure : 0);
+  });
+  return stresses;
+}
+
+}  // namespace fascicle

@@ -1,0 +1,22 @@
+#ifndef FASCICLE_CORE_VOXEL_FIELDS_H_
+#define FASCICLE_CORE_VOXEL_FIELDS_H_
+
+#include <array>
+#include <vector>
+
+#include "core/voxel/model.h"
+
+namespace fascicle {
+
+// A symmetric tensor: components 11, 22, 33, 12, 23, 31 along the axes of the grid.
+using SymmetricTensor = std::array<double, 6>;
+
+// Small strain sym(grad u) at the centre of every voxel [1], where that of trilinear displacements is most accurate.
+std::vector<SymmetricTensor> StrainAtCentres(const VoxelModel& model, const VoxelField<double>& u);
+
+// Stress lambda tr(e) I + 2 mu e [Pa] there, with each voxel's own stiffness.
+std::vector<SymmetricTensor> StressAtCentres(const VoxelModel& model, const VoxelField<double>& u);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_VOXEL_FIELDS_H_

@@ -1,0 +1,58 @@
+#ifndef FASCICLE_CORE_VOXEL_GALERKIN_H_
+#define FASCICLE_CORE_VOXEL_GALERKIN_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "core/voxel/slabs.h"
+#include "core/voxel/voxel_operator.h"
+
+namespace fascicle {
+
+// Bits 1, 2, 4 of each node: components 0, 1, 2 are prescribed. Empty: none anywhere.
+using FixedComponents = std::vector<std::uint8_t>;
+
+// Stiffness of one level of a multigrid: P^T K P of the level below, brick by brick.
+//
+// Where eight voxels are of the same stiffness and free, their common brick's own K of twice the spacing is just that,
+// because the trilinear functions of a level are among those of the finer one. Other bricks (at surfaces, between
+// materials, at supports) have matrices of their own.
+class LevelStiffness {
+ public:
+  // The finest level.
+  LevelStiffness(const VoxelMesh& mesh, VoxelStiffness stiffness);
+  // `fine` must outlive the constructor only; `fixed` is of fine's nodes. mesh: VoxelMesh::Coarser of fine's.
+  static VoxelMesh CoarserMesh(const VoxelMesh& fine);
+  LevelStiffness(const VoxelMesh& mesh, const LevelStiffness& fine, const FixedComponents& fixed, ThreadTeam& team);
+  LevelStiffness(const LevelStiffness&) = delete;
+  LevelStiffness& operator=(const LevelStiffness&) = delete;
+
+  const VoxelMesh& mesh() const { return *mesh_; }
+  const VoxelStiffness& stiffness() const { return stiffness_; }
+  std::size_t own_matrices() const { return own_count_; }
+  std::size_t bytes() const;
+
+  // y = K x.
+  void Apply(const VoxelField<float>& x, ThreadTeam& team, VoxelField<float>& y) const;
+  VoxelField<float> Diagonal() const;
+  // K of one voxel [N/m]; voxel of mesh(), in a run of that material.
+  BrickMatrix MatrixOf(std::int32_t voxel, std::int32_t material) const;
+
+ private:
+  void FindOwn(const LevelStiffness& fine, const FixedComponents& fixed);
+  void FillOwn(const LevelStiffness& fine, const FixedComponents& fixed, ThreadTeam& team);
+
+  const VoxelMesh* mesh_;
+  VoxelStiffness stiffness_;
+  VoxelOperator<float> operator_;
+  std::vector<BrickMatrix> of_material_;
+  const VoxelKernels* kernels_ = &VoxelKernelsFor(PreferredInstructionSet());
+  std::size_t own_count_ = 0;
+  std::vector<std::int32_t> own_;  // of each voxel: kBrickBlock * block + lane, or -1; empty: none
+  std::vector<PackedBricks> blocks_;
+  std::vector<std::int32_t> slab_begin_;  // first block of each slab, and the end
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_VOXEL_GALERKIN_H_

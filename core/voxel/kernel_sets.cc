@@ -1,0 +1,16 @@
+#include "core/voxel/kernel_sets.h"
+
+#include "core/base/check.h"
+
+namespace fascicle {
+
+const VoxelKernels& VoxelKernelsFor(InstructionSet set) {
+  FASCICLE_CHECK(IsAvailable(set), "kernels of an instruction set that this machine lacks");
+#if defined(__x86_64__)
+  if (set == InstructionSet::kAvx2) return kAvx2VoxelKernels;
+  if (set == InstructionSet::kAvx512) return kAvx512VoxelKernels;
+#endif
+  return kBaselineVoxelKernels;
+}
+
+}  // namespace fascicle

@@ -1,0 +1,8 @@
+#include "core/voxel/kernel_sets.h"
+#include "core/voxel/kernels_impl.h"
+
+namespace fascicle {
+
+constinit const VoxelKernels kAvx512VoxelKernels = VoxelKernelsOf<Avx512Set>();
+
+}  // namespace fascicle

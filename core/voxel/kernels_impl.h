@@ -1,0 +1,267 @@
+#ifndef FASCICLE_CORE_VOXEL_KERNELS_IMPL_H_
+#define FASCICLE_CORE_VOXEL_KERNELS_IMPL_H_
+
+#include <utility>
+
+#include "core/base/lanes.h"
+#include "core/voxel/kernels.h"
+
+// What kernels.h declares, for one type of Lanes. Included by one file for each instruction set, and by nothing else:
+// all functions here are templates on that type, so that no two sets share any (a test looks at the object files).
+// Nothing of Eigen or the standard library is called.
+//
+// Lanes are voxels one behind the other along i, so that corners are read as they stand in memory. Sums and differences
+// across a face of corners (eta, zeta) are made once and serve the voxels on both of its sides; then one lane further
+// is the other side. On the way back the two sides of a face are joined first, in the same order for any number of
+// lanes.
+namespace fascicle {
+
+// Lanes 1, 2, ... of `a`, then the first of `b`.
+template <class L, int... kIndex>
+[[gnu::always_inline]] inline L NextLanesOf(L a, L b, std::integer_sequence<int, kIndex...>) {
+  return L::Of(__builtin_shufflevector(a.v, b.v, (kIndex + 1)...));
+}
+template <class L>
+[[gnu::always_inline]] inline L NextLanes(L a, L b) {
+  return NextLanesOf(a, b, std::make_integer_sequence<int, L::kLanes>());
+}
+// The last lane of `a`, then those of `b` but its last.
+template <class L, int... kIndex>
+[[gnu::always_inline]] inline L PreviousLanesOf(L a, L b, std::integer_sequence<int, kIndex...>) {
+  return L::Of(__builtin_shufflevector(a.v, b.v, (kIndex + L::kLanes - 1)...));
+}
+template <class L>
+[[gnu::always_inline]] inline L PreviousLanes(L a, L b) {
+  return PreviousLanesOf(a, b, std::make_integer_sequence<int, L::kLanes>());
+}
+
+// 0, 1, 2, ...
+template <class L>
+struct LaneNumbers {
+  typename L::Scalar n[L::kLanes] = {};
+  constexpr LaneNumbers() {
+    for (int k = 0; k < L::kLanes; ++k) n[k] = static_cast<typename L::Scalar>(k);
+  }
+  static const LaneNumbers kNumbers;
+};
+template <class L>
+inline constexpr LaneNumbers<L> LaneNumbers<L>::kNumbers{};
+
+template <class L>
+[[gnu::always_inline]] inline L LoadFloats(const float* p) {
+  typedef float Floats __attribute__((vector_size(L::kLanes * sizeof(float))));
+  Floats floats;
+  std::memcpy(&floats, p, sizeof floats);
+  return L::Of(__builtin_convertvector(floats, typename L::Vector));
+}
+
+// Of the four corners of a face: modes 1, eta, zeta, eta zeta of each component.
+template <class L>
+struct FaceModes {
+  L m[3][4];
+};
+
+template <class L>
+struct RunProduct {
+  using S = typename L::Scalar;
+  static constexpr int kAhead = 1024 / sizeof(S);  // nodes
+
+  [[gnu::always_inline]] static void LoadFace(const ProductTask<S>& task, const VoxelRun& run, std::int32_t at,
+                                              FaceModes<L>& face) {
+    for (int d = 0; d < 3; ++d) {
+      const S* const x = task.x[d] + at;
+      const L p0 = L::Load(x + run.node[0]), p1 = L::Load(x + run.node[1]);
+      const L p2 = L::Load(x + run.node[2]), p3 = L::Load(x + run.node[3]);
+      const L near = p0 + p1, far = p2 + p3, near_y = p1 - p0, far_y = p3 - p2;
+      face.m[d][0] = near + far;
+      face.m[d][1] = near_y + far_y;
+      face.m[d][2] = far - near;
+      face.m[d][3] = far_y - near_y;
+    }
+  }
+
+  // y += the four corners' values of face modes f; only the first `count` lanes are of the run.
+  [[gnu::always_inline]] static void AddFace(const ProductTask<S>& task, const VoxelRun& run, std::int32_t at,
+                                             std::int32_t count, const FaceModes<L>& f) {
+    // Beyond the run stand zeros, which do no harm unless another thread is at work there.
+    const bool whole = count >= L::kLanes || run.node[3] + at + L::kLanes <= task.end_node;
+    for (int d = 0; d < 3; ++d) {
+      const L near = f.m[d][0] - f.m[d][2], far = f.m[d][0] + f.m[d][2];
+      const L near_y = f.m[d][1] - f.m[d][3], far_y = f.m[d][1] + f.m[d][3];
+      const L p[4] = {near - near_y, near + near_y, far - far_y, far + far_y};
+      for (int r = 0; r < 4; ++r) {
+        S* const y = task.y[d] + run.node[r] + at;
+        if (whole) [[likely]] {
+          (L::Load(y) + p[r]).Store(y);
+        } else {
+          for (int k = 0; k < count; ++k) y[k] += p[r][k];
+        }
+      }
+    }
+  }
+
+  [[gnu::always_inline]] static void AddRun(const ProductTask<S>& task, const VoxelRun& run) {
+    const BrickModuli<S> material = task.moduli[run.material];
+    const std::int32_t nodes = run.length + 1;
+    FaceModes<L> left, carried;
+    LoadFace(task, run, 0, left);
+    for (int d = 0; d < 3; ++d) {
+      for (int m = 0; m < 4; ++m) carried.m[d][m] = L(0.0);
+    }
+    for (std::int32_t at = 0; at < nodes; at += L::kLanes) {
+      // Rows are too short for the processor to see where they lead.
+      for (int d = 0; d < 3; ++d) __builtin_prefetch(task.x[d] + run.node[3] + at + kAhead);
+      FaceModes<L> next;
+      LoadFace(task, run, at + L::kLanes, next);
+      L u[3][8], f[3][8];
+      for (int d = 0; d < 3; ++d) {
+        for (int m = 0; m < 4; ++m) {
+          const L right = NextLanes(left.m[d][m], next.m[d][m]);
+          if (m > 0) u[d][2 * m] = right + left.m[d][m];
+          u[d][2 * m + 1] = right - left.m[d][m];
+        }
+      }
+      L scale = LoadFloats<L>(task.scale + run.first_voxel + at);
+      if (at + L::kLanes > run.length) {
+        scale = Select(L::Load(LaneNumbers<L>::kNumbers.n) < L(static_cast<double>(run.length - at)), scale, L(0.0));
+      }
+      const BrickModuli<L> moduli = {scale * L(material.lambda), scale * L(material.lambda_out),
+                                     scale * L(material.mu)};
+      ModeForces(*task.shape, moduli, u, f);
+      FaceModes<L> sum;
+      for (int d = 0; d < 3; ++d) {
+        for (int m = 0; m < 4; ++m) {
+          const L odd = f[d][2 * m + 1];
+          const L on_right = m == 0 ? odd : f[d][2 * m] + odd;
+          const L on_left = m == 0 ? -odd : f[d][2 * m] - odd;
+          sum.m[d][m] = on_left + PreviousLanes(carried.m[d][m], on_right);
+          carried.m[d][m] = on_right;
+        }
+      }
+      AddFace(task, run, at, nodes - at, sum);
+      left = next;
+    }
+  }
+
+  [[gnu::flatten]] static void Add(const ProductTask<S>& task) {
+    for (std::int32_t r = 0; r < task.run_count; ++r) AddRun(task, task.runs[r]);
+  }
+};
+
+// Bricks with matrices of their own, 16 at a time.
+template <class Set>
+struct PackedProduct {
+  using L = Lanes<float, Set>;
+
+  [[gnu::flatten]] static void Add(const PackedTask& task) {
+    for (std::int32_t b = 0; b < task.block_count; ++b) AddBlock(task, task.blocks[b]);
+  }
+
+  static void AddBlock(const PackedTask& task, const PackedBricks& block) {
+    alignas(64) float x[24][kBrickBlock], y[24][kBrickBlock];
+    for (int c = 0; c < 8; ++c) {
+      for (int d = 0; d < 3; ++d) {
+        for (int k = 0; k < kBrickBlock; ++k) x[3 * c + d][k] = task.x[d][block.node[c >> 1][k] + (c & 1)];
+      }
+    }
+    for (int lane = 0; lane < kBrickBlock; lane += L::kLanes) Multiply(block, lane, x, y);
+    for (int c = 0; c < 8; ++c) {
+      for (int k = 0; k < block.bricks; ++k) {
+        const std::int32_t node = block.node[c >> 1][k] + (c & 1);
+        for (int d = 0; d < 3; ++d) task.y[d][node] += y[3 * c + d][k];
+      }
+    }
+  }
+
+  // Entry (r, c), c <= r, is number r (r + 1)/2 + c.
+  static void Multiply(const PackedBricks& block, int lane, const float (&x)[24][kBrickBlock],
+                       float (&y)[24][kBrickBlock]) {
+    for (int r = 0; r < 24; ++r) {
+      const float(*const row)[kBrickBlock] = &block.entries[r * (r + 1) / 2];
+      const L xr = L::Load(&x[r][lane]);
+      L sum = L::Load(&row[r][lane]) * xr;
+      for (int c = 0; c < r; ++c) {
+        const L entry = L::Load(&row[c][lane]);
+        sum += entry * L::Load(&x[c][lane]);
+        (L::Load(&y[c][lane]) + entry * xr).Store(&y[c][lane]);
+      }
+      sum.Store(&y[r][lane]);
+    }
+  }
+};
+
+// Trilinear interpolation along rows of nodes.
+template <class Set>
+struct Transfer {
+  static constexpr int kPiece = 256;  // coarse nodes at a time
+
+  [[gnu::flatten]] static void Interpolate(const TransferTask& task) {
+    for (std::int32_t r = 0; r < task.run_count; ++r) {
+      for (int d = 0; d < 3; ++d) InterpolateRun(task.runs[r], task.from[d], task.to[d]);
+    }
+  }
+  [[gnu::flatten]] static void Transpose(const TransferTask& task) {
+    for (std::int32_t r = 0; r < task.run_count; ++r) {
+      for (int d = 0; d < 3; ++d) TransposeRun(task.runs[r], task.from[d], task.to[d]);
+    }
+  }
+
+  static float WeightOf(const TransferRun& run) { return run.rows == 1 ? 1.0f : run.rows == 2 ? 0.5f : 0.25f; }
+
+  // Fine nodes of a piece are counted from the first coarse node; where that is not a fine node of the run, odd is 1.
+  static std::int32_t FineCount(const TransferRun& run, std::int32_t piece) {
+    const std::int32_t left = run.odd + run.length - 2 * piece;
+    return left < 2 * kPiece ? left : 2 * kPiece;
+  }
+
+  static void InterpolateRun(const TransferRun& run, const float* coarse, float* fine) {
+    const float weight = WeightOf(run);
+    for (std::int32_t piece = 0; 2 * piece < run.odd + run.length; piece += kPiece) {
+      const std::int32_t fine_count = FineCount(run, piece);
+      float row[kPiece + 1], line[2 * kPiece + 2];
+      const std::int32_t coarse_count = fine_count / 2 + 1;
+      for (std::int32_t n = 0; n < coarse_count; ++n) row[n] = coarse[run.coarse[0] + piece + n];
+      for (std::int32_t k = 1; k < run.rows; ++k) {
+        for (std::int32_t n = 0; n < coarse_count; ++n) row[n] += coarse[run.coarse[k] + piece + n];
+      }
+      for (std::int32_t n = 0; n < coarse_count; ++n) row[n] *= weight;
+      for (std::int32_t n = 0; n + 1 < coarse_count; ++n) {
+        line[2 * n] = row[n];
+        line[2 * n + 1] = 0.5f * (row[n] + row[n + 1]);
+      }
+      line[2 * coarse_count - 2] = row[coarse_count - 1];
+      float* const to = fine + run.first - run.odd + 2 * piece;
+      for (std::int32_t n = piece == 0 ? run.odd : 0; n < fine_count; ++n) to[n] += line[n];
+    }
+  }
+
+  static void TransposeRun(const TransferRun& run, const float* fine, float* coarse) {
+    const float weight = WeightOf(run), half = 0.5f * weight;
+    for (std::int32_t piece = 0; 2 * piece < run.odd + run.length; piece += kPiece) {
+      const std::int32_t fine_count = FineCount(run, piece);
+      const std::int32_t coarse_count = fine_count / 2 + 1;
+      const float* const from = fine + run.first - run.odd + 2 * piece;
+      float row[kPiece + 1], line[2 * kPiece + 4];  // line[n + 1]: node n
+      for (std::int32_t n = 0; n < fine_count; ++n) line[n + 1] = from[n];
+      line[0] = line[fine_count + 1] = line[fine_count + 2] = 0;
+      if (piece == 0 && run.odd == 1) line[1] = 0;
+      for (std::int32_t n = 0; n < coarse_count; ++n) {
+        row[n] = weight * line[2 * n + 1] + half * (line[2 * n] + line[2 * n + 2]);
+      }
+      for (std::int32_t k = 0; k < run.rows; ++k) {
+        float* const to = coarse + run.coarse[k] + piece;
+        for (std::int32_t n = 0; n < coarse_count; ++n) to[n] += row[n];
+      }
+    }
+  }
+};
+
+template <class Set>
+constexpr VoxelKernels VoxelKernelsOf() {
+  return {RunProduct<Lanes<double, Set>>::Add, RunProduct<Lanes<float, Set>>::Add, PackedProduct<Set>::Add,
+          Transfer<Set>::Interpolate, Transfer<Set>::Transpose};
+}
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_VOXEL_KERNELS_IMPL_H_

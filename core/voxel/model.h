@@ -1,0 +1,84 @@
+#ifndef FASCICLE_CORE_VOXEL_MODEL_H_
+#define FASCICLE_CORE_VOXEL_MODEL_H_
+
+#include <array>
+#include <vector>
+
+#include "core/geometry/voxel_mesh.h"
+#include "core/voxel/voxel_operator.h"
+
+namespace fascicle {
+
+// A body of voxels: what does not change. Vectors (displacements, forces) are along the axes of the grid, its
+// `direction`. Thread-safe.
+class VoxelModel {
+ public:
+  // Checked input (CheckVoxelProblem); the grid must outlive the model. materials[m - 1] is that of voxels with m.
+  VoxelModel(const VoxelGrid& grid, std::vector<VoxelMaterial> materials, Dilatation dilatation)
+      : grid_(&grid),
+        materials_(std::move(materials)),
+        mesh_(grid),
+        stiffness_(mesh_, materials_, dilatation, StiffnessOfVoxels(grid)),
+        operator_(stiffness_) {}
+  VoxelModel(const VoxelModel&) = delete;
+  VoxelModel& operator=(const VoxelModel&) = delete;
+
+  const VoxelGrid& grid() const { return *grid_; }
+  const VoxelMesh& mesh() const { return mesh_; }
+  const std::vector<VoxelMaterial>& materials() const { return materials_; }
+  const VoxelStiffness& stiffness() const { return stiffness_; }
+  // y = K x [N].
+  const VoxelOperator<double>& K() const { return operator_; }
+
+ private:
+  const VoxelGrid* grid_;
+  std::vector<VoxelMaterial> materials_;
+  VoxelMesh mesh_;
+  VoxelStiffness stiffness_;
+  VoxelOperator<double> operator_;
+};
+
+// Nodes whose components are prescribed, as places in the lattice of corners.
+struct VoxelSupport {
+  std::vector<GridIndex> nodes;
+  std::array<bool, 3> components = {true, true, true};
+  Vec3 displacement = Vec3::Zero();  // of the components that are prescribed [m]
+};
+
+// Shared evenly by nodes.
+struct VoxelNodalForce {
+  std::vector<GridIndex> nodes;
+  Vec3 total = Vec3::Zero();  // [N]
+};
+
+// A side of a voxel: 0 to 5 for -i, +i, -j, +j, -k, +k.
+struct VoxelFace {
+  GridIndex voxel;
+  int side = 0;
+};
+
+struct VoxelTraction {
+  std::vector<VoxelFace> faces;
+  Vec3 traction = Vec3::Zero();  // [Pa]
+};
+
+struct VoxelLoads {
+  std::vector<VoxelNodalForce> nodal_forces;
+  std::vector<VoxelTraction> tractions;
+  Vec3 body_force = Vec3::Zero();  // on all voxels [N/m^3]
+};
+
+// f += the loads' forces on nodes [N]: a traction's by area / 4 to each corner of a face, the body force by volume / 8
+// to each corner of a voxel, both as the trilinear functions share them out.
+void AddForces(const VoxelModel& model, const VoxelLoads& loads, VoxelField<double>& f);
+
+// Nodes in the box low <= (i, j, k) <= high, in order.
+std::vector<GridIndex> NodesInBox(const VoxelMesh& mesh, const GridIndex& low, const GridIndex& high);
+
+// Sides of solid voxels towards `side` whose voxels are in the box low <= (i, j, k) <= high and have no solid neighbour
+// there, in order.
+std::vector<VoxelFace> OuterFaces(const VoxelGrid& grid, int side, const GridIndex& low, const GridIndex& high);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_VOXEL_MODEL_H_

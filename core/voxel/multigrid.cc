@@ -1,0 +1,263 @@
+#include "core/voxel/multigrid.h"
+
+#include <cmath>
+#include <map>
+
+#include "core/base/check.h"
+#include "core/linalg/lanczos.h"
+
+namespace fascicle {
+namespace {
+
+// Levels up to that many nodes are factored.
+constexpr std::int32_t kCoarsest = 250;
+constexpr int kSmoothing = 3;  // degree of the polynomials
+// Part of the spectrum that they damp: from the largest eigenvalue down to that part of it.
+constexpr float kDamped = 1.0f / 12;
+constexpr int kPowerIterations = 12;
+constexpr double kEigenvalueMargin = 1.1;
+// Added to the coarsest diagonal, for motions of coarse nodes that move no free node.
+constexpr double kRegularization = 1e-9;
+
+}  // namespace
+
+struct VoxelMultigrid::Level {
+  Level(const VoxelMesh& m, VoxelStiffness stiffness) : mesh(&m), K(m, std::move(stiffness)) {}
+  Level(VoxelMesh m, const LevelStiffness& fine, const FixedComponents& fixed, ThreadTeam& team)
+      : own_mesh(std::move(m)), mesh(&own_mesh), K(own_mesh, fine, fixed, team) {}
+
+  void SetUp(const std::vector<std::size_t>& fixed_numbers, ThreadTeam& team) {
+    inverse_diagonal = K.Diagonal();
+    for (std::size_t k = 0; k < inverse_diagonal.size(); ++k) {
+      float& entry = inverse_diagonal.data()[k];
+      entry = entry > 0 ? 1 / entry : 0;
+    }
+    for (const std::size_t k : fixed_numbers) inverse_diagonal.data()[k] = 0;
+    for (VoxelField<float>* field : {&r, &x, &d, &q}) *field = VoxelField<float>(mesh->nodes());
+    if (mesh == &own_mesh) first_result = VoxelField<float>(mesh->nodes());
+    FindLargestEigenvalue(team);
+  }
+
+  // Of D^-1 K, by power iteration.
+  void FindLargestEigenvalue(ThreadTeam& team) {
+    for (int c = 0; c < 3; ++c) {
+      for (std::int32_t n = 0; n < mesh->nodes(); ++n) {
+        d(n, c) =
+            inverse_diagonal(n, c) > 0 ? static_cast<float>(HashedUnit(3 * static_cast<std::uint64_t>(n) + c)) : 0;
+      }
+    }
+    double length = std::sqrt(Dot(team, d, d));
+    for (int i = 0; i < kPowerIterations && length > 0; ++i) {
+      K.Apply(d, team, q);
+      const auto scale = static_cast<float>(1 / length);
+      ForNumbers(team, d.size(),
+                 [this, scale](std::size_t k) { d.data()[k] = inverse_diagonal.data()[k] * q.data()[k] * scale; });
+      length = std::sqrt(Dot(team, d, d));
+    }
+    largest_eigenvalue = static_cast<float>(kEigenvalueMargin * length);
+  }
+
+  // x += polynomial in D^-1 K times D^-1 r, and r -= K times that, the last of it only if asked for.
+  enum class Start { kZero, kX };
+  void Smooth(Start start, bool with_residual, ThreadTeam& team) {
+    const float centre = 0.5f * (1 + kDamped) * largest_eigenvalue, half = 0.5f * (1 - kDamped) * largest_eigenvalue;
+    const float sigma = centre / half;
+    float rho = 1 / sigma;
+    First(start, 1 / centre, team);
+    for (int k = 1; k < kSmoothing; ++k) {
+      const float next = 1 / (2 * sigma - rho);
+      K.Apply(d, team, q);
+      Next(next * rho, 2 * next / half, team);
+      rho = next;
+    }
+    if (!with_residual) return;
+    K.Apply(d, team, q);
+    SubtractProduct(team);
+  }
+  void First(Start start, float factor, ThreadTeam& team) {
+    float* const to = x.data();
+    float* const step = d.data();
+    const float* const residual = r.data();
+    const float* const inverse = inverse_diagonal.data();
+    ForNumbers(team, x.size(), [=](std::size_t k) {
+      step[k] = factor * (inverse[k] * residual[k]);
+      to[k] = start == Start::kZero ? step[k] : to[k] + step[k];
+    });
+  }
+  void Next(float of_step, float of_residual, ThreadTeam& team) {
+    float* const to = x.data();
+    float* const step = d.data();
+    float* const residual = r.data();
+    const float* const product = q.data();
+    const float* const inverse = inverse_diagonal.data();
+    ForNumbers(team, x.size(), [=](std::size_t k) {
+      residual[k] -= product[k];
+      step[k] = of_step * step[k] + of_residual * (inverse[k] * residual[k]);
+      to[k] += step[k];
+    });
+  }
+  void SubtractProduct(ThreadTeam& team) {
+    float* const residual = r.data();
+    const float* const product = q.data();
+    ForNumbers(team, r.size(), [=](std::size_t k) { residual[k] -= product[k]; });
+  }
+
+  VoxelMesh own_mesh;
+  const VoxelMesh* mesh;
+  LevelStiffness K;
+  std::unique_ptr<VoxelTransfer> to_coarser;
+  VoxelField<float> inverse_diagonal;  // zero where a component is prescribed
+  float largest_eigenvalue = 0;
+  VoxelField<float> first_result;  // of the first of two cycles; not of the finest level
+  VoxelField<float> r, x, d, q;    // residual, result, step, K times the step
+};
+
+VoxelMultigrid::VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stiffness, const FixedComponents& fixed,
+                               ThreadTeam& team)
+    : fixed_(fixed) {
+  levels_.push_back(std::make_unique<Level>(mesh, stiffness));
+  Level* level = levels_.back().get();
+  for (std::size_t n = 0; n < fixed_.size(); ++n) {
+    for (int d = 0; d < 3; ++d) {
+      if (fixed_[n] >> d & 1) fixed_numbers_.push_back(d * VoxelField<float>::StrideOf(mesh.nodes()) + n);
+    }
+  }
+  level->SetUp(fixed_numbers_, team);
+  while (level->mesh->nodes() > kCoarsest) {
+    VoxelMesh coarser = LevelStiffness::CoarserMesh(*level->mesh);
+    if (coarser.nodes() >= level->mesh->nodes()) break;
+    levels_.push_back(
+        std::make_unique<Level>(std::move(coarser), level->K, levels_.size() == 1 ? fixed_ : FixedComponents(), team));
+    Level* const next = levels_.back().get();
+    next->SetUp({}, team);
+    level->to_coarser = std::make_unique<VoxelTransfer>(*level->mesh, *next->mesh);
+    level = next;
+  }
+  ok_ = FactorCoarsest();
+}
+
+VoxelMultigrid::~VoxelMultigrid() = default;
+
+VoxelField<float>& VoxelMultigrid::side() { return levels_[0]->r; }
+const VoxelField<float>& VoxelMultigrid::result() const { return levels_[0]->x; }
+
+void VoxelMultigrid::Cycle(ThreadTeam& team) {
+  for (const std::size_t k : fixed_numbers_) levels_[0]->r.data()[k] = 0;
+  CycleFrom(0, team);
+}
+
+void VoxelMultigrid::CycleFrom(std::size_t l, ThreadTeam& team) {
+  if (l + 1 == levels_.size()) {
+    SolveCoarsest();
+    return;
+  }
+  Level& level = *levels_[l];
+  Level& next = *levels_[l + 1];
+  const auto clear_fixed = [&](VoxelField<float>& field) {
+    if (l > 0) return;
+    for (const std::size_t k : fixed_numbers_) field.data()[k] = 0;
+  };
+  level.Smooth(Level::Start::kZero, /*with_residual=*/true, team);
+  clear_fixed(level.r);
+  level.to_coarser->Transpose(level.r, team, next.r);
+  CycleFrom(l + 1, team);
+  if (l + 2 < levels_.size()) ImproveBySecondCycle(l, team);
+  level.to_coarser->Interpolate(next.x, team, level.d);
+  clear_fixed(level.d);
+  level.K.Apply(level.d, team, level.q);
+  ForNumbers(team, level.x.size(), [&level](std::size_t k) {
+    level.x.data()[k] += level.d.data()[k];
+    level.r.data()[k] -= level.q.data()[k];
+  });
+  level.Smooth(Level::Start::kX, /*with_residual=*/false, team);
+}
+
+void VoxelMultigrid::ImproveBySecondCycle(std::size_t l, ThreadTeam& team) {
+  Level& level = *levels_[l];
+  Level& next = *levels_[l + 1];
+  VoxelField<float>& first = next.first_result;
+  std::swap(first, next.x);
+  level.to_coarser->Transpose(level.r, team, next.r);
+  next.K.Apply(first, team, next.q);
+  next.SubtractProduct(team);
+  CycleFrom(l + 1, team);
+  ForNumbers(team, first.size(), [&](std::size_t k) { next.x.data()[k] += first.data()[k]; });
+}
+
+void VoxelMultigrid::Apply(const VoxelField<double>& r, ThreadTeam& team, VoxelField<double>& z) {
+  VoxelField<float>& to = side();
+  const double size = std::sqrt(Dot(team, r, r));
+  const double scale = size > 0 ? 1 / size : 0;  // far from the ends of single precision
+  ForNumbers(team, r.size(), [&](std::size_t k) { to.data()[k] = static_cast<float>(scale * r.data()[k]); });
+  Cycle(team);
+  const VoxelField<float>& from = result();
+  ForNumbers(team, r.size(), [&](std::size_t k) { z.data()[k] = size * static_cast<double>(from.data()[k]); });
+}
+
+bool VoxelMultigrid::FactorCoarsest() {
+  const Level& level = *levels_.back();
+  const std::size_t stride = level.r.stride();
+  std::vector<std::int32_t> unknown(level.r.size(), -1);
+  for (std::int32_t n = 0; n < level.mesh->nodes(); ++n) {
+    for (int d = 0; d < 3; ++d) {
+      if (level.inverse_diagonal(n, d) == 0) continue;
+      unknown[d * stride + n] = static_cast<std::int32_t>(unknown_numbers_.size());
+      unknown_numbers_.push_back(static_cast<std::int32_t>(d * stride + n));
+    }
+  }
+  const auto size = static_cast<std::int32_t>(unknown_numbers_.size());
+  coarsest_side_.resize(size);
+  if (size == 0) return true;
+  std::map<std::array<std::int32_t, 2>, double> entries;  // of the lower triangle
+  for (const VoxelRun& run : level.mesh->runs()) {
+    ForVoxelsOfRun(run, [&](std::int32_t voxel, const GridIndex&, const std::array<std::int32_t, 8>& nodes) {
+      const BrickMatrix K = level.K.MatrixOf(voxel, run.material);
+      for (int a = 0; a < 24; ++a) {
+        const std::int32_t row = unknown[(a % 3) * stride + nodes[a / 3]];
+        for (int b = 0; b < 24; ++b) {
+          const std::int32_t column = unknown[(b % 3) * stride + nodes[b / 3]];
+          if (row >= 0 && column >= 0 && column <= row) entries[{row, column}] += K(a, b);
+        }
+      }
+    });
+  }
+  std::vector<std::int32_t> rows, columns;
+  std::vector<double> values;
+  for (const auto& [place, value] : entries) {
+    rows.push_back(place[0]);
+    columns.push_back(place[1]);
+    values.push_back(place[0] == place[1] ? (1 + kRegularization) * value : value);
+  }
+  return coarsest_.Analyze(size, rows, columns) && coarsest_.Factor(values).ok;
+}
+
+void VoxelMultigrid::SolveCoarsest() {
+  Level& level = *levels_.back();
+  for (std::size_t k = 0; k < unknown_numbers_.size(); ++k) {
+    coarsest_side_[k] = static_cast<double>(level.r.data()[unknown_numbers_[k]]);
+  }
+  if (!coarsest_side_.empty()) coarsest_.Solve(coarsest_side_);
+  for (std::size_t k = 0; k < unknown_numbers_.size(); ++k) {
+    level.x.data()[unknown_numbers_[k]] = static_cast<float>(coarsest_side_[k]);
+  }
+}
+
+std::string VoxelMultigrid::Description() const {
+  std::string text;
+  for (const auto& level : levels_) {
+    if (!text.empty()) text += " + ";
+    text += std::to_string(level->mesh->voxels());
+    if (level->K.own_matrices() > 0) text += " (" + std::to_string(level->K.own_matrices()) + " of their own)";
+  }
+  return text + " voxels";
+}
+
+std::size_t VoxelMultigrid::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& level : levels_) {
+    sum += level->K.bytes() + (5 * level->r.size() + level->first_result.size()) * sizeof(float);
+  }
+  return sum;
+}
+
+}  // namespace fascicle
