@@ -63,6 +63,9 @@ bool FrameStream::Open() {
                                            std::to_string(known_count_) + " frames of " + request_.name()));
     return false;
   }
+  wanted_end_ = request_.end_index() > 0 ? request_.end_index() : INT64_MAX;
+  // What is stored now: a job may write faster than the reader reads.
+  if (!request_.follow()) wanted_end_ = std::min(wanted_end_, known_count_);
   open_ = true;
   Response message;
   message.mutable_header()->set_generation(generation_);
@@ -97,15 +100,14 @@ void FrameStream::Advance() {
     WakeAfter(std::chrono::ceil<std::chrono::milliseconds>(rest));
     return;
   }
-  const std::int64_t wanted_end = request_.end_index() > 0 ? request_.end_index() : INT64_MAX;
   const bool look =
       latest || next_index_ >= known_count_ || Clock::now() - last_look_ >= context_.settings.progress_interval;
   if (look && !Refresh()) return;
   Beat();
   if (latest) next_index_ = NewestIndex();
-  if (next_index_ < std::min(known_count_, wanted_end)) {
+  if (next_index_ < std::min(known_count_, wanted_end_)) {
     BeginFrame(next_index_);
-  } else if (next_index_ >= wanted_end || !request_.follow() || IsFinal(view_.record.state)) {
+  } else if (next_index_ >= wanted_end_ || IsFinal(view_.record.state)) {
     PushEnd();
   } else {
     WakeAfter(std::min(context_.settings.progress_interval, context_.settings.heartbeat_interval));
@@ -113,8 +115,7 @@ void FrameStream::Advance() {
 }
 
 std::int64_t FrameStream::NewestIndex() const {
-  std::int64_t count = known_count_;
-  if (request_.end_index() > 0) count = std::min(count, request_.end_index());
+  const std::int64_t count = std::min(known_count_, wanted_end_);
   if (count <= next_index_) return next_index_;
   return next_index_ + (count - 1 - next_index_) / stride_ * stride_;
 }

@@ -49,6 +49,7 @@ class FrameStream : public OutStream {
   std::int64_t next_index_ = 0;  // the next frame to send
   std::int64_t stride_ = 1;
   std::int64_t known_count_ = 0;        // frames stored, as of the last Refresh
+  std::int64_t wanted_end_ = 0;         // no frame from there on is sent
   std::vector<FrameRecord> listed_;     // records read ahead
   std::optional<FrameRecord> current_;  // being sent
   std::int64_t offset_ = 0;             // of the next chunk in it [byte]
