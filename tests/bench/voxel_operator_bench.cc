@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "core/linalg/lanczos.h"
+#include "../voxel/voxel_scenes.h"
 #include "ratio.h"
 #include "voxel_matrix.h"
 
@@ -11,23 +11,13 @@ namespace {
 
 constexpr std::int32_t kSide = 64;
 
-template <class S>
-VoxelField<S> SomeField(std::int32_t nodes) {
-  VoxelField<S> x(nodes);
-  for (int d = 0; d < 3; ++d) {
-    for (std::int32_t n = 0; n < nodes; ++n)
-      x(n, d) = static_cast<S>(HashedUnit(3 * static_cast<std::uint64_t>(n) + d));
-  }
-  return x;
-}
-
 // Mvoxels/s, the median of some rounds.
 template <class S>
 void PrintSpeed(const char* name, const VoxelStiffness& stiffness, int threads) {
   const VoxelMesh& mesh = *stiffness.mesh;
   ThreadTeam team(threads);
   const VoxelOperator<S> K(stiffness);
-  const VoxelField<S> x = SomeField<S>(mesh.nodes());
+  const VoxelField<S> x = testing::RandomField<S>(mesh.nodes());
   VoxelField<S> y(mesh.nodes());
   std::vector<double> times;
   for (int round = 0; round < 50; ++round) times.push_back(SecondsOf([&] { K.Apply(x, team, y); }));
@@ -35,9 +25,7 @@ void PrintSpeed(const char* name, const VoxelStiffness& stiffness, int threads) 
 }
 
 int Main() {
-  VoxelGrid grid = MakeVoxelGrid({kSide, kSide, kSide}, Vec3::Constant(1e-3));
-  grid.material.assign(grid.voxels(), 1);
-  const VoxelMesh mesh(grid);
+  const VoxelMesh mesh(testing::BoxGrid({kSide, kSide, kSide}, Vec3::Constant(1e-3)));
   const VoxelMaterial muscle = {3e4, 0.45};
   const VoxelStiffness stiffness(mesh, {muscle}, Dilatation::kFull);
   for (const int threads : {1, 2}) {
@@ -47,7 +35,7 @@ int Main() {
 
   const auto matrix = AssembleVoxels<Eigen::SparseMatrix<double, Eigen::RowMajor>>(mesh, muscle);
   const VoxelOperator<double> K(stiffness);
-  const VoxelField<double> x = SomeField<double>(mesh.nodes());
+  const VoxelField<double> x = testing::RandomField<double>(mesh.nodes());
   VoxelField<double> y(mesh.nodes());
   Eigen::VectorXd x_vector(matrix.rows()), y_vector(matrix.rows());
   for (std::int32_t n = 0; n < mesh.nodes(); ++n) x_vector.segment<3>(3 * static_cast<Eigen::Index>(n)) = x.At(n);
