@@ -1,13 +1,17 @@
-// StreamFrames of a stored job against a raw gRPC stream of the same messages from memory, and GetJob against a raw
-// answer. Servers of both kinds live in this process, each with its own connection, and the same client reads both.
+// StreamFrames of a stored job against a raw gRPC stream of the same messages from memory, GetJob against a raw answer,
+// and StreamFrames beside readers that have stopped reading against the same alone. Servers of all kinds live in this
+// process, each with its own connection, and the same client reads from them.
 #include <stdlib.h>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <grpcpp/grpcpp.h>
 #include <spdlog/logger.h>
@@ -26,6 +30,7 @@ namespace {
 constexpr int kFrames = 100;
 constexpr std::int64_t kFrameSize = 3 * FrameStore::kChunkSize + FrameStore::kChunkSize / 2;
 constexpr int kCalls = 1000;
+constexpr int kStalled = 20;
 
 std::string RandomBytes(std::size_t size) {
   std::string bytes(size, '\0');
@@ -147,6 +152,51 @@ void ReadAll(v1::FrameService::Stub& stub, const std::string& name) {
   if (!reader->Finish().ok() || bytes != kFrames * kFrameSize) throw std::runtime_error("the stream was cut");
 }
 
+// Readers that take the header of a stream and nothing more, each with a connection of its own, until destroyed.
+class StalledReaders {
+ public:
+  StalledReaders(int port, const std::string& name) {
+    v1::StreamFramesRequest request;
+    request.set_name(name);
+    for (int i = 0; i < kStalled; ++i) {
+      Reader& one = *readers_.emplace_back(std::make_unique<Reader>());
+      one.stub = v1::FrameService::NewStub(ChannelTo(port));
+      one.stream = one.stub->StreamFrames(&one.context, request);
+      v1::StreamFramesResponse header;
+      if (!one.stream->Read(&header)) throw std::runtime_error("the stream was cut");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until what fits in between is written
+  }
+  ~StalledReaders() {
+    for (auto& one : readers_) {
+      one->context.TryCancel();
+      one->stream->Finish();
+    }
+  }
+
+ private:
+  struct Reader {
+    std::unique_ptr<v1::FrameService::Stub> stub;
+    grpc::ClientContext context;
+    std::unique_ptr<grpc::ClientReader<v1::StreamFramesResponse>> stream;
+  };
+  std::vector<std::unique_ptr<Reader>> readers_;
+};
+
+// How fast one reads beside stalled readers, over alone. They come and go between the rounds, untimed.
+void CompareBesideStalled(v1::FrameService::Stub& stub, int port, const std::string& name) {
+  std::vector<double> beside, alone, ratios;
+  for (int round = 0; round < bench::kRounds; ++round) {
+    alone.push_back(bench::SecondsOf([&] { ReadAll(stub, name); }));
+    const StalledReaders stalled(port, name);
+    beside.push_back(bench::SecondsOf([&] { ReadAll(stub, name); }));
+    ratios.push_back(alone.back() / beside.back());
+  }
+  std::printf("stream_beside_stalled: A %.6g s beside %d, B %.6g s alone (medians of %zu rounds)\n",
+              bench::Median(beside), kStalled, bench::Median(alone), ratios.size());
+  std::printf("ratio stream_beside_stalled %.3f\n", bench::Median(ratios));
+}
+
 v1::Job GetMany(v1::JobService::Stub& stub, const std::string& name, int calls) {
   v1::GetJobRequest request;
   request.set_name(name);
@@ -188,6 +238,7 @@ void Run() {
   bench::MedianRatio(
       "unary_vs_echo", 11, [&] { GetMany(*our_jobs, name, kCalls); }, [&] { GetMany(*raw_jobs_stub, name, kCalls); });
   raw->Shutdown();
+  CompareBesideStalled(*our_frames, ours.port(), name);
 }
 
 }  // namespace
