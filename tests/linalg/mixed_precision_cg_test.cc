@@ -16,7 +16,7 @@ using testing::SpringGrid;
 
 // With `inertia` on the diagonal of what is free: every eigenvalue of the matrix is at least that.
 struct HeavyGrid : SpringGrid {
-  HeavyGrid(int n, double inertia) : SpringGrid(n), b(RandomField(free, 3)) {
+  HeavyGrid(int side, double inertia) : SpringGrid(side), b(RandomField(free, 3)) {
     for (std::size_t i = 0; i < free.size(); ++i) {
       const auto n = static_cast<std::int32_t>(i);
       for (int c = 0; c < 3; ++c) values[pattern.PlaceOf(n, n)](c, c) += free[i][c] ? inertia : 0;
@@ -63,7 +63,8 @@ TEST(MixedPrecisionCgTest, HeldComponentsStay) {
   HeavyGrid grid(6, 0.05);
   EXPECT_TRUE(grid.Solve(1e-9).converged);
   for (std::size_t i = 0; i < grid.free.size(); ++i) {
-    if (!grid.free[i][0]) EXPECT_EQ(grid.x[i], Vec3(Vec3::Zero()));
+    if (grid.free[i][0]) continue;
+    EXPECT_EQ(grid.x[i], Vec3(Vec3::Zero()));
   }
 }
 
