@@ -1,7 +1,5 @@
 #include "core/linalg/multigrid.h"
 
-#include <Eigen/Eigenvalues>
-
 #include <cmath>
 
 #include "core/base/check.h"
@@ -9,8 +7,7 @@
 namespace fascicle {
 namespace {
 
-using Vec4f = Eigen::Vector4f;  // three components and one that is zero, for whole vector registers
-using Field = std::vector<Vec4f>;
+using Field = FloatField;
 
 // Levels up to that many blocks are factored.
 constexpr std::size_t kCoarsest = 500;
@@ -22,30 +19,8 @@ constexpr float kDamped = 1.0f / 8;
 constexpr double kMostSpread = 3000;
 constexpr int kPowerIterations = 12;
 constexpr float kEigenvalueMargin = 1.15f;
-// Least eigenvalue of a diagonal block relative to its largest, and what is added to the coarsest diagonal for
-// rotations that nothing resists.
-constexpr double kLeastEigenvalue = 1e-6;
+// What is added to the coarsest diagonal for rotations that nothing resists.
 constexpr double kRegularization = 1e-9;
-
-struct FloatBlock {
-  std::array<Vec4f, 3> column;
-
-  FloatBlock() = default;
-  explicit FloatBlock(const Mat3& m) {
-    for (int c = 0; c < 3; ++c) column[c] << m.col(c).cast<float>(), 0;
-  }
-  Vec4f operator*(const Vec4f& x) const { return column[0] * x[0] + column[1] * x[1] + column[2] * x[2]; }
-  Vec4f TransposedTimes(const Vec4f& x) const { return Vec4f(column[0].dot(x), column[1].dot(x), column[2].dot(x), 0); }
-};
-
-// The inverse of a symmetric block with its eigenvalues' absolute values, none too small.
-Mat3 PositiveInverse(const Mat3& block) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(block);
-  Vec3 values = eigen.eigenvalues().cwiseAbs();
-  const double least = kLeastEigenvalue * values.maxCoeff();
-  values = values.cwiseMax(least > 0 ? least : 1);
-  return eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
-}
 
 // Some vector without a pattern, the same every time.
 Field StartVector(std::size_t size) {
@@ -73,29 +48,14 @@ struct Multigrid::Level {
     for (Field* field : {&x, &b, &r, &d, &d_next}) field->assign(p.rows(), Vec4f::Zero());
   }
 
-  void SetValues(const BlockValues& values, ThreadTeam& team) {
-    matrix.resize(values.size());
-    inverse_diagonal.resize(pattern->rows());
-    ForNodes(team, pattern->rows(), [&](std::size_t i) {
-      for (std::int32_t k = pattern->begin[i]; k < pattern->begin[i + 1]; ++k) matrix[k] = FloatBlock(values[k]);
-      const auto n = static_cast<std::int32_t>(i);
-      inverse_diagonal[i] = FloatBlock(PositiveInverse(values[pattern->PlaceOf(n, n)]));
-    });
-  }
-
-  Vec4f RowTimes(std::size_t i, const Field& v) const {
-    Vec4f sum = Vec4f::Zero();
-    for (std::int32_t k = pattern->begin[i]; k < pattern->begin[i + 1]; ++k) sum += matrix[k] * v[pattern->column[k]];
-    return sum;
-  }
-
   // By power iteration.
   void FindLargestEigenvalue(ThreadTeam& team) {
     Field v = StartVector(pattern->rows()), w(pattern->rows());
     double length = std::sqrt(SquaredNorm(v, team));
     for (int i = 0; i < kPowerIterations; ++i) {
       const auto scale = static_cast<float>(1 / length);
-      ForNodes(team, v.size(), [&](std::size_t n) { w[n] = inverse_diagonal[n] * (RowTimes(n, v) * scale); });
+      ForNodes(team, v.size(),
+               [&](std::size_t n) { w[n] = matrix.inverse_diagonal(n) * (matrix.RowTimes(n, v) * scale); });
       std::swap(v, w);
       length = std::sqrt(SquaredNorm(v, team));
     }
@@ -109,8 +69,8 @@ struct Multigrid::Level {
     const float sigma = centre / half;
     float rho = 1 / sigma;
     ForNodes(team, size, [&](std::size_t n) {
-      r[n] = from_zero ? b[n] : Vec4f(b[n] - RowTimes(n, x));
-      d[n] = (inverse_diagonal[n] * r[n]) / centre;
+      r[n] = from_zero ? b[n] : Vec4f(b[n] - matrix.RowTimes(n, x));
+      d[n] = (matrix.inverse_diagonal(n) * r[n]) / centre;
     });
     for (int k = 0; k < kSmoothing; ++k) {
       if (k + 1 == kSmoothing) {
@@ -121,8 +81,8 @@ struct Multigrid::Level {
       const float keep = rho_next * rho, step = 2 * rho_next / half;
       ForNodes(team, size, [&](std::size_t n) {
         x[n] = from_zero && k == 0 ? d[n] : Vec4f(x[n] + d[n]);
-        r[n] -= RowTimes(n, d);
-        d_next[n] = keep * d[n] + step * (inverse_diagonal[n] * r[n]);
+        r[n] -= matrix.RowTimes(n, d);
+        d_next[n] = keep * d[n] + step * (matrix.inverse_diagonal(n) * r[n]);
       });
       std::swap(d, d_next);
       rho = rho_next;
@@ -144,7 +104,7 @@ struct Multigrid::Level {
   const BlockPattern* pattern;  // of the caller or the finer level
   FreeComponents free;
   std::vector<RigidBlock> blocks;
-  std::vector<FloatBlock> matrix, inverse_diagonal;
+  FloatMatrix matrix;
   float largest_eigenvalue = 1;
   float damped = kDamped;  // part of the spectrum, from the largest eigenvalue down
   Field x, b, r, d, d_next;
@@ -171,7 +131,7 @@ bool Multigrid::SetUp(const BlockValues& values, ThreadTeam& team, double least_
   const BlockValues* current = &values;
   for (std::size_t l = 0; HasCoarser(l); ++l) {
     Level& level = *levels_[l];
-    level.SetValues(*current, team);
+    level.matrix.SetValues(*level.pattern, *current, team);
     level.FindLargestEigenvalue(team);
     if (l == 0) {
       smoothes_only_ = least_eigenvalue * kMostSpread >= level.largest_eigenvalue;
@@ -274,7 +234,7 @@ void Multigrid::Cycle(std::size_t l, ThreadTeam& team) {
   Level& level = *levels_[l];
   Level& coarse = *levels_[l + 1];
   level.Smooth(true, team);
-  ForNodes(team, level.b.size(), [&](std::size_t n) { level.r[n] = level.b[n] - level.RowTimes(n, level.x); });
+  ForNodes(team, level.b.size(), [&](std::size_t n) { level.r[n] = level.b[n] - level.matrix.RowTimes(n, level.x); });
   const TransposedPattern& restriction = level.galerkin.restriction();
   ForNodes(team, coarse.b.size(), [&](std::size_t n) {
     Vec4f sum = Vec4f::Zero();

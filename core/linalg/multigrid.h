@@ -8,6 +8,7 @@
 
 #include "core/linalg/aggregation.h"
 #include "core/linalg/direct_solver.h"
+#include "core/linalg/float_matrix.h"
 
 namespace fascicle {
 

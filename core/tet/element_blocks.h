@@ -13,8 +13,8 @@ namespace fascicle {
 
 // Elements of a block: a whole number of the widest vectors, of float too.
 inline constexpr int kBlock = 16;
-// A chunk ends before it has more. Its nodes' values then lie in the first level of the cache, or nearly.
-inline constexpr int kChunkElements = 1024;
+// A chunk ends before it has more. Its nodes' values then lie in the cache.
+inline constexpr int kChunkElements = 4096;
 inline constexpr int kChunkNodes = 1024;
 
 // A point of the elements of a block at rest. The elements that the last block of a chunk lacks are those of the one
@@ -63,7 +63,7 @@ struct Sharing {
 
 struct ElementChunks {
   std::vector<Chunk> chunks;
-  std::vector<std::int32_t> nodes;  // of each chunk, in the order in which its elements first name them
+  std::vector<std::int32_t> nodes;  // of each chunk, ascending
   // In its chunk's nodes: node a of lane k of block b is local[(nodes of an element * b + a) * kBlock + k].
   std::vector<std::uint16_t> local;
   std::vector<std::int32_t> slot;   // of each element: kBlock * block + lane

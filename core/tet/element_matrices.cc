@@ -79,95 +79,59 @@ ChunkReport PlainForces(const TetModel& model, const IncrementalPotential& poten
   return report;
 }
 
-// As the kernels' matrices, by PointPotential.
+// Adds the matrix of a point to those of its element's pairs of nodes.
 template <class Element>
-void SetPlainMatrices(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
-                      std::span<const double> acting, double projection, const Chunk& chunk, std::size_t begin,
-                      std::size_t end, double* blocks, double* volumes) {
-  constexpr int kNodes = Element::kNodes, kPairs = kNodes * (kNodes + 1) / 2;
+void AddPoint(const Mat9& H, const Eigen::Matrix<double, 3, Element::kNodes>& G, double volume, Mat3* pairs) {
+  for (int b = 0; b < Element::kNodes; ++b) {
+    // Change of P with each component of node b.
+    Eigen::Matrix<double, 9, 3> change = G(0, b) * H.leftCols<3>();
+    change += G(1, b) * H.middleCols<3>(3);
+    change += G(2, b) * H.rightCols<3>();
+    change *= volume;
+    for (int a = b; a < Element::kNodes; ++a) {
+      pairs[a * (a + 1) / 2 + b] +=
+          G(0, a) * change.topRows<3>() + G(1, a) * change.middleRows<3>(3) + G(2, a) * change.bottomRows<3>();
+    }
+  }
+}
+
+// As the kernels' stiffness, by PointPotential.
+template <class Element>
+void AddPlainStiffness(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
+                       std::span<const double> acting, double projection, const Chunk& chunk,
+                       const ChunkBlocks& blocks) {
+  constexpr int kPairs = Element::kNodes * (Element::kNodes + 1) / 2;
   const TetBody& body = model.bodies()[model.groups()[chunk.group].body];
-  std::fill_n(blocks, 9 * kPairs * (end - begin), 0.0);
-  std::fill_n(volumes, 12 * kNodes * (end - begin), 0.0);
   VisitLaw(model, chunk, [&]<class Law>(const Law& law) {
-    for (std::size_t e = begin; e < end; ++e, blocks += 9 * kPairs, volumes += 12 * kNodes) {
+    for (std::size_t e = chunk.tet_begin; e < chunk.tet_end; ++e) {
       const auto values = ValuesOf<Element>(model, e, x);
+      std::array<Mat3, kPairs> pairs;
+      pairs.fill(Mat3::Zero());
       for (int q = 0; q < Element::kPoints; ++q) {
-        const double volume = model.rest_volume()[Element::kPoints * e + q];
         const Mat3 F = GradientAt<Element>(model, e, values, q);
         Mat9 H = PointPotential<Element, Law>(potential, model, body, law, e, q).Tangent(F);
         AddCofactorTangent(PatchPressure<Element>(model.patches(), acting, e, q), F, H);
         if (projection > 0) H += projection * (NearestPositive(H) - H);
-        const auto G = ShapeGradients<Element>(model, e, q);
-        const Mat3 cofactor = Cofactor(F);
-        for (int b = 0; b < kNodes; ++b) {
-          // Change of P with each component of node b.
-          Eigen::Matrix<double, 9, 3> change = G(0, b) * H.template leftCols<3>();
-          change += G(1, b) * H.template middleCols<3>(3);
-          change += G(2, b) * H.template rightCols<3>();
-          change *= volume;
-          for (int a = b; a < kNodes; ++a) {
-            Eigen::Map<Mat3>(blocks + 9 * (a * (a + 1) / 2 + b)) += G(0, a) * change.template topRows<3>() +
-                                                                    G(1, a) * change.template middleRows<3>(3) +
-                                                                    G(2, a) * change.template bottomRows<3>();
-          }
-          const Vec3 volume_change = volume * (cofactor * G.col(b));
-          for (int c = 0; c < 4; ++c) {
-            Eigen::Map<Vec3>(volumes + 3 * (kNodes * c + b)) += Element::Barycentric(q, c) * volume_change;
-          }
+        AddPoint<Element>(H, ShapeGradients<Element>(model, e, q), model.rest_volume()[Element::kPoints * e + q],
+                          pairs.data());
+      }
+      const std::size_t slot = e - chunk.tet_begin;
+      for (int pair = 0; pair < kPairs; ++pair) {
+        const std::size_t at = kPairs * (slot / kBlock) + pair;
+        Eigen::Map<Mat3> sum(blocks.sums + 9 * std::size_t{blocks.place[kBlock * at + slot % kBlock]});
+        if ((blocks.turned[at] >> slot % kBlock & 1) != 0) {
+          sum += pairs[pair].transpose();
+        } else {
+          sum += pairs[pair];
         }
       }
     }
   });
 }
 
-// Matrices of up to kBlock elements.
-struct BlockScratch {
-  alignas(64) double blocks[9 * 55 * kBlock];
-  alignas(64) double volumes[12 * 10 * kBlock];
-};
-
-// Sets the matrices of the elements of block b of a chunk.
-template <class Element>
-ElementMatrices MatricesOf(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
-                           std::span<const double> acting, double projection, const ForceWorkspace& workspace,
-                           const Chunk& chunk, std::size_t b, double* blocks, double* volumes) {
-  const std::size_t begin = chunk.tet_begin + kBlock * b;
-  const std::size_t end = std::min(begin + kBlock, chunk.tet_end);
-  if (potential.untangling || projection > 0) {
-    SetPlainMatrices<Element>(model, potential, x, acting, projection, chunk, begin, end, blocks, volumes);
-  } else {
-    KernelsOf(model, workspace).matrices(TaskOf(model, potential, x, acting, chunk), b, {blocks, volumes});
-  }
-  return {begin, end - begin, Element::kNodes, blocks, volumes};
-}
-
-template <class Element>
-void AddBlocks(const ElementMatrices& matrices, std::span<const std::int32_t> places, std::int32_t low,
-               std::int32_t high, std::span<double> values) {
-  constexpr std::size_t kPairs = Element::kNodes * (Element::kNodes + 1) / 2;
-  constexpr std::size_t kAhead = 32;  // blocks whose places are asked for meanwhile
-  const std::size_t count = kPairs * matrices.count;
-  const std::int32_t* place = &places[kPairs * matrices.begin];
-  const auto block_of = [](std::int32_t p) { return p < 0 ? ~p : p; };
-  const double* block = matrices.blocks;
-  for (std::size_t i = 0; i < count; ++i, block += 9) {
-    if (i + kAhead < count) {
-      const std::int32_t ahead = block_of(place[i + kAhead]);
-      if (ahead >= low && ahead < high) {
-        const double* line = &values[9 * static_cast<std::size_t>(ahead)];
-        __builtin_prefetch(line, 1);
-        __builtin_prefetch(line + 8, 1);
-      }
-    }
-    const std::int32_t at = block_of(place[i]);
-    if (at < low || at >= high) continue;
-    double* to = &values[9 * static_cast<std::size_t>(at)];
-    if (place[i] >= 0) {
-      for (int k = 0; k < 9; ++k) to[k] += block[k];
-    } else {
-      for (int k = 0; k < 9; ++k) to[k] += block[3 * (k % 3) + k / 3];
-    }
-  }
+void SetBoth(const StiffnessLayout::Target& target, const Mat3& block, BlockValues& values) {
+  values[target.high] = block.transpose();
+  values[target.low] = block;
 }
 
 }  // namespace
@@ -202,59 +166,40 @@ ElementEvaluation EvaluateElements(const TetModel& model, const IncrementalPoten
   return total;
 }
 
-void ForElementMatrices(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
-                        std::span<const double> acting, double projection, ThreadTeam& team,
-                        const ForceWorkspace& workspace, const std::function<void(const ElementMatrices&)>& visit) {
-  model.VisitElement([&]<class Element>(Element) {
-    ForChunks(model, team, [&](const Chunk& chunk, std::size_t) {
-      BlockScratch scratch;
-      for (std::size_t b = 0; b < chunk.block_end - chunk.block_begin; ++b) {
-        visit(MatricesOf<Element>(model, potential, x, acting, projection, workspace, chunk, b, scratch.blocks,
-                                  scratch.volumes));
-      }
-    });
-  });
-}
-
-void AddStiffness(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
-                  std::span<const double> acting, double projection, std::span<const std::int32_t> places,
-                  ThreadTeam& team, ForceWorkspace& workspace, std::span<double> values) {
+void AssembleStiffness(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
+                       std::span<const double> acting, double projection, const StiffnessLayout& layout,
+                       ThreadTeam& team, ForceWorkspace& workspace, BlockValues& values) {
   const std::vector<Chunk>& chunks = model.chunks().chunks;
-  model.VisitElement([&]<class Element>(Element) {
-    constexpr std::size_t kPairs = Element::kNodes * (Element::kNodes + 1) / 2;
-    // Chunks at a time whose matrices are computed together, each element's kept; then each thread goes through all of
-    // them and adds what falls into its part of the values. So they are added in the same order whatever the threads.
-    const std::size_t wave = team.size() == 1 ? 1 : 2 * static_cast<std::size_t>(team.size());
-    const std::size_t of_chunk = 9 * kPairs * kChunkElements;
-    std::vector<double>& kept = workspace.wave_blocks;
-    kept.resize(std::max(kept.size(), wave * of_chunk));
-    const auto blocks = static_cast<std::int32_t>(values.size() / 9);
-    for (std::size_t first = 0; first < chunks.size(); first += wave) {
-      const std::size_t count = std::min(wave, chunks.size() - first);
-      team.For(count, 1, [&](std::size_t begin, std::size_t end) {
-        double volumes[12 * Element::kNodes * kBlock];
-        for (std::size_t c = begin; c < end; ++c) {
-          const Chunk& chunk = chunks[first + c];
-          for (std::size_t b = 0; b < chunk.block_end - chunk.block_begin; ++b) {
-            MatricesOf<Element>(model, potential, x, acting, projection, workspace, chunk, b,
-                                &kept[c * of_chunk + 9 * kPairs * kBlock * b], volumes);
-          }
+  BlockValues& slots = workspace.slot_blocks;
+  slots.resize(layout.slots().size());
+  team.For(chunks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> sums;
+    for (std::size_t c = begin; c < end; ++c) {
+      const Chunk& chunk = chunks[c];
+      const std::span<const StiffnessLayout::Target> targets = layout.TargetsOf(c);
+      sums.assign(9 * targets.size(), 0.0);
+      const ChunkBlocks blocks{layout.PlacesOf(chunk.block_begin), layout.TurnedOf(chunk.block_begin), sums.data()};
+      if (potential.untangling || projection > 0) {
+        model.VisitElement([&]<class Element>(Element) {
+          AddPlainStiffness<Element>(model, potential, x, acting, projection, chunk, blocks);
+        });
+      } else {
+        KernelsOf(model, workspace).stiffness(TaskOf(model, potential, x, acting, chunk), blocks);
+      }
+      for (std::size_t i = 0; i < targets.size(); ++i) {
+        const Eigen::Map<const Mat3> block(&sums[9 * i]);
+        if (targets[i].low >= 0) {
+          SetBoth(targets[i], block, values);
+        } else {
+          slots[~targets[i].low] = block;
         }
-      });
-      const int parts = team.size();
-      team.For(parts, 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t part = begin; part < end; ++part) {
-          const auto low = static_cast<std::int32_t>(std::int64_t{blocks} * static_cast<std::int64_t>(part) / parts);
-          const auto high =
-              static_cast<std::int32_t>(std::int64_t{blocks} * static_cast<std::int64_t>(part + 1) / parts);
-          for (std::size_t c = 0; c < count; ++c) {
-            const Chunk& chunk = chunks[first + c];
-            AddBlocks<Element>({chunk.tet_begin, chunk.tet_end - chunk.tet_begin, Element::kNodes, &kept[c * of_chunk]},
-                               places, low, high, values);
-          }
-        }
-      });
+      }
     }
+  });
+  ForNodes(team, layout.shared().size(), [&](std::size_t i) {
+    Mat3 sum = Mat3::Zero();
+    for (std::int32_t k = layout.slot_begin()[i]; k < layout.slot_begin()[i + 1]; ++k) sum += slots[layout.slots()[k]];
+    SetBoth(layout.shared()[i], sum, values);
   });
 }
 

@@ -34,7 +34,7 @@ struct ForceWorkspace {
   const Kernels* kernels = &KernelsFor(PreferredInstructionSet());
   std::vector<double> slot_sums;     // of shared nodes or patches, see Sharing
   std::vector<ChunkReport> reports;  // of each chunk
-  std::vector<double> wave_blocks;   // of AddStiffness
+  std::vector<Mat3> slot_blocks;     // of AssembleStiffness
   // Of each patch: theta before and after smoothing [1], U'(theta) and what of it acts on elements, W U'(theta) [Pa].
   std::vector<double> raw_ratio, ratio, own_pressure, pressure;
 };

@@ -111,6 +111,7 @@ StepReport TetSolver::StepImplicit(const TetState& now, double dt, TetState& nex
   potential_.previous = &now.positions;
   potential_.viscous_rate = is_static || !model_.has_strain_damping() ? 0 : 1 / dt;
   Scheme scheme;
+  NodalVector continued = now.positions;  // as if free components kept their acceleration
   if (!is_static) {
     scheme = SchemeOf(method_.stepping, now, dt);
     // Mass damping a M v joins inertia: m (x - c) = M [inertia (x - a_centre) + a rate (x - v_centre)].
@@ -121,10 +122,14 @@ StepReport TetSolver::StepImplicit(const TetState& now, double dt, TetState& nex
       const double sum = scheme.inertia + damping;
       potential_.inertia[n] = model_.mass()[n] * sum;
       potential_.inertia_centre[n] = (scheme.inertia * scheme.a_centre[n] + damping * scheme.v_centre[n]) / sum;
+      const Vec3 free = model_.mass()[n] * model_.inverse_mass()[n];
+      const Vec3 ahead = scheme.a_centre[n] + now.accelerations[n] / scheme.inertia;
+      continued[n] += free.cwiseProduct(ahead - now.positions[n]);
     }
   }
   const NewtonResult result = [&] {
     const StageTimer timer(profile_, "Newton");
+    if (!is_static) newton_->StartNearer(potential_, continued, next.pressures, next.positions);
     return newton_->Solve(potential_, target, {method_.newton_tolerance, 50, stop_}, next.positions, next.pressures);
   }();
 

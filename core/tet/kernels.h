@@ -51,11 +51,13 @@ struct ChunkReport {
   bool finite = true;           // all sums
 };
 
-// The matrices of the elements of one block, see element_matrices.h: for element k at
-// blocks[k * (9 * pairs of nodes)] and volumes[k * (12 * nodes)].
-struct BlockMatrices {
-  double* blocks = nullptr;
-  double* volumes = nullptr;
+// Where a chunk adds up the 3x3 blocks d(-f_a)/dx_b of its elements, nine numbers each, column by column: that of pair
+// (a, b) of nodes, a >= b, of lane k of block i to sums[9 * place[j * kBlock + k]] with j = pairs of an element * i +
+// a (a + 1) / 2 + b, transposed where bit k of turned[j] is set.
+struct ChunkBlocks {
+  const std::uint16_t* place = nullptr;
+  const std::uint16_t* turned = nullptr;
+  double* sums = nullptr;
 };
 
 template <class S>
@@ -68,8 +70,8 @@ struct ElementKernels {
   void (*corner_volume_changes)(const ChunkTask<S>&);
   // K p, K = -df/dx with the pressures' change as given, at points a hair longer along the fibre.
   void (*stiffness_product)(const ChunkTask<S>&);
-  // Matrices of the elements of block b of the chunk.
-  void (*matrices)(const ChunkTask<S>&, std::size_t b, const BlockMatrices&);
+  // Adds the elements' blocks to the chunk's.
+  void (*stiffness)(const ChunkTask<S>&, const ChunkBlocks&);
 };
 
 // U' = k ln(theta)/theta of each of `count` patches; not finite where theta <= 0.

@@ -656,10 +656,9 @@ struct ChunkKernels {
   static constexpr int kPairs = kNodes * (kNodes + 1) / 2;
   static constexpr int PairOf(int a, int b) { return a * (a + 1) / 2 + b; }
 
-  // The entries of a block's matrices, element beside element.
+  // The matrices of a block's elements, side by side.
   struct alignas(64) MatrixEntries {
-    S blocks[kPairs][9][kBlock];
-    S volumes[4][kNodes][3][kBlock];
+    S of[kPairs][9][kBlock];
   };
 
   // H of a point under the whole potential.
@@ -715,24 +714,21 @@ struct ChunkKernels {
   static void Clear(MatrixEntries& entries) {
     for (int i = 0; i < kPairs; ++i) {
       for (int m = 0; m < 9; ++m) {
-        for (int k = 0; k < kBlock; k += L::kLanes) L(0.0).Store(&entries.blocks[i][m][k]);
+        for (int k = 0; k < kBlock; k += L::kLanes) L(0.0).Store(&entries.of[i][m][k]);
       }
-    }
-    for (int i = 0; i < 12 * kNodes; ++i) {
-      for (int k = 0; k < kBlock; k += L::kLanes) L(0.0).Store(&entries.volumes[0][0][0][kBlock * i + k]);
     }
   }
   static void AddBlocks(const Matrix3<L> (&corner_blocks)[10], int q, int k, MatrixEntries& entries) {
     static constexpr PartTable kParts;
     if constexpr (kNodes == 4) {
       for (int pair = 0; pair < kPairs; ++pair) {
-        for (int m = 0; m < 9; ++m) corner_blocks[pair].m[m].Store(&entries.blocks[pair][m][k]);
+        for (int m = 0; m < 9; ++m) corner_blocks[pair].m[m].Store(&entries.of[pair][m][k]);
       }
       return;
     }
     for (int a = 0; a < kNodes; ++a) {
       for (int b = 0; b <= a; ++b) {
-        S(*block)[kBlock] = entries.blocks[PairOf(a, b)];
+        S(*block)[kBlock] = entries.of[PairOf(a, b)];
         const Parts &of_a = kParts.of[a], &of_b = kParts.of[b];
         for (int i = 0; i < of_a.count; ++i) {
           for (int j = 0; j < of_b.count; ++j) {
@@ -749,89 +745,79 @@ struct ChunkKernels {
     }
   }
 
-  // Derivatives of the integrals of L_c J.
-  static void AddVolumes(const Matrix3<L>& F, const L& volume, const Matrix3<L>& Dm_inverse, int q, int k,
-                         MatrixEntries& entries) {
-    static constexpr PartTable kParts;
-    const Matrix3<L> h = volume * (Cofactor(F) * ::fascicle::Transpose(Dm_inverse));
-    for (int i = 0; i < 3; ++i) {
-      const L of_corner[4] = {-(h(i, 0) + h(i, 1) + h(i, 2)), h(i, 0), h(i, 1), h(i, 2)};
-      for (int a = 0; a < kNodes; ++a) {
-        const Parts& parts = kParts.of[a];
-        L change = 0.0;
-        for (int p = 0; p < parts.count; ++p) change += parts.factor[q][p] * of_corner[parts.corner[p]];
-        for (int c = 0; c < 4; ++c) {
-          S* to = &entries.volumes[c][a][i][k];
-          const L before = kNodes == 4 ? L(0.0) : L::Load(to);
-          (before + Barycentric(q, c) * change).Store(to);
-        }
+  // Transposes the matrices of the lanes whose bit is set.
+  static void Turn(unsigned lanes, S (&block)[9][kBlock]) {
+    if (lanes == 0) return;
+    alignas(64) S is_turned[kBlock];
+    for (int k = 0; k < kBlock; ++k) is_turned[k] = static_cast<S>(lanes >> k & 1);
+    for (int k = 0; k < kBlock; k += L::kLanes) {
+      const auto turned = L::Load(&is_turned[k]) > 0;
+      constexpr int kMirrored[3][2] = {{1, 3}, {2, 6}, {5, 7}};
+      for (const auto& [i, j] : kMirrored) {
+        const L a = L::Load(&block[i][k]), b = L::Load(&block[j][k]);
+        Select(turned, b, a).Store(&block[i][k]);
+        Select(turned, a, b).Store(&block[j][k]);
       }
     }
   }
 
-  // `count` entries of each of `elements` elements, from side by side to one element after another.
+  // Adds a block's matrices to those of the chunk, nine numbers as four, four and one, pair by pair and element by
+  // element whatever the number of lanes. Elements that a block lacks have no volume.
   using Four = Rows<Lanes<S, typename L::Tag, 4>>;
-  static void Separate(const S (*entries)[kBlock], int count, int elements, double* out) {
-    for (int first = 0; first < elements; first += 4) {
-      int entry = 0;
-      if constexpr (sizeof(S) == 8) {
-        for (; first + 4 <= elements && entry + 4 <= count; entry += 4) {
-          Row r[4];
-          for (int i = 0; i < 4; ++i) r[i] = Four::template Load<Row>(&entries[entry + i][first]);
-          Four::Transpose(r);
-          for (int i = 0; i < 4; ++i) Four::Store(r[i], reinterpret_cast<S*>(out) + count * (first + i) + entry);
+  static void AddToChunk(MatrixEntries& entries, std::size_t b, const ChunkBlocks& chunk) {
+    for (int pair = 0; pair < kPairs; ++pair) {
+      const std::size_t at = kPairs * b + pair;
+      S(&block)[9][kBlock] = entries.of[pair];
+      Turn(chunk.turned[at], block);
+      const std::uint16_t* place = chunk.place + kBlock * at;
+      for (int first = 0; first < kBlock; first += 4) {
+        Row low[4], high[4];
+        for (int i = 0; i < 4; ++i) {
+          low[i] = Four::template Load<Row>(&block[i][first]);
+          high[i] = Four::template Load<Row>(&block[4 + i][first]);
         }
-      }
-      for (; entry < count; ++entry) {
-        for (int i = first; i < elements && i < first + 4; ++i) out[count * i + entry] = entries[entry][i];
+        Four::Transpose(low);
+        Four::Transpose(high);
+        for (int i = 0; i < 4; ++i) {
+          S* to = reinterpret_cast<S*>(chunk.sums) + 9 * std::size_t{place[first + i]};
+          Four::Store(Four::template Load<Row>(to) + low[i], to);
+          Four::Store(Four::template Load<Row>(to + 4) + high[i], to + 4);
+          to[8] += block[8][first + i];
+        }
       }
     }
   }
 
-  [[gnu::flatten]] static void Matrices(const ChunkTask<S>& task, std::size_t b, const BlockMatrices& out) {
-    NodeValues positions, previous;
-    const std::uint16_t* local = task.local + b * kNodes * kBlock;
+  [[gnu::flatten]] static void Stiffness(const ChunkTask<S>& task, const ChunkBlocks& chunk) {
+    NodeRows x, before;
     const bool needs_previous = HasRate(task) || IsViscous(task);
-    LoadElements(task, task.x, task.pressure, local, positions);
-    if (needs_previous) LoadElements(task, task.previous, nullptr, local, previous);
+    LoadPositions(task, task.x, task.pressure, x);
+    if (needs_previous) LoadPositions(task, task.previous, nullptr, before);
+    NodeValues positions, previous;
     MatrixEntries entries;
-    if (kNodes != 4) Clear(entries);
     PointBlock<S> point;
     alignas(64) S H[TangentMatrix<L>::kEntries][kBlock];
-    SetActivation(task, task.fibres[b], point);
-    for (int q = 0; q < kPoints; ++q) {
-      const RestPoint<S>& rest = task.points[kPoints * b + q];
-      for (int k = 0; k < kBlock; k += L::kLanes) StoreMatrix(Gradient(positions, rest, q, k), k, point.F.m);
-      if (HasRate(task)) SetPreviousStretch(previous, rest, q, point);
-      LawList<L, Material>::kKernels[task.law_kind].tangent(task.law, point, H);
-      for (int k = 0; k < kBlock; k += L::kLanes) {
-        const Matrix3<L> F = LoadMatrix<L>(point.F.m, k), Dm_inverse = LoadMatrix<L>(rest.Dm_inverse, k);
-        const L volume = L::Load(&rest.volume[k]);
-        Matrix3<L> corner_blocks[10];
-        SetCornerBlocks(TangentAt(task, H, F, positions, previous, rest, q, k), volume, Dm_inverse, corner_blocks);
-        AddBlocks(corner_blocks, q, k, entries);
-        AddVolumes(F, volume, Dm_inverse, q, k, entries);
-      }
-    }
-    const int elements = ElementsOf(task, b);
-    Separate(&entries.blocks[0][0], 9 * kPairs, elements, out.blocks);
-    Separate(&entries.volumes[0][0][0], 12 * kNodes, elements, out.volumes);
-  }
-
-  // The values of the nodes of a block's elements straight from all nodes.
-  static void LoadElements(const ChunkTask<S>& task, const double* values, const double* of_patch,
-                           const std::uint16_t* local, NodeValues& to) {
-    const double* origin = values + 3 * task.nodes[0];
-    for (int a = 0; a < kNodes; ++a) {
-      for (int k = 0; k < kBlock; ++k) {
-        const int node = local[a * kBlock + k];
-        const double* value = values + 3 * task.nodes[node];
-        for (int c = 0; c < 3; ++c) {
-          to.at[a][c][k] = static_cast<S>(sizeof(S) == 4 ? value[c] - origin[c] : value[c]);
+    for (std::size_t b = 0; b * kBlock < task.elements; ++b) {
+      Prefetch(task, b + 1);
+      const std::uint16_t* local = task.local + b * kNodes * kBlock;
+      Gather(x, local, positions);
+      if (needs_previous) Gather(before, local, previous);
+      if (kNodes != 4) Clear(entries);
+      SetActivation(task, task.fibres[b], point);
+      for (int q = 0; q < kPoints; ++q) {
+        const RestPoint<S>& rest = task.points[kPoints * b + q];
+        for (int k = 0; k < kBlock; k += L::kLanes) StoreMatrix(Gradient(positions, rest, q, k), k, point.F.m);
+        if (HasRate(task)) SetPreviousStretch(previous, rest, q, point);
+        LawList<L, Material>::kKernels[task.law_kind].tangent(task.law, point, H);
+        for (int k = 0; k < kBlock; k += L::kLanes) {
+          const Matrix3<L> F = LoadMatrix<L>(point.F.m, k);
+          Matrix3<L> corner_blocks[10];
+          SetCornerBlocks(TangentAt(task, H, F, positions, previous, rest, q, k), L::Load(&rest.volume[k]),
+                          LoadMatrix<L>(rest.Dm_inverse, k), corner_blocks);
+          AddBlocks(corner_blocks, q, k, entries);
         }
-        const bool has_patch = of_patch != nullptr && task.patch[node] != Sharing::kNone;
-        to.at[a][3][k] = has_patch ? static_cast<S>(of_patch[task.patch[node]]) : S(0);
       }
+      AddToChunk(entries, b, chunk);
     }
   }
 };
@@ -840,9 +826,9 @@ template <class L, class Shape>
 constexpr ElementKernels<typename L::Scalar> ElementKernelsOf() {
   using K = ChunkKernels<L, Shape>;
   using S = typename L::Scalar;
-  void (*matrices)(const ChunkTask<S>&, std::size_t, const BlockMatrices&) = nullptr;
-  if constexpr (sizeof(S) == 8) matrices = &K::Matrices;
-  return {&K::Forces, &K::CornerVolumes, &K::CornerVolumeChanges, &K::StiffnessProduct, matrices};
+  void (*stiffness)(const ChunkTask<S>&, const ChunkBlocks&) = nullptr;
+  if constexpr (sizeof(S) == 8) stiffness = &K::Stiffness;
+  return {&K::Forces, &K::CornerVolumes, &K::CornerVolumeChanges, &K::StiffnessProduct, stiffness};
 }
 
 template <class L>

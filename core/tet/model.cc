@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "core/base/check.h"
+#include "core/tet/chunk_order.h"
 
 namespace fascicle {
 namespace {
@@ -41,30 +42,6 @@ double ElementVolumeModulus(const Law& law, ElementOrder order) {
   if (modulus <= kDoesNotLock * (1 + 1e-12) * shear) return modulus;
   const double active_stress = law.Stress(Mat3::Identity(), FibreState{Vec3::UnitX(), 1}).norm();
   return std::min(modulus, kept * (shear + active_stress));
-}
-
-// Where the middle of each tetrahedron lies on a curve that fills the mesh's bounding box, so that what is near on the
-// curve is near in space: the bits of its three coordinates in turn [Morton 1966].
-std::vector<std::uint64_t> PlacesOnCurve(const TetMesh& mesh) {
-  constexpr int kBits = 20;
-  Vec3 low = Vec3::Zero(), high = low;
-  if (!mesh.nodes.empty()) low = high = mesh.nodes[0];
-  for (const Vec3& X : mesh.nodes) {
-    low = low.cwiseMin(X);
-    high = high.cwiseMax(X);
-  }
-  const double cell = (high - low).maxCoeff() / (1 << kBits);
-  std::vector<std::uint64_t> places;
-  places.reserve(mesh.tetrahedra.size());
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-    const Vec3 middle = (Centroid(mesh, t) - low) / cell;
-    std::uint64_t place = 0;
-    for (int bit = kBits - 1; bit >= 0; --bit) {
-      for (int c = 0; c < 3; ++c) place = place << 1 | (static_cast<std::uint64_t>(middle[c]) >> bit & 1);
-    }
-    places.push_back(place);
-  }
-  return places;
 }
 
 // Whether the active stress of any law depends on how fast the fibre shortens.
@@ -169,22 +146,52 @@ void TetModel::AddNodes(const Body& body, TetBody& entry) {
   mass_damping_.resize(entry.node_end, entry.mass_damping);
 }
 
+// Sorts the elements of each law into chunks; they are sorted by law already.
+template <class LawOf>
+void TetModel::SortIntoChunks(const TetMesh& mesh, const TetBody& entry, const LawOf& law,
+                              std::span<std::int32_t> sorted) {
+  std::vector<Vec3> middles;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) middles.push_back(Centroid(mesh, t));
+  std::vector<std::size_t> last_count(entry.node_end - entry.node_begin, 0);
+  std::size_t counts = 0;
+  const auto count_nodes = [&](std::span<const std::int32_t> elements) {
+    ++counts;
+    std::size_t nodes = 0;
+    const auto see = [&](std::size_t n) {
+      nodes += last_count[n] != counts;
+      last_count[n] = counts;
+    };
+    for (const std::int32_t t : elements) {
+      for (const std::int32_t n : mesh.tetrahedra[t]) see(n);
+      if (edge_nodes_.empty()) continue;
+      for (const std::int32_t n : edge_nodes_[entry.tet_begin + t]) see(n - entry.node_begin);
+    }
+    return nodes;
+  };
+  for (std::size_t begin = 0; begin < sorted.size();) {
+    std::size_t end = begin;
+    while (end < sorted.size() && law(sorted[end]) == law(sorted[begin])) ++end;
+    for (const std::size_t chunk : CutIntoChunks(sorted.subspan(begin, end - begin), middles, count_nodes)) {
+      building_.chunk_ends.push_back(entry.tet_begin + begin + chunk);
+    }
+    begin = end;
+  }
+}
+
 void TetModel::AddElements(const Body& body, TetBody& entry) {
   const std::size_t count = body.mesh.tetrahedra.size();
   entry.tet_begin = tetrahedra();
   entry.tet_end = entry.tet_begin + count;
-  // AddNodes left the edges in the mesh's order.
   std::vector<std::size_t> kinds(count);
   for (std::size_t t = 0; t < count; ++t) kinds[t] = MaterialOf(body, t).index();
-  // One chunk is near in any order.
-  const std::vector<std::uint64_t> curve =
-      count > kChunkElements ? PlacesOnCurve(body.mesh) : std::vector<std::uint64_t>(count, 0);
-  const auto key = [&](std::int32_t t) {
-    return std::tuple{kinds[t], body.material_of.empty() ? 0 : body.material_of[t], curve[t]};
+  const auto law = [&](std::int32_t t) {
+    return std::pair{kinds[t], body.material_of.empty() ? 0 : body.material_of[t]};
   };
   std::vector<std::int32_t> sorted(count);
   for (std::size_t t = 0; t < count; ++t) sorted[t] = static_cast<std::int32_t>(t);
-  std::stable_sort(sorted.begin(), sorted.end(), [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
+  std::stable_sort(sorted.begin(), sorted.end(), [&](std::int32_t a, std::int32_t b) { return law(a) < law(b); });
+  SortIntoChunks(body.mesh, entry, law, sorted);
+  // AddNodes left the edges in the mesh's order.
   if (!edge_nodes_.empty()) {
     const std::vector<std::array<std::int32_t, 6>> edges(
         edge_nodes_.begin() + static_cast<std::ptrdiff_t>(entry.tet_begin), edge_nodes_.end());
@@ -321,49 +328,58 @@ void TetModel::SetSmoothing() {
   }
 }
 
-// Cuts the elements of each law into chunks, and numbers the nodes of each chunk.
+// Where the elements of a chunk and their nodes are.
+template <class Element>
+void TetModel::AddLocalNumbers(const Chunk& chunk, std::span<const std::int32_t> local_of) {
+  chunks_.local.resize(Element::kNodes * kBlock * chunk.block_end);
+  chunks_.patch.resize(chunk.node_end, Sharing::kNone);
+  for (std::size_t slot = kBlock * chunk.block_begin; slot < kBlock * chunk.block_end; ++slot) {
+    // The last block's free lanes repeat the last element.
+    const std::size_t e = std::min(chunk.tet_begin + slot - kBlock * chunk.block_begin, chunk.tet_end - 1);
+    if (e == chunks_.slot.size()) chunks_.slot.push_back(static_cast<std::int32_t>(slot));
+    const auto element_nodes = NodesOf<Element>(e);
+    const bool has_patch = !patches_.empty() && patches_.of_element[e][0] != VolumePatches::kNone;
+    for (int a = 0; a < Element::kNodes; ++a) {
+      const std::int32_t local = local_of[element_nodes[a]];
+      chunks_.local[(Element::kNodes * (slot / kBlock) + a) * kBlock + slot % kBlock] =
+          static_cast<std::uint16_t>(local);
+      if (has_patch && a < 4) chunks_.patch[chunk.node_begin + local] = patches_.of_element[e][a];
+    }
+  }
+}
+
+// Numbers the nodes of each chunk, ascending.
 void TetModel::SetChunks() {
   VisitElement([&]<class Element>(Element) {
-    std::vector<std::int32_t> local_of(nodes(), -1), patch_of_local;
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      for (std::size_t e = groups_[g].tet_begin; e < groups_[g].tet_end;) {
-        Chunk chunk;
-        chunk.group = static_cast<std::int32_t>(g);
-        chunk.law = law_of_[e];
-        chunk.tet_begin = e;
-        chunk.node_begin = chunks_.nodes.size();
-        chunk.block_begin = chunks_.chunks.empty() ? 0 : chunks_.chunks.back().block_end;
-        const auto count_new = [&] {
-          const auto element_nodes = NodesOf<Element>(e);
-          return std::count_if(element_nodes.begin(), element_nodes.end(),
-                               [&](std::int32_t n) { return local_of[n] < 0; });
-        };
-        for (; e < groups_[g].tet_end && law_of_[e] == chunk.law && e - chunk.tet_begin < kChunkElements; ++e) {
-          if (chunks_.nodes.size() - chunk.node_begin + count_new() > kChunkNodes) break;
-          const std::size_t slot = kBlock * chunk.block_begin + (e - chunk.tet_begin);
-          chunks_.slot.push_back(static_cast<std::int32_t>(slot));
-          chunks_.local.resize(Element::kNodes * kBlock * (slot / kBlock + 1));
-          const auto element_nodes = NodesOf<Element>(e);
-          for (int a = 0; a < Element::kNodes; ++a) {
-            std::int32_t& local = local_of[element_nodes[a]];
-            if (local < 0) {
-              local = static_cast<std::int32_t>(chunks_.nodes.size() - chunk.node_begin);
-              chunks_.nodes.push_back(element_nodes[a]);
-              const bool has_patch = a < 4 && !patches_.empty() && patches_.of_element[e][0] != VolumePatches::kNone;
-              chunks_.patch.push_back(has_patch ? patches_.of_element[e][a] : Sharing::kNone);
-            }
-            // The last block's free lanes repeat the last element.
-            for (std::size_t k = slot % kBlock; k < kBlock; ++k) {
-              chunks_.local[(Element::kNodes * (slot / kBlock) + a) * kBlock + k] = static_cast<std::uint16_t>(local);
-            }
-          }
-        }
-        chunk.tet_end = e;
-        chunk.block_end = chunk.block_begin + (e - chunk.tet_begin + kBlock - 1) / kBlock;
-        chunk.node_end = chunks_.nodes.size();
-        for (std::size_t i = chunk.node_begin; i < chunk.node_end; ++i) local_of[chunks_.nodes[i]] = -1;
-        chunks_.chunks.push_back(chunk);
+    std::vector<std::int32_t> local_of(nodes(), -1);
+    std::size_t g = 0;
+    for (const std::size_t chunk_end : building_.chunk_ends) {
+      Chunk chunk;
+      if (!chunks_.chunks.empty()) {
+        chunk.tet_begin = chunks_.chunks.back().tet_end;
+        chunk.block_begin = chunks_.chunks.back().block_end;
+        chunk.node_begin = chunks_.chunks.back().node_end;
       }
+      while (chunk.tet_begin >= groups_[g].tet_end) ++g;
+      chunk.group = static_cast<std::int32_t>(g);
+      chunk.law = law_of_[chunk.tet_begin];
+      chunk.tet_end = chunk_end;
+      chunk.block_end = chunk.block_begin + (chunk_end - chunk.tet_begin + kBlock - 1) / kBlock;
+      for (std::size_t e = chunk.tet_begin; e < chunk_end; ++e) {
+        for (const std::int32_t n : NodesOf<Element>(e)) {
+          if (std::exchange(local_of[n], 0) < 0) chunks_.nodes.push_back(n);
+        }
+      }
+      chunk.node_end = chunks_.nodes.size();
+      FASCICLE_CHECK(chunk.node_end - chunk.node_begin <= kChunkNodes, "chunks are cut within their limits");
+      const auto first = chunks_.nodes.begin() + static_cast<std::ptrdiff_t>(chunk.node_begin);
+      std::sort(first, chunks_.nodes.end());
+      for (std::size_t i = chunk.node_begin; i < chunk.node_end; ++i) {
+        local_of[chunks_.nodes[i]] = static_cast<std::int32_t>(i - chunk.node_begin);
+      }
+      AddLocalNumbers<Element>(chunk, local_of);
+      for (std::size_t i = chunk.node_begin; i < chunk.node_end; ++i) local_of[chunks_.nodes[i]] = -1;
+      chunks_.chunks.push_back(chunk);
     }
   });
   chunks_.node_sums = Sharing(chunks_.nodes, nodes());

@@ -184,12 +184,16 @@ class TetModel {
   void AddBody(const Body& body);
   void AddNodes(const Body& body, TetBody& entry);
   void AddElements(const Body& body, TetBody& entry);
+  template <class LawOf>
+  void SortIntoChunks(const TetMesh& mesh, const TetBody& entry, const LawOf& law, std::span<std::int32_t> sorted);
   void FillGroup(const Body& body, TetGroup& group);
   template <class Element>
   double AddPoints(std::size_t tet);
   void AddPatches(const TetGroup& group, std::span<const double> given);
   void SetSmoothing();
   void SetChunks();
+  template <class Element>
+  void AddLocalNumbers(const Chunk& chunk, std::span<const std::int32_t> local_of);
   template <class S>
   void SetBlocks();
   std::vector<std::int32_t> NodesOfRegion(const Region& region, const TetBody& body) const;
@@ -215,6 +219,7 @@ class TetModel {
     std::vector<Vec3> fibres;
     std::vector<std::int32_t> activation_of;
     std::vector<double> activation_scale;
+    std::vector<std::size_t> chunk_ends;  // in elements
   };
   Building building_;
   std::vector<std::int32_t> source_tetrahedron_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fascicle {
 namespace {
@@ -58,7 +59,20 @@ NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const No
     if (attempt == 0 && result.end == NewtonResult::End::kNotConverged) result.end = NewtonResult::End::kInvalid;
   }
   result.solves = system_.solves();
+  is_evaluated_ = false;
   return result;
+}
+
+void NewtonSolver::StartNearer(const IncrementalPotential& potential, const NodalVector& guess,
+                               std::span<const double> pressure, NodalVector& x) {
+  const auto force_at = [&](const NodalVector& at) {
+    now_ = system_.Evaluate(potential, at, pressure, team_, force_);
+    NewtonResult result;
+    return now_.valid ? RelativeForce(result) * now_.force_scale : std::numeric_limits<double>::infinity();
+  };
+  const double here = force_at(x);
+  is_evaluated_ = force_at(guess) < here;
+  if (is_evaluated_) x = guess;
 }
 
 void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVector& target,
@@ -72,7 +86,8 @@ void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVec
       return;
     }
     const bool prescribed_move = FindRemaining(target, x);
-    now_ = system_.Evaluate(potential, x, pressure, team_, force_);
+    if (!is_evaluated_) now_ = system_.Evaluate(potential, x, pressure, team_, force_);
+    is_evaluated_ = false;
     if (!now_.valid) {
       result.end = NewtonResult::End::kInvalid;
       return;
@@ -159,6 +174,12 @@ double NewtonSolver::TakeStep(const IncrementalPotential& potential, double proj
   }
   std::swap(x, trial_);
   for (std::size_t n = 0; n < pressure.size(); ++n) pressure[n] += part * dp_[n];
+  // The line search was there, with the pressures of a whole step.
+  is_evaluated_ = !prescribed_move && (part == 1 || pressure.empty());
+  if (is_evaluated_) {
+    now_ = trial_now_;
+    std::swap(force_, trial_force_);
+  }
   return part;
 }
 
@@ -200,9 +221,10 @@ double NewtonSolver::LineSearch(const IncrementalPotential& potential, const Nod
   double augmentation = 0, slope = 0;
   if (!prescribed_move) {
     // Slope of the Lagrangian, in whose force p' stands for p, and of the augmentation for rho = k.
-    system_.Evaluate(potential, x, pressure_ahead_, team_, trial_force_);
+    if (!patches.empty()) system_.Evaluate(potential, x, pressure_ahead_, team_, trial_force_);
+    const NodalVector& force = patches.empty() ? force_ : trial_force_;
     double lagrangian = 0, volume = 0;
-    for (std::size_t n = 0; n < x.size(); ++n) lagrangian -= trial_force_[n].dot(dx_[n]);
+    for (std::size_t n = 0; n < x.size(); ++n) lagrangian -= force[n].dot(dx_[n]);
     for (std::size_t n = 0; n < patches.size(); ++n) {
       const double change = ratio_ahead_[n] - ratio_[n];
       volume -= patches.rest_volume[n] * patches.modulus[n] * change * change;
@@ -218,10 +240,10 @@ double NewtonSolver::LineSearch(const IncrementalPotential& potential, const Nod
   for (const Vec3& d : dx_) step_length = std::max(step_length, d.norm());
   for (double part = 1; part >= kShortestPart; part /= 2) {
     Move(x, part);
-    const NewtonSystem::Evaluation trial = system_.Evaluate(potential, trial_, pressure_ahead_, team_, trial_force_);
-    if (!trial.valid) continue;
+    trial_now_ = system_.Evaluate(potential, trial_, pressure_ahead_, team_, trial_force_);
+    if (!trial_now_.valid) continue;
     if (prescribed_move) return part;
-    const double trial_merit = trial.energy + PatchMerit(system_.ratios(), augmentation);
+    const double trial_merit = trial_now_.energy + PatchMerit(system_.ratios(), augmentation);
     if (trial_merit <= merit + kArmijo * part * slope) return part;
     // Where rounding hides the difference of the energies, which may be sums of much larger parts, their slopes tell
     // [Hager & Zhang 2005, 4.1].

@@ -44,6 +44,11 @@ class NewtonSolver {
   NewtonResult Solve(const IncrementalPotential& potential, const NodalVector& target, const NewtonOptions& options,
                      NodalVector& x, std::vector<double>& pressure);
 
+  // To be called before Solve: x becomes `guess` where that is nearer to a solution, that is valid with a smaller
+  // force.
+  void StartNearer(const IncrementalPotential& potential, const NodalVector& guess, std::span<const double> pressure,
+                   NodalVector& x);
+
  private:
   double TakeStep(const IncrementalPotential& potential, double projection, bool same_point, bool prescribed_move,
                   NodalVector& x, std::vector<double>& pressure);
@@ -66,8 +71,9 @@ class NewtonSolver {
   NewtonSystem system_;
   NodalVector force_, trial_, trial_force_, dx_, remaining_;
   std::vector<double> dp_, pressure_ahead_, ratio_, ratio_ahead_;  // of each patch
-  NewtonSystem::Evaluation now_;
-  double forcing_ = 0;  // tolerance of the next linear solution
+  NewtonSystem::Evaluation now_, trial_now_;
+  bool is_evaluated_ = false;  // now_ and force_ are those of where the next iteration starts
+  double forcing_ = 0;         // tolerance of the next linear solution
 };
 
 }  // namespace fascicle

@@ -142,9 +142,12 @@ void NewtonSystem::Assemble(const IncrementalPotential& potential, const NodalVe
   has_projected_ = false;
   SaddleMatrix& matrix = assembly_.matrix();
   // What the prescribed change leaves.
-  const std::vector<double> no_pressure(patches.size(), 0.0);
-  volume_side_.resize(patches.size());
-  matrix.Multiply(prescribed, no_pressure, team, side_, volume_side_);
+  side_.assign(model_.nodes(), Vec3::Zero());
+  volume_side_.assign(patches.size(), 0.0);
+  if (std::any_of(prescribed.begin(), prescribed.end(), [](const Vec3& d) { return d != Vec3::Zero(); })) {
+    const std::vector<double> no_pressure(patches.size(), 0.0);
+    matrix.Multiply(prescribed, no_pressure, team, side_, volume_side_);
+  }
   ForNodes(team, model_.nodes(), [&](std::size_t n) {
     for (int c = 0; c < 3; ++c) side_[n][c] = matrix.free[n][c] ? force[n][c] - side_[n][c] : 0;
   });

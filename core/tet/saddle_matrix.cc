@@ -60,19 +60,8 @@ void SaddleAssembly::FindPattern() {
   const VolumePatches& patches = model_.patches();
   matrix_.pattern =
       PatternOfElements(model_.nodes(), model_.tetrahedra(), [&](std::size_t e) { return model_.NodesOf<Element>(e); });
-  transposed_ = TransposedPattern(matrix_.pattern, model_.nodes());
+  layout_.emplace(model_, matrix_.pattern);
   matrix_.A.resize(matrix_.pattern.blocks());
-  for (std::size_t e = 0; e < model_.tetrahedra(); ++e) {
-    const auto nodes = model_.NodesOf<Element>(e);
-    for (int a = 0; a < kNodes; ++a) {
-      for (int b = 0; b <= a; ++b) {
-        const bool below = nodes[a] >= nodes[b];
-        const std::int32_t place =
-            below ? matrix_.pattern.PlaceOf(nodes[a], nodes[b]) : matrix_.pattern.PlaceOf(nodes[b], nodes[a]);
-        pair_places_.push_back(below ? place : ~place);
-      }
-    }
-  }
 
   matrix_.C.resize(patches.size());
   corner_begin_.assign(patches.size() + 1, 0);
@@ -138,7 +127,7 @@ void SaddleAssembly::FindSmoothedPattern() {
 void SaddleAssembly::Assemble(const IncrementalPotential& potential, const NodalVector& x,
                               std::span<const double> acting, std::span<const double> ratio, ThreadTeam& team,
                               ForceWorkspace& workspace) {
-  AssembleBlocks(potential, x, acting, 0, team, workspace, matrix_.A);
+  AssembleStiffness(model_, potential, x, acting, 0, *layout_, team, workspace, matrix_.A);
   model_.VisitElement([&]<class Element>(Element) { AssembleVolumes<Element>(x, team); });
   SmoothVolumes(team);
   const auto diagonal = [&](std::size_t n) -> Mat3& {
@@ -166,27 +155,11 @@ void SaddleAssembly::AssembleProjection(const IncrementalPotential& potential, c
                                         std::span<const double> acting, ThreadTeam& team, ForceWorkspace& workspace) {
   BlockValues exact(matrix_.pattern.blocks());
   projection_.resize(matrix_.pattern.blocks());
-  AssembleBlocks(potential, x, acting, 0, team, workspace, exact);
-  AssembleBlocks(potential, x, acting, 1, team, workspace, projection_);
+  AssembleStiffness(model_, potential, x, acting, 0, *layout_, team, workspace, exact);
+  AssembleStiffness(model_, potential, x, acting, 1, *layout_, team, workspace, projection_);
   ForNodes(team, matrix_.nodes(), [&](std::size_t row) {
     for (std::int32_t k = matrix_.pattern.begin[row]; k < matrix_.pattern.begin[row + 1]; ++k)
       projection_[k] -= exact[k];
-  });
-}
-
-// The lower triangle from the elements, the upper one from that.
-void SaddleAssembly::AssembleBlocks(const IncrementalPotential& potential, const NodalVector& x,
-                                    std::span<const double> acting, double projection, ThreadTeam& team,
-                                    ForceWorkspace& workspace, BlockValues& values) const {
-  std::fill(values.begin(), values.end(), Mat3::Zero());
-  AddStiffness(model_, potential, x, acting, projection, pair_places_, team, workspace,
-               {values.front().data(), 9 * values.size()});
-  ForNodes(team, matrix_.nodes(), [&](std::size_t row) {
-    for (std::int32_t k = matrix_.pattern.begin[row]; k < matrix_.pattern.begin[row + 1]; ++k) {
-      if (static_cast<std::size_t>(matrix_.pattern.column[k]) > row) {
-        values[k] = values[transposed_.source[k]].transpose();
-      }
-    }
   });
 }
 

@@ -1,6 +1,8 @@
 #ifndef FASCICLE_CORE_TET_SADDLE_MATRIX_H_
 #define FASCICLE_CORE_TET_SADDLE_MATRIX_H_
 
+#include <optional>
+
 #include "core/linalg/block_matrix.h"
 #include "core/tet/element_matrices.h"
 
@@ -58,21 +60,18 @@ class SaddleAssembly {
   template <class Element>
   void FindPattern();
   void FindSmoothedPattern();
-  void AssembleBlocks(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> acting,
-                      double projection, ThreadTeam& team, ForceWorkspace& workspace, BlockValues& values) const;
   template <class Element>
   void AssembleVolumes(const NodalVector& x, ThreadTeam& team);
   void SmoothVolumes(ThreadTeam& team);
 
   const TetModel& model_;
   SaddleMatrix matrix_;
-  TransposedPattern transposed_;  // of the pattern of A
-  BlockValues projection_;        // on that pattern
+  std::optional<StiffnessLayout> layout_;  // of A
+  BlockValues projection_;                 // on the pattern of A
   // B before smoothing, where there is smoothing, and the corners that make each of its rows: 4 * element + corner.
   BlockPattern raw_pattern_;
   NodalVector raw_B_;
   std::vector<std::int32_t> corner_begin_, corners_;
-  std::vector<std::int32_t> pair_places_;    // of element e: nodes a >= b, as AddStiffness takes them
   std::vector<std::int32_t> volume_places_;  // of each corner: nodes of its element
 };
 

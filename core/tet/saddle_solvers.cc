@@ -10,6 +10,10 @@ namespace {
 constexpr std::int32_t kNone = -1;
 constexpr double kSchurScale = 4;
 constexpr int kMaxIterations = 100;
+// Where inertia keeps the eigenvalues above that part of the largest, about 3, coarse levels are not worth their
+// making.
+constexpr double kLeastForCg = 1e-3;
+constexpr int kMaxCgIterations = 1000;
 
 // Interpolation from the corners of quadratic elements to all of their nodes, along straight edges; nothing for linear
 // elements.
@@ -130,6 +134,9 @@ IterativeSaddleSolver::Result IterativeSaddleSolver::Solve(const SaddleMatrix& m
                                                            ThreadTeam& team, NodalVector& dx, std::span<double> dp) {
   dx.assign(force.size(), Vec3::Zero());
   std::fill(dp.begin(), dp.end(), 0.0);
+  if (matrix.patches() == 0 && matrix.least_eigenvalue >= kLeastForCg) {
+    return SolveByCg(matrix, force, tolerance, team, dx);
+  }
   if (!multigrid_.SetUp(matrix.A, team, matrix.least_eigenvalue)) return {};
   SetScales(matrix);
   x_.resize(matrix.nodes());
@@ -154,6 +161,13 @@ IterativeSaddleSolver::Result IterativeSaddleSolver::Solve(const SaddleMatrix& m
   dx = x_;
   std::copy(p_.begin(), p_.end(), dp.begin());
   return {result.converged, result.least_eigenvalue >= 0, result.iterations};
+}
+
+IterativeSaddleSolver::Result IterativeSaddleSolver::SolveByCg(const SaddleMatrix& matrix, const NodalVector& force,
+                                                               double tolerance, ThreadTeam& team, NodalVector& dx) {
+  const MixedPrecisionCg::Result result =
+      cg_.Solve(matrix.pattern, matrix.A, force, tolerance, kMaxCgIterations, team, dx);
+  return {result.converged, result.is_positive, result.iterations};
 }
 
 void IterativeSaddleSolver::SetScales(const SaddleMatrix& matrix) {

@@ -5,6 +5,7 @@
 
 #include "core/linalg/direct_solver.h"
 #include "core/linalg/flexible_gmres.h"
+#include "core/linalg/mixed_precision_cg.h"
 #include "core/linalg/multigrid.h"
 #include "core/tet/saddle_matrix.h"
 
@@ -63,7 +64,11 @@ class IterativeSaddleSolver {
   void Join(const NodalVector& x, std::span<const double> p, bool times_scale, ThreadTeam& team,
             Eigen::VectorXd& joint) const;
 
+  Result SolveByCg(const SaddleMatrix& matrix, const NodalVector& force, double tolerance, ThreadTeam& team,
+                   NodalVector& dx);
+
   Multigrid multigrid_;
+  MixedPrecisionCg cg_;
   GmresWorkspace gmres_;
   Eigen::VectorXd scale_, joint_side_, joint_solution_;  // one over the root of the diagonal
   std::vector<double> schur_;

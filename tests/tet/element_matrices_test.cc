@@ -26,27 +26,28 @@ struct Loaded : Setting {
   ElementEvaluation Evaluate(const NodalVector& at, NodalVector& force) {
     return EvaluateElements(model, potential, at, acting, team, workspace, force);
   }
-  // All blocks, then all volume changes.
-  std::vector<double> Matrices(double projection) {
-    const std::size_t nodes = model.nodes_per_element(), pairs = nodes * (nodes + 1) / 2;
-    std::vector<double> all((9 * pairs + 12 * nodes) * model.tetrahedra());
-    const auto keep = [&](const ElementMatrices& m) {
-      std::copy_n(m.blocks, 9 * pairs * m.count, &all[9 * pairs * m.begin]);
-      std::copy_n(m.volumes, 12 * nodes * m.count, &all[9 * pairs * model.tetrahedra() + 12 * nodes * m.begin]);
-    };
-    ForElementMatrices(model, potential, x, acting, projection, team, workspace, keep);
-    return all;
+  const BlockValues& Stiffness(double projection, ThreadTeam& threads) {
+    AssembleStiffness(model, potential, x, acting, projection, layout, threads, workspace, values);
+    return values;
   }
+  const BlockValues& Stiffness(double projection) { return Stiffness(projection, team); }
 
   IncrementalPotential potential;
   std::vector<double> acting;
   ThreadTeam team{1};
   ForceWorkspace workspace;
+  BlockPattern pattern = model.VisitElement([&]<class Element>(Element) {
+    return PatternOfElements(model.nodes(), model.tetrahedra(),
+                             [&](std::size_t e) { return model.NodesOf<Element>(e); });
+  });
+  StiffnessLayout layout{model, pattern};
+  // What is there before is no part of the result.
+  BlockValues values = BlockValues(pattern.blocks(), Mat3::Constant(1e30));
 };
 
-double LargestOf(const std::vector<double>& values) {
+double LargestOf(const BlockValues& values) {
   double largest = 0;
-  for (const double v : values) largest = std::max(largest, std::abs(v));
+  for (const Mat3& v : values) largest = std::max(largest, v.cwiseAbs().maxCoeff());
   return largest;
 }
 
@@ -97,19 +98,17 @@ TEST_P(ElementMatricesTest, EvaluationIsThatOfThePotentialAtEveryPoint) {
   EXPECT_LT(LargestDifference(force, expected), 1e-12 * LargestNorm(expected));
 }
 
-// The same matrices element by element (a projection that takes part of 1e-300) and side by side.
+// The same matrix element by element (a projection that takes part of 1e-300) and side by side.
 TEST_P(ElementMatricesTest, SideBySideAsElementByElement) {
-  const std::vector<double> plain = s_.Matrices(1e-300);
-  const std::size_t blocks = plain.size() - 12 * s_.model.nodes_per_element() * s_.model.tetrahedra();
-  const double largest = LargestOf({plain.begin(), plain.begin() + static_cast<std::ptrdiff_t>(blocks)});
-  const double largest_volume = LargestOf({plain.begin() + static_cast<std::ptrdiff_t>(blocks), plain.end()});
-  std::vector<double> first;
+  const BlockValues plain = s_.Stiffness(1e-300);
+  const double largest = LargestOf(plain);
+  BlockValues first;
   for (const InstructionSet set : kInstructionSets) {
     if (!IsAvailable(set)) continue;
     s_.workspace.kernels = &KernelsFor(set);
-    const std::vector<double> lanes = s_.Matrices(0);
+    const BlockValues lanes = s_.Stiffness(0);
     for (std::size_t i = 0; i < plain.size(); ++i) {
-      ASSERT_NEAR(lanes[i], plain[i], 1e-13 * (i < blocks ? largest : largest_volume)) << i;
+      ASSERT_LT((lanes[i] - plain[i]).cwiseAbs().maxCoeff(), 1e-13 * largest) << i;
     }
     if (first.empty()) first = lanes;
     EXPECT_EQ(first, lanes);
@@ -121,24 +120,9 @@ INSTANTIATE_TEST_SUITE_P(Laws, ElementMatricesTest,
                                             ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic),
                                             ::testing::Values(VolumeForm::kNodal, VolumeForm::kElement)));
 
-// The matrix of all elements times a displacement, from their blocks.
 NodalVector Product(Loaded& s, const NodalVector& p) {
-  NodalVector product(p.size(), Vec3::Zero());
-  const auto add = [&](const ElementMatrices& m) {
-    s.model.VisitElement([&]<class Element>(Element) {
-      for (std::size_t k = 0; k < m.count; ++k) {
-        const auto nodes = s.model.NodesOf<Element>(m.begin + k);
-        for (int a = 0; a < Element::kNodes; ++a) {
-          for (int b = 0; b <= a; ++b) {
-            const Eigen::Map<const Mat3> block(m.Block(k, a, b));
-            product[nodes[a]] += block * p[nodes[b]];
-            if (a != b) product[nodes[b]] += block.transpose() * p[nodes[a]];
-          }
-        }
-      }
-    });
-  };
-  ForElementMatrices(s.model, s.potential, s.x, s.acting, 0, s.team, s.workspace, add);
+  NodalVector product;
+  Multiply(s.pattern, s.Stiffness(0), p, s.team, product);
   return product;
 }
 
@@ -170,56 +154,59 @@ INSTANTIATE_TEST_SUITE_P(Potentials, DerivativesTest,
                          ::testing::Combine(::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic),
                                             ::testing::Bool()));
 
-// Into a matrix of blocks with every third row left out: what the blocks say, and the same bits for any number of
+// In several chunks: symmetric, the product that forces have without a matrix, and the same bits for any number of
 // threads.
-class AddStiffnessTest : public ::testing::TestWithParam<ElementOrder> {};
+class AssembleStiffnessTest : public ::testing::TestWithParam<ElementOrder> {};
 
-TEST_P(AddStiffnessTest, AddsEveryBlockInItsPlace) {
-  Loaded s(LawsOfKernels()[5], GetParam(), VolumeForm::kNodal, GetParam() == ElementOrder::kLinear ? 8 : 4);
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> place_of;
-  std::vector<std::int32_t> places;
-  const auto is_out = [](std::int32_t n) { return n % 3 == 0; };
-  s.model.VisitElement([&]<class Element>(Element) {
-    for (std::size_t e = 0; e < s.model.tetrahedra(); ++e) {
-      const auto nodes = s.model.NodesOf<Element>(e);
-      for (int a = 0; a < Element::kNodes; ++a) {
-        for (int b = 0; b <= a; ++b) {
-          const auto [low, high] = std::minmax(nodes[a], nodes[b]);
-          const auto next = static_cast<std::int32_t>(place_of.size());
-          if (is_out(low) || is_out(high)) {
-            places.push_back(kNoBlock);
-            continue;
-          }
-          const std::int32_t place = place_of.try_emplace({high, low}, next).first->second;
-          places.push_back(nodes[a] >= nodes[b] ? place : ~place);
-        }
-      }
-    }
-  });
-  NodalVector p = RandomVectors(s.x.size(), 2);
-  for (std::size_t n = 0; n < p.size(); n += 3) p[n].setZero();
-  const NodalVector expected = Product(s, p);
-  std::vector<double> first;
+TEST_P(AssembleStiffnessTest, AddsEveryBlockInItsPlace) {
+  Loaded s(LawsOfKernels()[5], GetParam(), VolumeForm::kElement, GetParam() == ElementOrder::kLinear ? 11 : 6);
+  ASSERT_GT(s.model.chunks().chunks.size(), 1u);
+  std::vector<BlockValues> results;
   for (const int threads : {1, 2, 3}) {
     ThreadTeam team(threads);
-    std::vector<double> values(9 * place_of.size(), 0.0);
-    AddStiffness(s.model, s.potential, s.x, s.acting, 0, places, team, s.workspace, values);
-    if (first.empty()) first = values;
-    EXPECT_EQ(first, values) << threads;
+    results.push_back(s.Stiffness(0, team));
+    EXPECT_EQ(results.front(), results.back()) << threads;
   }
-  NodalVector product(p.size(), Vec3::Zero());
-  for (const auto& [nodes, place] : place_of) {
-    const Eigen::Map<const Mat3> block(&first[9 * place]);
-    product[nodes.first] += block * p[nodes.second];
-    if (nodes.first != nodes.second) product[nodes.second] += block.transpose() * p[nodes.first];
-  }
-  for (std::size_t n = 0; n < p.size(); ++n) {
-    if (!is_out(static_cast<std::int32_t>(n))) {
-      EXPECT_LT((product[n] - expected[n]).norm(), 1e-12 * LargestNorm(expected));
+  const BlockValues plain = s.Stiffness(1e-300);
+  const double largest = LargestOf(plain);
+  for (std::size_t row = 0; row < s.pattern.rows(); ++row) {
+    for (std::int32_t k = s.pattern.begin[row]; k < s.pattern.begin[row + 1]; ++k) {
+      ASSERT_LT((results[0][k] - plain[k]).cwiseAbs().maxCoeff(), 1e-13 * largest) << k;
+      const std::int32_t mirrored = s.pattern.PlaceOf(s.pattern.column[k], static_cast<std::int32_t>(row));
+      if (static_cast<std::size_t>(s.pattern.column[k]) != row) {
+        ASSERT_EQ(results[0][k], results[0][mirrored].transpose()) << k;
+      }
     }
   }
+  // Every element once: the sum over the elements' own tangents along a displacement.
+  const NodalVector p = RandomVectors(s.x.size(), 2), product = Product(s, p);
+  NodalVector expected(p.size(), Vec3::Zero());
+  s.model.VisitElement([&]<class Element>(Element) {
+    for (const TetGroup& group : s.model.groups()) {
+      std::visit(
+          [&]<class Law>(const std::vector<Law>& laws) {
+            for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
+              const auto nodes = s.model.NodesOf<Element>(e);
+              for (int q = 0; q < Element::kPoints; ++q) {
+                const Mat3 F = GradientAt<Element>(s.model, e, ValuesOf<Element>(s.model, e, s.x), q);
+                const Mat3 dF = GradientAt<Element>(s.model, e, ValuesOf<Element>(s.model, e, p), q);
+                const PointPotential<Element, Law> point(s.potential, s.model, s.model.bodies()[group.body],
+                                                         laws[s.model.law_of()[e]], e, q);
+                const Vec9 dP = point.Tangent(F) * Flatten(dF);
+                const Mat3 dP_matrix = Eigen::Map<const Mat3>(dP.data());
+                const auto G = ShapeGradients<Element>(s.model, e, q);
+                for (int a = 0; a < Element::kNodes; ++a) {
+                  expected[nodes[a]] += s.model.rest_volume()[Element::kPoints * e + q] * (dP_matrix * G.col(a));
+                }
+              }
+            }
+          },
+          group.laws);
+    }
+  });
+  EXPECT_LT(LargestDifference(product, expected), 1e-12 * LargestNorm(expected));
 }
-INSTANTIATE_TEST_SUITE_P(Elements, AddStiffnessTest,
+INSTANTIATE_TEST_SUITE_P(Elements, AssembleStiffnessTest,
                          ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic));
 
 }  // namespace

@@ -1,0 +1,52 @@
+#ifndef FASCICLE_CORE_LINALG_FLOAT_MATRIX_H_
+#define FASCICLE_CORE_LINALG_FLOAT_MATRIX_H_
+
+#include <array>
+#include <vector>
+
+#include "core/linalg/block_matrix.h"
+
+// Matrices of 3x3 blocks in single precision, for preconditioners.
+namespace fascicle {
+
+using Vec4f = Eigen::Vector4f;  // three components and one that is zero, for whole vector registers
+using FloatField = std::vector<Vec4f>;
+
+struct FloatBlock {
+  std::array<Vec4f, 3> column;
+
+  FloatBlock() = default;
+  explicit FloatBlock(const Mat3& m) {
+    for (int c = 0; c < 3; ++c) column[c] << m.col(c).cast<float>(), 0;
+  }
+  Vec4f operator*(const Vec4f& x) const { return column[0] * x[0] + column[1] * x[1] + column[2] * x[2]; }
+  Vec4f TransposedTimes(const Vec4f& x) const { return Vec4f(column[0].dot(x), column[1].dot(x), column[2].dot(x), 0); }
+};
+
+// The inverse of a symmetric block with its eigenvalues' absolute values, none too small.
+Mat3 PositiveInverse(const Mat3& block);
+
+// A square matrix and the inverses of its diagonal blocks.
+class FloatMatrix {
+ public:
+  // The pattern must outlive the matrix, or the next call.
+  void SetValues(const BlockPattern& pattern, const BlockValues& values, ThreadTeam& team);
+
+  std::size_t rows() const { return inverse_diagonal_.size(); }
+  Vec4f RowTimes(std::size_t i, const FloatField& v) const {
+    Vec4f sum = Vec4f::Zero();
+    for (std::int32_t k = pattern_->begin[i]; k < pattern_->begin[i + 1]; ++k) {
+      sum += blocks_[k] * v[pattern_->column[k]];
+    }
+    return sum;
+  }
+  const FloatBlock& inverse_diagonal(std::size_t i) const { return inverse_diagonal_[i]; }
+
+ private:
+  const BlockPattern* pattern_ = nullptr;
+  std::vector<FloatBlock> blocks_, inverse_diagonal_;
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_LINALG_FLOAT_MATRIX_H_

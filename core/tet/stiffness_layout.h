@@ -1,0 +1,49 @@
+#ifndef FASCICLE_CORE_TET_STIFFNESS_LAYOUT_H_
+#define FASCICLE_CORE_TET_STIFFNESS_LAYOUT_H_
+
+#include "core/linalg/block_matrix.h"
+#include "core/tet/model.h"
+
+namespace fascicle {
+
+// Where the 3x3 blocks of the elements' matrices go in the symmetric matrix of all nodes: as forces do (Sharing), chunk
+// by chunk. A chunk adds up the blocks of the lower triangle that its elements have part in; those of no other chunk go
+// to their places in both triangles, the others to slots that are added up in the order of the chunks.
+class StiffnessLayout {
+ public:
+  // The pattern couples all nodes of each element.
+  StiffnessLayout(const TetModel& model, const BlockPattern& pattern);
+
+  // Places of a block and its transpose in the pattern; of a chunk's block that other chunks share, low = ~slot.
+  struct Target {
+    std::int32_t low = 0, high = 0;
+  };
+  // Of the blocks of chunk c.
+  std::span<const Target> TargetsOf(std::size_t c) const {
+    return std::span(targets_).subspan(begin_[c], begin_[c + 1] - begin_[c]);
+  }
+  // Of an element's pairs of nodes, as ChunkBlocks takes them, from block b of all blocks on.
+  const std::uint16_t* PlacesOf(std::size_t b) const { return &places_[pairs_ * kBlock * b]; }
+  const std::uint16_t* TurnedOf(std::size_t b) const { return &turned_[pairs_ * b]; }
+
+  // Blocks of the lower triangle that several chunks have part in, or none: the slots of shared()[i] are
+  // slots()[slot_begin()[i] .. slot_begin()[i + 1]).
+  const std::vector<Target>& shared() const { return shared_; }
+  const std::vector<std::int32_t>& slot_begin() const { return sharing_.begin; }
+  const std::vector<std::int32_t>& slots() const { return sharing_.slots; }
+
+ private:
+  template <class Element>
+  void SetPlaces(const TetModel& model, const BlockPattern& pattern);
+  void SetTargets(const BlockPattern& pattern, std::span<const std::int32_t> blocks);
+
+  std::size_t pairs_ = 0;  // of nodes of an element
+  std::vector<std::size_t> begin_ = {0};
+  std::vector<Target> targets_, shared_;
+  std::vector<std::uint16_t> places_, turned_;
+  Sharing sharing_;
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_TET_STIFFNESS_LAYOUT_H_
