@@ -11,8 +11,8 @@
 
 namespace fascicle {
 
-// A preconditioner for K of a voxel mesh: one W-cycle of geometric multigrid over voxels of twice, four times, ... the
-// spacing, wherever there is any solid voxel in them.
+// A preconditioner for K of a voxel mesh, or for K + D with a diagonal D: one W-cycle of geometric multigrid over
+// voxels of twice, four times, ... the spacing, wherever there is any solid voxel in them.
 //
 // Stiffness of the levels by Galerkin products (galerkin.h), prescribed components included; smoothing by Chebyshev
 // polynomials of the matrix preconditioned by its diagonal [Adams, Brezina, Hu & Tuminaro 2003, Parallel multigrid
@@ -21,9 +21,10 @@ namespace fascicle {
 // at a time.
 class VoxelMultigrid {
  public:
-  // `fixed` of the mesh's nodes, empty for none. The mesh must outlive the multigrid.
-  VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stiffness, const FixedComponents& fixed,
-                 ThreadTeam& team);
+  // `fixed` of the mesh's nodes, empty for none; `shift`: D of each node, >= 0, empty for none, lumped on coarser
+  // levels. The mesh must outlive the multigrid.
+  VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stiffness, const FixedComponents& fixed, ThreadTeam& team,
+                 const std::vector<double>& shift = {});
   ~VoxelMultigrid();
 
   // Whether the coarsest level could be factored: not where nothing holds the mesh and memory is short.
