@@ -35,7 +35,7 @@ struct VoxelStepReport {
 // saved and loaded.
 class VoxelDynamicSolver {
  public:
-  // Checked input (CheckVoxelProblem; nothing need hold the body). The model and the team must outlive the solver.
+  // Checked input (CheckVoxelProblem, where the body may fly). The model and the team must outlive the solver.
   VoxelDynamicSolver(const VoxelModel& model, const std::vector<VoxelSupport>& supports,
                      const DynamicSettings& settings, ThreadTeam& team);
 

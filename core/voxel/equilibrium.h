@@ -2,17 +2,21 @@
 #define FASCICLE_CORE_VOXEL_EQUILIBRIUM_H_
 
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
 #include "core/voxel/model.h"
 #include "core/voxel/multigrid.h"
 #include "core/voxel/prescribed.h"
+#include "core/voxel/rotated_bricks.h"
 
 namespace fascicle {
 
 struct EquilibriumSettings {
-  double tolerance = 1e-8;    // of the residual's norm, relative to those of loads and of forces of bricks together [1]
+  // Of the residual's norm [1]. Relative to its norm where free components are zero (linear equilibrium), or to those
+  // of loads and of the bricks' forces together (steps in time, large rotation); whatever the start.
+  double tolerance = 1e-8;
   int max_iterations = 1000;  // of conjugate gradients, in all
   std::stop_token stop = {};  // ends early, not converged, when asked
 };
@@ -46,7 +50,7 @@ class VoxelEquilibrium {
                           VoxelField<double>& u);
 
   // Forces of the bricks [N], and their elastic energy [J].
-  double InternalForces(const VoxelField<double>& u, VoxelField<double>& f_int) const;
+  double InternalForces(const VoxelField<double>& u, VoxelField<double>& f_int);
 
   const PrescribedComponents& prescribed() const { return prescribed_; }
   const VoxelMultigrid& multigrid() const { return *multigrid_; }
@@ -55,12 +59,22 @@ class VoxelEquilibrium {
  private:
   EquilibriumResult SolveLinear(const VoxelField<double>& f, const VoxelField<double>* b,
                                 const EquilibriumSettings& settings, VoxelField<double>& u);
+  EquilibriumResult SolveRotated(const VoxelField<double>& f, const VoxelField<double>* b,
+                                 const EquilibriumSettings& settings, VoxelField<double>& u);
+  double SizeOfTerms(const VoxelField<double>& u) const;
+  // What Newton's method knows of a place.
+  struct Place;
+  void Visit(const VoxelField<double>& f, const VoxelField<double>* b, Place& place);
+  // Moves `now` along a step by a line search, with `next` for scratch; false where nothing is lower.
+  bool Move(const VoxelField<double>& f, const VoxelField<double>* b, const VoxelField<double>& step, Place& now,
+            Place& next);
 
   const VoxelModel* model_;
   ThreadTeam* team_;
   PrescribedComponents prescribed_;
   std::vector<double> shift_;
-  std::unique_ptr<VoxelMultigrid> multigrid_;
+  std::unique_ptr<VoxelMultigrid> multigrid_;  // of bricks that have not turned
+  std::optional<RotatedBricks> rotated_;       // with large rotation
 };
 
 }  // namespace fascicle

@@ -11,18 +11,25 @@ namespace {
 
 // Levels up to that many nodes are factored.
 constexpr std::int32_t kCoarsest = 250;
-constexpr int kSmoothing = 3;  // degree of the polynomials
+// Where bricks of the next level would be solid by less than that part, and there are not too many nodes to factor what
+// comes of them, rigid pieces take their place.
+constexpr double kLeastFilling = 0.85;
+constexpr std::int32_t kMostNodesOfPieces = 15000;
+constexpr int kSmoothing = 5;  // degree of the polynomials
 // Part of the spectrum that they damp: from the largest eigenvalue down to that part of it.
-constexpr float kDamped = 1.0f / 12;
+constexpr float kDamped = 1.0f / 20;
 constexpr int kPowerIterations = 12;
 constexpr double kEigenvalueMargin = 1.1;
 // Added to the coarsest diagonal, for motions of coarse nodes that move no free node.
 constexpr double kRegularization = 1e-9;
 
+double VolumeOf(const VoxelMesh& mesh) { return mesh.voxels() * mesh.spacing().prod(); }
+
 }  // namespace
 
 struct VoxelMultigrid::Level {
-  Level(const VoxelMesh& m, VoxelStiffness stiffness) : mesh(&m), K(m, std::move(stiffness)) {}
+  Level(const VoxelMesh& m, VoxelStiffness stiffness, std::optional<BrickRotations<float>> rotations)
+      : mesh(&m), K(m, std::move(stiffness), std::move(rotations)) {}
   Level(VoxelMesh m, const LevelStiffness& fine, const FixedComponents& fixed, ThreadTeam& team)
       : own_mesh(std::move(m)), mesh(&own_mesh), K(own_mesh, fine, fixed, team) {}
 
@@ -130,9 +137,10 @@ struct VoxelMultigrid::Level {
 };
 
 VoxelMultigrid::VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stiffness, const FixedComponents& fixed,
-                               ThreadTeam& team, const std::vector<double>& shift)
+                               ThreadTeam& team, const std::vector<double>& shift,
+                               std::optional<BrickRotations<float>> rotations)
     : fixed_(fixed) {
-  levels_.push_back(std::make_unique<Level>(mesh, stiffness));
+  levels_.push_back(std::make_unique<Level>(mesh, stiffness, std::move(rotations)));
   Level* level = levels_.back().get();
   for (std::size_t n = 0; n < fixed_.size(); ++n) {
     for (int d = 0; d < 3; ++d) {
@@ -148,6 +156,13 @@ VoxelMultigrid::VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stif
   while (level->mesh->nodes() > kCoarsest) {
     VoxelMesh coarser = LevelStiffness::CoarserMesh(*level->mesh);
     if (coarser.nodes() >= level->mesh->nodes()) break;
+    const double filling = VolumeOf(mesh) / VolumeOf(coarser);
+    if (filling < kLeastFilling && level->mesh->nodes() <= kMostNodesOfPieces) {
+      pieces_ = std::make_unique<RigidPieces>(level->K, level->shift, level->inverse_diagonal,
+                                              level->largest_eigenvalue, team);
+      ok_ = pieces_->ok();
+      return;
+    }
     levels_.push_back(
         std::make_unique<Level>(std::move(coarser), level->K, levels_.size() == 1 ? fixed_ : FixedComponents(), team));
     Level* const next = levels_.back().get();
@@ -174,22 +189,23 @@ void VoxelMultigrid::Cycle(ThreadTeam& team) {
 }
 
 void VoxelMultigrid::CycleFrom(std::size_t l, ThreadTeam& team) {
-  if (l + 1 == levels_.size()) {
+  const bool is_last = l + 1 == levels_.size();
+  if (is_last && !pieces_) {
     SolveCoarsest();
     return;
   }
   Level& level = *levels_[l];
-  Level& next = *levels_[l + 1];
   const auto clear_fixed = [&](VoxelField<float>& field) {
     if (l > 0) return;
     for (const std::size_t k : fixed_numbers_) field.data()[k] = 0;
   };
   level.Smooth(Level::Start::kZero, /*with_residual=*/true, team);
   clear_fixed(level.r);
-  level.to_coarser->Transpose(level.r, team, next.r);
-  CycleFrom(l + 1, team);
-  if (l + 2 < levels_.size()) ImproveBySecondCycle(l, team);
-  level.to_coarser->Interpolate(next.x, team, level.d);
+  if (is_last) {
+    pieces_->Correct(level.r, team, level.d);
+  } else {
+    CorrectByNext(l, team);
+  }
   clear_fixed(level.d);
   level.Multiply(level.d, team, level.q);
   ForNumbers(team, level.x.size(), [&level](std::size_t k) {
@@ -197,6 +213,15 @@ void VoxelMultigrid::CycleFrom(std::size_t l, ThreadTeam& team) {
     level.r.data()[k] -= level.q.data()[k];
   });
   level.Smooth(Level::Start::kX, /*with_residual=*/false, team);
+}
+
+void VoxelMultigrid::CorrectByNext(std::size_t l, ThreadTeam& team) {
+  Level& level = *levels_[l];
+  Level& next = *levels_[l + 1];
+  level.to_coarser->Transpose(level.r, team, next.r);
+  CycleFrom(l + 1, team);
+  if (l + 2 < levels_.size() || pieces_) ImproveBySecondCycle(l, team);
+  level.to_coarser->Interpolate(next.x, team, level.d);
 }
 
 void VoxelMultigrid::ImproveBySecondCycle(std::size_t l, ThreadTeam& team) {
@@ -279,11 +304,13 @@ std::string VoxelMultigrid::Description() const {
     text += std::to_string(level->mesh->voxels());
     if (level->K.own_matrices() > 0) text += " (" + std::to_string(level->K.own_matrices()) + " of their own)";
   }
-  return text + " voxels";
+  text += " voxels";
+  if (pieces_) text += " + " + std::to_string(pieces_->unknowns() / 6) + " pieces";
+  return text;
 }
 
 std::size_t VoxelMultigrid::bytes() const {
-  std::size_t sum = 0;
+  std::size_t sum = pieces_ ? pieces_->bytes() : 0;
   for (const auto& level : levels_) {
     sum += level->K.bytes() + (5 * level->r.size() + level->first_result.size() + level->shift.size()) * sizeof(float);
   }
