@@ -9,7 +9,9 @@ namespace fascicle {
 namespace {
 
 // Newton's method.
-constexpr double kMostTurned = 0.2;   // bricks turned by that much since the levels were made want new ones [rad]
+// Bricks that turned by that much since the levels were made want new ones [rad]; in steps in time, which are easier
+// and where new levels cost as much as the step, later.
+constexpr double kMostTurned = 0.2, kMostTurnedInTime = 0.8;
 constexpr double kLargestPart = 0.1;  // of the residual, to which conjugate gradients solve
 constexpr double kSufficient = 1e-4;  // of the decrease that the slope promises [Nocedal & Wright 2006, 3.4]
 constexpr double kLeastStep = 1e-4;
@@ -163,6 +165,7 @@ EquilibriumResult VoxelEquilibrium::SolveRotated(const VoxelField<double>& f, co
     prescribed_.Clear(y);
   };
   EquilibriumResult result;
+  const double most_turned = shift_.empty() ? kMostTurned : kMostTurnedInTime;
   const double loads = Norm(*team_, f), rounding = kRoundingOfForces * SizeOfTerms(u);
   Visit(f, b, now);
   for (;;) {
@@ -172,7 +175,7 @@ EquilibriumResult VoxelEquilibrium::SolveRotated(const VoxelField<double>& f, co
     result.converged = size <= goal;
     if (result.converged || settings.stop.stop_requested() || !std::isfinite(size)) break;
     if (result.iterations >= settings.max_iterations) break;
-    if (LargestAngle(now.R, of_levels) > kMostTurned) {
+    if (LargestAngle(now.R, of_levels) > most_turned) {
       of_levels = now.R;
       turned = std::make_unique<VoxelMultigrid>(model_->mesh(), ForMultigrid(model_->stiffness()),
                                                 prescribed_.of_nodes(), *team_, shift_, BrickRotations<float>(now.R));
