@@ -181,7 +181,8 @@ void CheckFreeMotions(const std::vector<FreeMotion>& free, Problems& problems) {
 }  // namespace
 
 void CheckVoxelProblem(const VoxelGrid& grid, const std::vector<VoxelMaterial>& materials,
-                       const std::vector<VoxelSupport>& supports, const VoxelLoads& loads, Problems& problems) {
+                       const std::vector<VoxelSupport>& supports, const VoxelLoads& loads, Problems& problems,
+                       bool may_fly) {
   const bool usable = CheckGrid(grid, problems);
   if (grid.voxels() != grid.material.size()) return;
   CheckMaterials(grid, materials, problems);
@@ -189,7 +190,7 @@ void CheckVoxelProblem(const VoxelGrid& grid, const std::vector<VoxelMaterial>& 
   const VoxelMesh mesh(grid);
   const FixedComponents fixed = CheckSupports(mesh, supports, problems);
   CheckLoads(grid, mesh, loads, problems);
-  CheckFreeMotions(FindFreeMotions(grid, mesh, fixed), problems);
+  if (!may_fly) CheckFreeMotions(FindFreeMotions(grid, mesh, fixed), problems);
 }
 
 }  // namespace fascicle

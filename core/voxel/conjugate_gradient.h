@@ -2,7 +2,7 @@
 #define FASCICLE_CORE_VOXEL_CONJUGATE_GRADIENT_H_
 
 #include <cmath>
-#include <vector>
+#include <stop_token>
 
 #include "core/voxel/multigrid.h"
 
@@ -10,28 +10,23 @@ namespace fascicle {
 
 struct VoxelCgResult {
   bool converged = false;
+  bool curves_down = false;  // ended because A is not positive in the last direction
   int iterations = 0;
-  double residual = 0;  // |r| over |r| at the start [1]
+  double residual = 0;  // |r| at the end
 };
 
-// Solves K x = b for the components that are free by conjugate gradients [Shewchuk 1994, B3], preconditioned by a cycle
-// of `multigrid`. Prescribed components keep the value they have in x: b and x are those of the whole mesh. Ends when
-// |r| is at most `tolerance` times |r| at the start. The same bits for any number of threads.
-//   fixed_numbers  numbers in the fields that are prescribed
-inline VoxelCgResult SolveVoxels(ThreadTeam& team, const VoxelOperator<double>& K, VoxelMultigrid& multigrid,
-                                 const std::vector<std::size_t>& fixed_numbers, const VoxelField<double>& b,
-                                 double tolerance, int max_iterations, VoxelField<double>& x) {
-  VoxelField<double> r(b.nodes()), p(b.nodes()), q(b.nodes());
-  const auto clear_fixed = [&fixed_numbers](VoxelField<double>& field) {
-    for (const std::size_t k : fixed_numbers) field.data()[k] = 0;
-  };
-  K.Apply(x, team, q);
-  ForNumbers(team, r.size(), [&](std::size_t k) { r.data()[k] = b.data()[k] - q.data()[k]; });
-  clear_fixed(r);
-  const double start = std::sqrt(Dot(team, r, r));
+// Solves A x = b by conjugate gradients [Shewchuk 1994, B3], preconditioned by a cycle of `multigrid`, from x on. Ends
+// when |r| <= goal. Fields are those of the whole mesh. The same bits for any number of threads.
+//   apply(p, q)  sets q = A p, zero where a component is prescribed
+//   r            b - A x, zero where a component is prescribed; that at the end
+template <class Apply>
+VoxelCgResult ConjugateGradient(ThreadTeam& team, const Apply& apply, VoxelMultigrid& multigrid, double goal,
+                                int max_iterations, const std::stop_token& stop, VoxelField<double>& r,
+                                VoxelField<double>& x) {
+  VoxelField<double> p(r.nodes()), q(r.nodes());
+  double size = std::sqrt(Dot(team, r, r)), rz = 0;
   VoxelCgResult result;
-  double size = start, rz = 0;
-  for (; size > tolerance * start && result.iterations < max_iterations; ++result.iterations) {
+  while (size > goal && result.iterations < max_iterations && !stop.stop_requested()) {
     // The cycle works in single precision on r / |r|.
     VoxelField<float>& side = multigrid.side();
     const double inverse = 1 / size;
@@ -44,18 +39,25 @@ inline VoxelCgResult SolveVoxels(ThreadTeam& team, const VoxelOperator<double>& 
     const double of_z = size;
     ForNumbers(team, p.size(),
                [&](std::size_t k) { p.data()[k] = of_z * static_cast<double>(z[k]) + beta * p.data()[k]; });
-    K.Apply(p, team, q);
-    clear_fixed(q);
-    const double alpha = rz / Dot(team, p, q);
+    apply(p, q);
+    const double curvature = Dot(team, p, q);
+    const double alpha = rz / curvature;
+    ++result.iterations;
     if (!std::isfinite(alpha)) break;
+    if (curvature < 0) {
+      // Along p if there is nothing yet.
+      if (result.iterations == 1) ForNumbers(team, x.size(), [&](std::size_t k) { x.data()[k] += p.data()[k]; });
+      result.curves_down = true;
+      break;
+    }
     ForNumbers(team, x.size(), [&](std::size_t k) {
       x.data()[k] += alpha * p.data()[k];
       r.data()[k] -= alpha * q.data()[k];
     });
     size = std::sqrt(Dot(team, r, r));
   }
-  result.converged = size <= tolerance * start;  // false for NaN
-  result.residual = start > 0 ? size / start : 0;
+  result.converged = size <= goal;  // false for NaN
+  result.residual = size;
   return result;
 }
 

@@ -1,18 +1,21 @@
 #include "core/voxel/fields.h"
 
+#include "core/materials/rotation.h"
+
 namespace fascicle {
 namespace {
 
-SymmetricTensor StrainOf(const Eigen::Matrix<double, 3, 8>& gradients, const VoxelField<double>& u,
+SymmetricTensor SymmetricPartOf(const Mat3& A) {
+  return {A(0, 0), A(1, 1), A(2, 2), 0.5 * (A(0, 1) + A(1, 0)), 0.5 * (A(1, 2) + A(2, 1)), 0.5 * (A(2, 0) + A(0, 2))};
+}
+
+SymmetricTensor StrainOf(Rotation rotation, const Eigen::Matrix<double, 3, 8>& gradients, const VoxelField<double>& u,
                          const std::array<std::int32_t, 8>& nodes) {
   Mat3 grad = Mat3::Zero();  // (i, j) = du_i/dx_j
   for (int c = 0; c < 8; ++c) grad += u.At(nodes[c]) * gradients.col(c).transpose();
-  return {grad(0, 0),
-          grad(1, 1),
-          grad(2, 2),
-          0.5 * (grad(0, 1) + grad(1, 0)),
-          0.5 * (grad(1, 2) + grad(2, 1)),
-          0.5 * (grad(2, 0) + grad(0, 2))};
+  if (rotation == Rotation::kSmall) return SymmetricPartOf(grad);
+  const Mat3 F = Mat3::Identity() + grad;
+  return SymmetricPartOf(NearestRotation(F).transpose() * F - Mat3::Identity());
 }
 
 // Calls body(run, voxel, strain) for all voxels.
@@ -21,7 +24,7 @@ void ForStrains(const VoxelModel& model, const VoxelField<double>& u, const Body
   const Eigen::Matrix<double, 3, 8> gradients = BrickGradients(model.mesh().spacing(), Vec3::Zero());
   for (const VoxelRun& run : model.mesh().runs()) {
     ForVoxelsOfRun(run, [&](std::int32_t voxel, const GridIndex&, const std::array<std::int32_t, 8>& nodes) {
-      body(run, voxel, StrainOf(gradients, u, nodes));
+      body(run, voxel, StrainOf(model.rotation(), gradients, u, nodes));
     });
   }
 }

@@ -11,10 +11,11 @@ namespace fascicle {
 // A symmetric tensor: components 11, 22, 33, 12, 23, 31 along the axes of the grid.
 using SymmetricTensor = std::array<double, 6>;
 
-// Small strain sym(grad u) at the centre of every voxel [1], where that of trilinear displacements is most accurate.
+// Strain at the centre of every voxel [1], where that of trilinear displacements is most accurate: sym(grad u), or with
+// large rotation S - I of F = R S, in the frame that turned with the brick.
 std::vector<SymmetricTensor> StrainAtCentres(const VoxelModel& model, const VoxelField<double>& u);
 
-// Stress lambda tr(e) I + 2 mu e [Pa] there, with each voxel's own stiffness.
+// Stress lambda tr(e) I + 2 mu e [Pa] of that strain, with each voxel's own stiffness; in the same frame.
 std::vector<SymmetricTensor> StressAtCentres(const VoxelModel& model, const VoxelField<double>& u);
 
 }  // namespace fascicle

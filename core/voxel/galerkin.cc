@@ -72,6 +72,12 @@ BrickMatrix Coarsened(int child, BrickMatrix K) {
   return K;
 }
 
+// R K R^T.
+void Turn(const Mat3& R, BrickMatrix& K) {
+  for (int c = 0; c < 8; ++c) K.middleRows<3>(3 * c) = R * K.middleRows<3>(3 * c).eval();
+  for (int c = 0; c < 8; ++c) K.middleCols<3>(3 * c) = K.middleCols<3>(3 * c).eval() * R.transpose();
+}
+
 bool IsolateFixed(const Child& child, const FixedComponents& fixed, BrickMatrix& K) {
   bool any = false;
   for (int c = 0; c < 8; ++c) {
@@ -103,8 +109,13 @@ VoxelMesh LevelStiffness::CoarserMesh(const VoxelMesh& fine) {
   });
 }
 
-LevelStiffness::LevelStiffness(const VoxelMesh& mesh, VoxelStiffness stiffness)
-    : mesh_(&mesh), stiffness_(std::move(stiffness)), operator_(stiffness_), slab_begin_(mesh.slabs().size() + 1, 0) {
+LevelStiffness::LevelStiffness(const VoxelMesh& mesh, VoxelStiffness stiffness,
+                               std::optional<BrickRotations<float>> rotations)
+    : mesh_(&mesh),
+      stiffness_(std::move(stiffness)),
+      rotations_(std::move(rotations)),
+      operator_(stiffness_),
+      slab_begin_(mesh.slabs().size() + 1, 0) {
   for (const BrickModuli<double>& moduli : stiffness_.moduli) {
     of_material_.push_back(BrickStiffness(mesh.spacing(), moduli));
   }
@@ -127,7 +138,7 @@ void LevelStiffness::FindOwn(const LevelStiffness& fine, const FixedComponents& 
       ForVoxelsOfRun(mesh_->runs()[r],
                      [&](std::int32_t voxel, const GridIndex& at, const std::array<std::int32_t, 8>& nodes) {
                        const Children children = ChildrenOf(*fine.mesh_, at);
-                       if (AreAlike(children, fine.stiffness_.scale, fixed)) {
+                       if (!fine.rotations_ && AreAlike(children, fine.stiffness_.scale, fixed)) {
                          stiffness_.scale[voxel] = fine.stiffness_.scale[children[0].voxel];
                          return;
                        }
@@ -161,7 +172,7 @@ void LevelStiffness::FillOwn(const LevelStiffness& fine, const FixedComponents& 
       const Child& child = children[c];
       if (child.voxel < 0) continue;
       const float scale = fine.stiffness_.scale[child.voxel];
-      if (scale != 0 && !TouchesFixed(child, fixed)) {
+      if (scale != 0 && !fine.rotations_ && !TouchesFixed(child, fixed)) {
         K += static_cast<double>(scale) * coarsened[child.material][c];
         continue;
       }
@@ -190,7 +201,11 @@ void LevelStiffness::FillOwn(const LevelStiffness& fine, const FixedComponents& 
 }
 
 BrickMatrix LevelStiffness::MatrixOf(std::int32_t voxel, std::int32_t material) const {
-  if (own_.empty() || own_[voxel] < 0) return static_cast<double>(stiffness_.scale[voxel]) * of_material_[material];
+  if (own_.empty() || own_[voxel] < 0) {
+    BrickMatrix K = static_cast<double>(stiffness_.scale[voxel]) * of_material_[material];
+    if (rotations_) Turn(rotations_->At(voxel), K);
+    return K;
+  }
   const PackedBricks& block = blocks_[own_[voxel] / kBrickBlock];
   const int lane = own_[voxel] % kBrickBlock;
   BrickMatrix K;
@@ -204,6 +219,14 @@ BrickMatrix LevelStiffness::MatrixOf(std::int32_t voxel, std::int32_t material) 
 
 void LevelStiffness::Apply(const VoxelField<float>& x, ThreadTeam& team, VoxelField<float>& y) const {
   ForSlabs(*mesh_, team, [&](std::size_t s) {
+    if (rotations_) {
+      ClearSlab(*mesh_, s, y);
+      RotatedTask<float> task = {};
+      static_cast<ProductTask<float>&>(task) = operator_.TaskOf(s, x, y);
+      for (int k = 0; k < 9; ++k) task.rotation[k] = rotations_->component(k);
+      kernels_->rotated_product(task);
+      return;
+    }
     operator_.ApplySlab(s, x, y);
     PackedTask task;
     task.blocks = blocks_.data() + slab_begin_[s];
@@ -216,7 +239,23 @@ void LevelStiffness::Apply(const VoxelField<float>& x, ThreadTeam& team, VoxelFi
   });
 }
 
+VoxelField<float> LevelStiffness::RotatedDiagonal() const {
+  VoxelField<float> diagonal(mesh_->nodes());
+  for (const VoxelRun& run : mesh_->runs()) {
+    const BrickMatrix& K = of_material_[run.material];
+    ForVoxelsOfRun(run, [&](std::int32_t voxel, const GridIndex&, const std::array<std::int32_t, 8>& nodes) {
+      const Mat3 R = rotations_->At(voxel);
+      for (int c = 0; c < 8; ++c) {
+        const Mat3 block = R * K.block<3, 3>(3 * c, 3 * c) * R.transpose();
+        diagonal.Add(nodes[c], static_cast<double>(stiffness_.scale[voxel]) * block.diagonal());
+      }
+    });
+  }
+  return diagonal;
+}
+
 VoxelField<float> LevelStiffness::Diagonal() const {
+  if (rotations_) return RotatedDiagonal();
   VoxelField<float> diagonal = DiagonalOf(stiffness_);
   for (const PackedBricks& block : blocks_) {
     for (int k = 0; k < block.bricks; ++k) {
@@ -230,9 +269,9 @@ VoxelField<float> LevelStiffness::Diagonal() const {
 }
 
 std::size_t LevelStiffness::bytes() const {
-  return stiffness_.scale.size() * sizeof(float) + own_.size() * sizeof(std::int32_t) +
-         blocks_.size() * sizeof(PackedBricks) + mesh_->runs().size() * sizeof(VoxelRun) +
-         mesh_->node_runs().size() * (sizeof(NodeRun) + sizeof(TransferRun));
+  return (rotations_ ? 9 * stiffness_.scale.size() * sizeof(float) : 0) + stiffness_.scale.size() * sizeof(float) +
+         own_.size() * sizeof(std::int32_t) + blocks_.size() * sizeof(PackedBricks) +
+         mesh_->runs().size() * sizeof(VoxelRun) + mesh_->node_runs().size() * (sizeof(NodeRun) + sizeof(TransferRun));
 }
 
 }  // namespace fascicle

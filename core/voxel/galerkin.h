@@ -2,8 +2,10 @@
 #define FASCICLE_CORE_VOXEL_GALERKIN_H_
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "core/voxel/rotated_bricks.h"
 #include "core/voxel/slabs.h"
 #include "core/voxel/voxel_operator.h"
 
@@ -16,11 +18,12 @@ using FixedComponents = std::vector<std::uint8_t>;
 //
 // Where eight voxels are of the same stiffness and free, their common brick's own K of twice the spacing is just that,
 // because the trilinear functions of a level are among those of the finer one. Other bricks (at surfaces, between
-// materials, at supports) have matrices of their own.
+// materials, at supports, and all that have turned) have matrices of their own.
 class LevelStiffness {
  public:
-  // The finest level.
-  LevelStiffness(const VoxelMesh& mesh, VoxelStiffness stiffness);
+  // The finest level; of bricks that have turned, R K R^T of each.
+  LevelStiffness(const VoxelMesh& mesh, VoxelStiffness stiffness,
+                 std::optional<BrickRotations<float>> rotations = std::nullopt);
   // `fine` must outlive the constructor only; `fixed` is of fine's nodes. mesh: VoxelMesh::Coarser of fine's.
   static VoxelMesh CoarserMesh(const VoxelMesh& fine);
   LevelStiffness(const VoxelMesh& mesh, const LevelStiffness& fine, const FixedComponents& fixed, ThreadTeam& team);
@@ -39,11 +42,13 @@ class LevelStiffness {
   BrickMatrix MatrixOf(std::int32_t voxel, std::int32_t material) const;
 
  private:
+  VoxelField<float> RotatedDiagonal() const;
   void FindOwn(const LevelStiffness& fine, const FixedComponents& fixed);
   void FillOwn(const LevelStiffness& fine, const FixedComponents& fixed, ThreadTeam& team);
 
   const VoxelMesh* mesh_;
   VoxelStiffness stiffness_;
+  std::optional<BrickRotations<float>> rotations_;
   VoxelOperator<float> operator_;
   std::vector<BrickMatrix> of_material_;
   const VoxelKernels* kernels_ = &VoxelKernelsFor(PreferredInstructionSet());

@@ -31,6 +31,17 @@ struct ProductTask {
   std::int32_t end_node;  // zeros may be added to y before that
 };
 
+// The same for bricks that have turned (rotated_bricks.h). Nine numbers of a rotation for each voxel, column by column,
+// kPadding of each beyond the last.
+template <class S>
+struct RotatedTask : ProductTask<S> {
+  const S* rotation[9];
+  // Of double precision alone:
+  const S* at[3];      // displacements of which the tangent is taken, as x
+  S* new_rotation[9];  // where rotations of x are to be written to
+  S* energy;           // of each voxel [J], to be written to
+};
+
 struct PackedTask {
   const PackedBricks* blocks;
   std::int32_t block_count;
@@ -57,6 +68,9 @@ struct TransferTask {
 struct VoxelKernels {
   void (*product)(const ProductTask<double>&);
   void (*product_float)(const ProductTask<float>&);
+  void (*rotated_forces)(const RotatedTask<double>&);   // y += forces at displacements x, with rotations and energies
+  void (*rotated_tangent)(const RotatedTask<double>&);  // y += (their derivative at `at`) x
+  void (*rotated_product)(const RotatedTask<float>&);   // y += R K R^T x
   void (*packed)(const PackedTask&);
   void (*interpolate)(const TransferTask&);             // to += P from, from coarse to fine
   void (*interpolate_transposed)(const TransferTask&);  // to += P^T from, from fine to coarse

@@ -1,5 +1,5 @@
 #include "core/voxel/kernel_sets.h"
-#include "core/voxel/kernels_impl.h"
+#include "core/voxel/rotated_kernels_impl.h"
 
 namespace fascicle {
 

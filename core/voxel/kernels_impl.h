@@ -61,28 +61,65 @@ struct FaceModes {
   L m[3][4];
 };
 
+// The scale of the lanes' voxels, zero beyond the end of the run.
+template <class L, class S>
+[[gnu::always_inline]] inline L ScaleOf(const ProductTask<S>& task, const VoxelRun& run, std::int32_t at) {
+  const L scale = LoadFloats<L>(task.scale + run.first_voxel + at);
+  if (at + L::kLanes <= run.length) return scale;
+  return Select(L::Load(LaneNumbers<L>::kNumbers.n) < L(static_cast<double>(run.length - at)), scale, L(0.0));
+}
+template <class L, class S>
+[[gnu::always_inline]] inline BrickModuli<L> ModuliOfLanes(const ProductTask<S>& task, const VoxelRun& run, L scale) {
+  const BrickModuli<S> material = task.moduli[run.material];
+  return {scale * L(material.lambda), scale * L(material.lambda_out), scale * L(material.mu)};
+}
+
+// Forces of bricks that have not turned.
 template <class L>
-struct RunProduct {
+struct LinearBrick {
+  using Task = ProductTask<typename L::Scalar>;
+  static constexpr int kFields = 1;
+  [[gnu::always_inline]] static void Forces(const Task& task, const VoxelRun& run, std::int32_t at,
+                                            const L (&u)[1][3][8], L (&f)[3][8]) {
+    ModeForces(*task.shape, ModuliOfLanes(task, run, ScaleOf<L>(task, run, at)), u[0], f);
+  }
+};
+
+// y += forces of the bricks of some runs, f(u) in modes: Brick::Forces. Of kFields fields, the first is task.x, the
+// second task.at.
+template <class L, class Brick>
+struct RunSum {
   using S = typename L::Scalar;
+  using Task = typename Brick::Task;
+  static constexpr int kFields = Brick::kFields;
   static constexpr int kAhead = 1024 / sizeof(S);  // nodes
 
-  [[gnu::always_inline]] static void LoadFace(const ProductTask<S>& task, const VoxelRun& run, std::int32_t at,
-                                              FaceModes<L>& face) {
-    for (int d = 0; d < 3; ++d) {
-      const S* const x = task.x[d] + at;
-      const L p0 = L::Load(x + run.node[0]), p1 = L::Load(x + run.node[1]);
-      const L p2 = L::Load(x + run.node[2]), p3 = L::Load(x + run.node[3]);
-      const L near = p0 + p1, far = p2 + p3, near_y = p1 - p0, far_y = p3 - p2;
-      face.m[d][0] = near + far;
-      face.m[d][1] = near_y + far_y;
-      face.m[d][2] = far - near;
-      face.m[d][3] = far_y - near_y;
+  [[gnu::always_inline]] static const S* ComponentOf(const Task& task, int field, int d) {
+    if constexpr (kFields == 2) {
+      if (field == 1) return task.at[d];
+    }
+    return task.x[d];
+  }
+
+  [[gnu::always_inline]] static void LoadFaces(const Task& task, const VoxelRun& run, std::int32_t at,
+                                               FaceModes<L> (&faces)[kFields]) {
+    for (int k = 0; k < kFields; ++k) {
+      for (int d = 0; d < 3; ++d) {
+        const S* const x = ComponentOf(task, k, d) + at;
+        const L p0 = L::Load(x + run.node[0]), p1 = L::Load(x + run.node[1]);
+        const L p2 = L::Load(x + run.node[2]), p3 = L::Load(x + run.node[3]);
+        const L near = p0 + p1, far = p2 + p3, near_y = p1 - p0, far_y = p3 - p2;
+        faces[k].m[d][0] = near + far;
+        faces[k].m[d][1] = near_y + far_y;
+        faces[k].m[d][2] = far - near;
+        faces[k].m[d][3] = far_y - near_y;
+      }
     }
   }
 
   // y += the four corners' values of face modes f; only the first `count` lanes are of the run.
-  [[gnu::always_inline]] static void AddFace(const ProductTask<S>& task, const VoxelRun& run, std::int32_t at,
-                                             std::int32_t count, const FaceModes<L>& f) {
+  [[gnu::always_inline]] static void AddFace(const Task& task, const VoxelRun& run, std::int32_t at, std::int32_t count,
+                                             const FaceModes<L>& f) {
     // Beyond the run stand zeros, which do no harm unless another thread is at work there.
     const bool whole = count >= L::kLanes || run.node[3] + at + L::kLanes <= task.end_node;
     for (int d = 0; d < 3; ++d) {
@@ -100,34 +137,29 @@ struct RunProduct {
     }
   }
 
-  [[gnu::always_inline]] static void AddRun(const ProductTask<S>& task, const VoxelRun& run) {
-    const BrickModuli<S> material = task.moduli[run.material];
+  [[gnu::always_inline]] static void AddRun(const Task& task, const VoxelRun& run) {
     const std::int32_t nodes = run.length + 1;
-    FaceModes<L> left, carried;
-    LoadFace(task, run, 0, left);
+    FaceModes<L> left[kFields], carried;
+    LoadFaces(task, run, 0, left);
     for (int d = 0; d < 3; ++d) {
       for (int m = 0; m < 4; ++m) carried.m[d][m] = L(0.0);
     }
     for (std::int32_t at = 0; at < nodes; at += L::kLanes) {
       // Rows are too short for the processor to see where they lead.
       for (int d = 0; d < 3; ++d) __builtin_prefetch(task.x[d] + run.node[3] + at + kAhead);
-      FaceModes<L> next;
-      LoadFace(task, run, at + L::kLanes, next);
-      L u[3][8], f[3][8];
-      for (int d = 0; d < 3; ++d) {
-        for (int m = 0; m < 4; ++m) {
-          const L right = NextLanes(left.m[d][m], next.m[d][m]);
-          if (m > 0) u[d][2 * m] = right + left.m[d][m];
-          u[d][2 * m + 1] = right - left.m[d][m];
+      FaceModes<L> next[kFields];
+      LoadFaces(task, run, at + L::kLanes, next);
+      L u[kFields][3][8], f[3][8];
+      for (int k = 0; k < kFields; ++k) {
+        for (int d = 0; d < 3; ++d) {
+          for (int m = 0; m < 4; ++m) {
+            const L right = NextLanes(left[k].m[d][m], next[k].m[d][m]);
+            if (m > 0) u[k][d][2 * m] = right + left[k].m[d][m];
+            u[k][d][2 * m + 1] = right - left[k].m[d][m];
+          }
         }
       }
-      L scale = LoadFloats<L>(task.scale + run.first_voxel + at);
-      if (at + L::kLanes > run.length) {
-        scale = Select(L::Load(LaneNumbers<L>::kNumbers.n) < L(static_cast<double>(run.length - at)), scale, L(0.0));
-      }
-      const BrickModuli<L> moduli = {scale * L(material.lambda), scale * L(material.lambda_out),
-                                     scale * L(material.mu)};
-      ModeForces(*task.shape, moduli, u, f);
+      Brick::Forces(task, run, at, u, f);
       FaceModes<L> sum;
       for (int d = 0; d < 3; ++d) {
         for (int m = 0; m < 4; ++m) {
@@ -139,11 +171,11 @@ struct RunProduct {
         }
       }
       AddFace(task, run, at, nodes - at, sum);
-      left = next;
+      for (int k = 0; k < kFields; ++k) left[k] = next[k];
     }
   }
 
-  [[gnu::flatten]] static void Add(const ProductTask<S>& task) {
+  [[gnu::flatten]] static void Add(const Task& task) {
     for (std::int32_t r = 0; r < task.run_count; ++r) AddRun(task, task.runs[r]);
   }
 };
@@ -255,12 +287,6 @@ struct Transfer {
     }
   }
 };
-
-template <class Set>
-constexpr VoxelKernels VoxelKernelsOf() {
-  return {RunProduct<Lanes<double, Set>>::Add, RunProduct<Lanes<float, Set>>::Add, PackedProduct<Set>::Add,
-          Transfer<Set>::Interpolate, Transfer<Set>::Transpose};
-}
 
 }  // namespace fascicle
 

@@ -9,13 +9,22 @@
 
 namespace fascicle {
 
+// How far bricks may turn.
+enum class Rotation {
+  kSmall,  // linear elasticity, the paper's: right for small gradients of the displacement
+  kLarge,  // corotated: linear in the frame of each brick, which turns by the rotation nearest to the deformation
+           // gradient at its centre [Mueller & Gross 2004, Interactive virtual materials]
+};
+
 // A body of voxels: what does not change. Vectors (displacements, forces) are along the axes of the grid, its
 // `direction`. Thread-safe.
 class VoxelModel {
  public:
   // Checked input (CheckVoxelProblem); the grid must outlive the model. materials[m - 1] is that of voxels with m.
-  VoxelModel(const VoxelGrid& grid, std::vector<VoxelMaterial> materials, Dilatation dilatation)
+  VoxelModel(const VoxelGrid& grid, std::vector<VoxelMaterial> materials, Dilatation dilatation,
+             Rotation rotation = Rotation::kSmall)
       : grid_(&grid),
+        rotation_(rotation),
         materials_(std::move(materials)),
         mesh_(grid),
         stiffness_(mesh_, materials_, dilatation, StiffnessOfVoxels(grid)),
@@ -24,14 +33,16 @@ class VoxelModel {
   VoxelModel& operator=(const VoxelModel&) = delete;
 
   const VoxelGrid& grid() const { return *grid_; }
+  Rotation rotation() const { return rotation_; }
   const VoxelMesh& mesh() const { return mesh_; }
   const std::vector<VoxelMaterial>& materials() const { return materials_; }
   const VoxelStiffness& stiffness() const { return stiffness_; }
-  // y = K x [N].
+  // y = K x [N], of bricks that have not turned.
   const VoxelOperator<double>& K() const { return operator_; }
 
  private:
   const VoxelGrid* grid_;
+  Rotation rotation_;
   std::vector<VoxelMaterial> materials_;
   VoxelMesh mesh_;
   VoxelStiffness stiffness_;

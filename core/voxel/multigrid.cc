@@ -11,25 +11,38 @@ namespace {
 
 // Levels up to that many nodes are factored.
 constexpr std::int32_t kCoarsest = 250;
-constexpr int kSmoothing = 3;  // degree of the polynomials
+// Where bricks of the next level would be solid by less than that part, and there are not too many nodes to factor what
+// comes of them, rigid pieces take their place.
+constexpr double kLeastFilling = 0.85;
+constexpr std::int32_t kMostNodesOfPieces = 15000;
+constexpr int kSmoothing = 5;  // degree of the polynomials
 // Part of the spectrum that they damp: from the largest eigenvalue down to that part of it.
-constexpr float kDamped = 1.0f / 12;
+constexpr float kDamped = 1.0f / 20;
 constexpr int kPowerIterations = 12;
 constexpr double kEigenvalueMargin = 1.1;
 // Added to the coarsest diagonal, for motions of coarse nodes that move no free node.
 constexpr double kRegularization = 1e-9;
 
+double VolumeOf(const VoxelMesh& mesh) { return mesh.voxels() * mesh.spacing().prod(); }
+
 }  // namespace
 
 struct VoxelMultigrid::Level {
-  Level(const VoxelMesh& m, VoxelStiffness stiffness) : mesh(&m), K(m, std::move(stiffness)) {}
+  Level(const VoxelMesh& m, VoxelStiffness stiffness, std::optional<BrickRotations<float>> rotations)
+      : mesh(&m), K(m, std::move(stiffness), std::move(rotations)) {}
   Level(VoxelMesh m, const LevelStiffness& fine, const FixedComponents& fixed, ThreadTeam& team)
       : own_mesh(std::move(m)), mesh(&own_mesh), K(own_mesh, fine, fixed, team) {}
 
-  void SetUp(const std::vector<std::size_t>& fixed_numbers, ThreadTeam& team) {
+  // `diagonal`: D, or empty.
+  void SetUp(const std::vector<std::size_t>& fixed_numbers, VoxelField<float> diagonal, ThreadTeam& team) {
+    shift = std::move(diagonal);
+    for (const std::size_t k : fixed_numbers) {
+      if (shift.size() > 0) shift.data()[k] = 0;
+    }
     inverse_diagonal = K.Diagonal();
     for (std::size_t k = 0; k < inverse_diagonal.size(); ++k) {
       float& entry = inverse_diagonal.data()[k];
+      if (shift.size() > 0) entry += shift.data()[k];
       entry = entry > 0 ? 1 / entry : 0;
     }
     for (const std::size_t k : fixed_numbers) inverse_diagonal.data()[k] = 0;
@@ -38,7 +51,16 @@ struct VoxelMultigrid::Level {
     FindLargestEigenvalue(team);
   }
 
-  // Of D^-1 K, by power iteration.
+  // y = (K + D) x.
+  void Multiply(const VoxelField<float>& of, ThreadTeam& team, VoxelField<float>& y) const {
+    K.Apply(of, team, y);
+    if (shift.size() == 0) return;
+    const float *const by = shift.data(), *const from = of.data();
+    float* const to = y.data();
+    ForNumbers(team, y.size(), [=](std::size_t k) { to[k] += by[k] * from[k]; });
+  }
+
+  // Of the matrix preconditioned by its diagonal, by power iteration.
   void FindLargestEigenvalue(ThreadTeam& team) {
     for (int c = 0; c < 3; ++c) {
       for (std::int32_t n = 0; n < mesh->nodes(); ++n) {
@@ -48,7 +70,7 @@ struct VoxelMultigrid::Level {
     }
     double length = std::sqrt(Dot(team, d, d));
     for (int i = 0; i < kPowerIterations && length > 0; ++i) {
-      K.Apply(d, team, q);
+      Multiply(d, team, q);
       const auto scale = static_cast<float>(1 / length);
       ForNumbers(team, d.size(),
                  [this, scale](std::size_t k) { d.data()[k] = inverse_diagonal.data()[k] * q.data()[k] * scale; });
@@ -57,7 +79,8 @@ struct VoxelMultigrid::Level {
     largest_eigenvalue = static_cast<float>(kEigenvalueMargin * length);
   }
 
-  // x += polynomial in D^-1 K times D^-1 r, and r -= K times that, the last of it only if asked for.
+  // x += polynomial in the matrix preconditioned by its diagonal times the preconditioned r, and r -= the matrix times
+  // that, the last of it only if asked for.
   enum class Start { kZero, kX };
   void Smooth(Start start, bool with_residual, ThreadTeam& team) {
     const float centre = 0.5f * (1 + kDamped) * largest_eigenvalue, half = 0.5f * (1 - kDamped) * largest_eigenvalue;
@@ -66,12 +89,12 @@ struct VoxelMultigrid::Level {
     First(start, 1 / centre, team);
     for (int k = 1; k < kSmoothing; ++k) {
       const float next = 1 / (2 * sigma - rho);
-      K.Apply(d, team, q);
+      Multiply(d, team, q);
       Next(next * rho, 2 * next / half, team);
       rho = next;
     }
     if (!with_residual) return;
-    K.Apply(d, team, q);
+    Multiply(d, team, q);
     SubtractProduct(team);
   }
   void First(Start start, float factor, ThreadTeam& team) {
@@ -105,6 +128,7 @@ struct VoxelMultigrid::Level {
   VoxelMesh own_mesh;
   const VoxelMesh* mesh;
   LevelStiffness K;
+  VoxelField<float> shift;  // D, zero where a component is prescribed; empty for none
   std::unique_ptr<VoxelTransfer> to_coarser;
   VoxelField<float> inverse_diagonal;  // zero where a component is prescribed
   float largest_eigenvalue = 0;
@@ -113,24 +137,42 @@ struct VoxelMultigrid::Level {
 };
 
 VoxelMultigrid::VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stiffness, const FixedComponents& fixed,
-                               ThreadTeam& team)
+                               ThreadTeam& team, const std::vector<double>& shift,
+                               std::optional<BrickRotations<float>> rotations)
     : fixed_(fixed) {
-  levels_.push_back(std::make_unique<Level>(mesh, stiffness));
+  levels_.push_back(std::make_unique<Level>(mesh, stiffness, std::move(rotations)));
   Level* level = levels_.back().get();
   for (std::size_t n = 0; n < fixed_.size(); ++n) {
     for (int d = 0; d < 3; ++d) {
       if (fixed_[n] >> d & 1) fixed_numbers_.push_back(d * VoxelField<float>::StrideOf(mesh.nodes()) + n);
     }
   }
-  level->SetUp(fixed_numbers_, team);
+  VoxelField<float> diagonal;
+  if (!shift.empty()) diagonal = VoxelField<float>(mesh.nodes());
+  for (std::size_t n = 0; n < shift.size(); ++n) {
+    for (int d = 0; d < 3; ++d) diagonal.component(d)[n] = static_cast<float>(shift[n]);
+  }
+  level->SetUp(fixed_numbers_, std::move(diagonal), team);
   while (level->mesh->nodes() > kCoarsest) {
     VoxelMesh coarser = LevelStiffness::CoarserMesh(*level->mesh);
     if (coarser.nodes() >= level->mesh->nodes()) break;
+    const double filling = VolumeOf(mesh) / VolumeOf(coarser);
+    if (filling < kLeastFilling && level->mesh->nodes() <= kMostNodesOfPieces) {
+      pieces_ = std::make_unique<RigidPieces>(level->K, level->shift, level->inverse_diagonal,
+                                              level->largest_eigenvalue, team);
+      ok_ = pieces_->ok();
+      return;
+    }
     levels_.push_back(
         std::make_unique<Level>(std::move(coarser), level->K, levels_.size() == 1 ? fixed_ : FixedComponents(), team));
     Level* const next = levels_.back().get();
-    next->SetUp({}, team);
     level->to_coarser = std::make_unique<VoxelTransfer>(*level->mesh, *next->mesh);
+    VoxelField<float> coarser_diagonal;
+    if (!shift.empty()) {
+      coarser_diagonal = VoxelField<float>(next->mesh->nodes());
+      level->to_coarser->Transpose(level->shift, team, coarser_diagonal);
+    }
+    next->SetUp({}, std::move(coarser_diagonal), team);
     level = next;
   }
   ok_ = FactorCoarsest();
@@ -147,29 +189,39 @@ void VoxelMultigrid::Cycle(ThreadTeam& team) {
 }
 
 void VoxelMultigrid::CycleFrom(std::size_t l, ThreadTeam& team) {
-  if (l + 1 == levels_.size()) {
+  const bool is_last = l + 1 == levels_.size();
+  if (is_last && !pieces_) {
     SolveCoarsest();
     return;
   }
   Level& level = *levels_[l];
-  Level& next = *levels_[l + 1];
   const auto clear_fixed = [&](VoxelField<float>& field) {
     if (l > 0) return;
     for (const std::size_t k : fixed_numbers_) field.data()[k] = 0;
   };
   level.Smooth(Level::Start::kZero, /*with_residual=*/true, team);
   clear_fixed(level.r);
-  level.to_coarser->Transpose(level.r, team, next.r);
-  CycleFrom(l + 1, team);
-  if (l + 2 < levels_.size()) ImproveBySecondCycle(l, team);
-  level.to_coarser->Interpolate(next.x, team, level.d);
+  if (is_last) {
+    pieces_->Correct(level.r, team, level.d);
+  } else {
+    CorrectByNext(l, team);
+  }
   clear_fixed(level.d);
-  level.K.Apply(level.d, team, level.q);
+  level.Multiply(level.d, team, level.q);
   ForNumbers(team, level.x.size(), [&level](std::size_t k) {
     level.x.data()[k] += level.d.data()[k];
     level.r.data()[k] -= level.q.data()[k];
   });
   level.Smooth(Level::Start::kX, /*with_residual=*/false, team);
+}
+
+void VoxelMultigrid::CorrectByNext(std::size_t l, ThreadTeam& team) {
+  Level& level = *levels_[l];
+  Level& next = *levels_[l + 1];
+  level.to_coarser->Transpose(level.r, team, next.r);
+  CycleFrom(l + 1, team);
+  if (l + 2 < levels_.size() || pieces_) ImproveBySecondCycle(l, team);
+  level.to_coarser->Interpolate(next.x, team, level.d);
 }
 
 void VoxelMultigrid::ImproveBySecondCycle(std::size_t l, ThreadTeam& team) {
@@ -178,7 +230,7 @@ void VoxelMultigrid::ImproveBySecondCycle(std::size_t l, ThreadTeam& team) {
   VoxelField<float>& first = next.first_result;
   std::swap(first, next.x);
   level.to_coarser->Transpose(level.r, team, next.r);
-  next.K.Apply(first, team, next.q);
+  next.Multiply(first, team, next.q);
   next.SubtractProduct(team);
   CycleFrom(l + 1, team);
   ForNumbers(team, first.size(), [&](std::size_t k) { next.x.data()[k] += first.data()[k]; });
@@ -223,6 +275,9 @@ bool VoxelMultigrid::FactorCoarsest() {
   }
   std::vector<std::int32_t> rows, columns;
   std::vector<double> values;
+  for (std::int32_t k = 0; k < size && level.shift.size() > 0; ++k) {
+    entries[{k, k}] += static_cast<double>(level.shift.data()[unknown_numbers_[k]]);
+  }
   for (const auto& [place, value] : entries) {
     rows.push_back(place[0]);
     columns.push_back(place[1]);
@@ -249,13 +304,15 @@ std::string VoxelMultigrid::Description() const {
     text += std::to_string(level->mesh->voxels());
     if (level->K.own_matrices() > 0) text += " (" + std::to_string(level->K.own_matrices()) + " of their own)";
   }
-  return text + " voxels";
+  text += " voxels";
+  if (pieces_) text += " + " + std::to_string(pieces_->unknowns() / 6) + " pieces";
+  return text;
 }
 
 std::size_t VoxelMultigrid::bytes() const {
-  std::size_t sum = 0;
+  std::size_t sum = pieces_ ? pieces_->bytes() : 0;
   for (const auto& level : levels_) {
-    sum += level->K.bytes() + (5 * level->r.size() + level->first_result.size()) * sizeof(float);
+    sum += level->K.bytes() + (5 * level->r.size() + level->first_result.size() + level->shift.size()) * sizeof(float);
   }
   return sum;
 }

@@ -7,23 +7,26 @@
 
 #include "core/linalg/direct_solver.h"
 #include "core/voxel/galerkin.h"
+#include "core/voxel/rigid_pieces.h"
 #include "core/voxel/transfer.h"
 
 namespace fascicle {
 
-// A preconditioner for K of a voxel mesh: one W-cycle of geometric multigrid over voxels of twice, four times, ... the
-// spacing, wherever there is any solid voxel in them.
+// A preconditioner for K of a voxel mesh, or for K + D with a diagonal D: one W-cycle of geometric multigrid over
+// voxels of twice, four times, ... the spacing, wherever there is any solid voxel in them.
 //
 // Stiffness of the levels by Galerkin products (galerkin.h), prescribed components included; smoothing by Chebyshev
 // polynomials of the matrix preconditioned by its diagonal [Adams, Brezina, Hu & Tuminaro 2003, Parallel multigrid
-// smoothing, J. Comput. Phys. 188]; the coarsest level factored. A fixed sequence of products, so the cycle is a
-// symmetric linear operator, the same bits for any number of threads. Single precision but for the coarsest. One thread
-// at a time.
+// smoothing, J. Comput. Phys. 188]; the coarsest level factored. Where larger bricks would be solid by less than 85 %,
+// rigid pieces (rigid_pieces.h) take their place: a brick as large as a tendon is thick is too stiff in bending. A
+// fixed sequence of products, so the cycle is a symmetric linear operator, the same bits for any number of threads.
+// Single precision but for the coarsest. One thread at a time.
 class VoxelMultigrid {
  public:
-  // `fixed` of the mesh's nodes, empty for none. The mesh must outlive the multigrid.
-  VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stiffness, const FixedComponents& fixed,
-                 ThreadTeam& team);
+  // `fixed` of the mesh's nodes, empty for none; `shift`: D of each node, >= 0, empty for none, lumped on coarser
+  // levels; `rotations`: how bricks have turned, if they have. The mesh must outlive the multigrid.
+  VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stiffness, const FixedComponents& fixed, ThreadTeam& team,
+                 const std::vector<double>& shift = {}, std::optional<BrickRotations<float>> rotations = std::nullopt);
   ~VoxelMultigrid();
 
   // Whether the coarsest level could be factored: not where nothing holds the mesh and memory is short.
@@ -38,7 +41,9 @@ class VoxelMultigrid {
   void Cycle(ThreadTeam& team);
 
   int levels() const { return static_cast<int>(levels_.size()); }
-  // For people: "344246 + 51120 (17034 of their own) voxels".
+  // Whether there is nothing but a factorization.
+  bool IsDirect() const { return levels() == 1 && !pieces_; }
+  // For people: "344246 + 46434 (6711 of their own) + 6749 (2541 of their own) voxels + 431 pieces".
   std::string Description() const;
   // Memory of all levels.
   std::size_t bytes() const;
@@ -46,6 +51,8 @@ class VoxelMultigrid {
  private:
   struct Level;
   void CycleFrom(std::size_t level, ThreadTeam& team);
+  // Sets d of a level from what the level below makes of r.
+  void CorrectByNext(std::size_t level, ThreadTeam& team);
   // What makes a W-cycle of a V-cycle: the level below goes on from its result. It costs an eighth of this level's
   // work.
   void ImproveBySecondCycle(std::size_t level, ThreadTeam& team);
@@ -56,7 +63,8 @@ class VoxelMultigrid {
   FixedComponents fixed_;
   std::vector<std::size_t> fixed_numbers_;  // of the finest fields
   bool ok_ = false;
-  DirectSolver coarsest_;
+  std::unique_ptr<RigidPieces> pieces_;        // below the coarsest level, or null
+  DirectSolver coarsest_;                      // of the coarsest level, where there are no pieces
   std::vector<std::int32_t> unknown_numbers_;  // of the coarsest fields, for each unknown
   std::vector<double> coarsest_side_;
 };

@@ -1,47 +1,46 @@
 #ifndef FASCICLE_CORE_VOXEL_STATIC_SOLVER_H_
 #define FASCICLE_CORE_VOXEL_STATIC_SOLVER_H_
 
-#include <memory>
 #include <vector>
 
-#include "core/voxel/conjugate_gradient.h"
+#include "core/voxel/equilibrium.h"
 #include "core/voxel/model.h"
 
 namespace fascicle {
 
-struct StaticSettings {
-  double tolerance = 1e-8;  // of the residual's norm, relative to that of all forces at the start [1]
-  int max_iterations = 1000;
-};
+using StaticSettings = EquilibriumSettings;
 
 struct StaticSolution {
-  VoxelCgResult iterations;
+  EquilibriumResult iterations;
   VoxelField<double> displacement;  // [m]
-  VoxelField<double> reaction;      // K u - f: zero, up to the residual, but where supports hold [N]
-  double energy = 0;                // u . K u / 2 [J]
+  VoxelField<double> reaction;      // forces of the bricks - f: zero, up to the residual, but where supports hold [N]
+  double energy = 0;                // elastic [J]
 };
 
-// Equilibrium K u = f of a body of voxels, with supports that stay and loads that may change: the levels of multigrid
-// are set up once. One thread at a time; the same bits for any number of threads.
+// Equilibrium of a body of voxels, with supports that stay and loads and displacements of supports that may change: the
+// levels of multigrid are set up once. One thread at a time; the same bits for any number of threads.
 class VoxelStaticSolver {
  public:
   // Checked input (CheckVoxelProblem). The model and the team must outlive the solver.
   VoxelStaticSolver(const VoxelModel& model, const std::vector<VoxelSupport>& supports, ThreadTeam& team);
 
-  // Starts from `start`, or from zero where it is null.
+  // Under loads, supports displaced as they say. Starts from `start`, or from zero where it is null.
   StaticSolution Solve(const VoxelLoads& loads, const StaticSettings& settings = {},
                        const VoxelField<double>* start = nullptr);
+  // Under forces on nodes [N], prescribed components as they are in `prescribed` [m]; its others are not read. From the
+  // solution of a load that is near, fewer iterations are left (and with large rotation that may be the only way).
+  StaticSolution Solve(const VoxelField<double>& force, const VoxelField<double>& prescribed,
+                       const StaticSettings& settings = {}, const VoxelField<double>* start = nullptr);
 
-  const VoxelMultigrid& multigrid() const { return *multigrid_; }
+  const VoxelMultigrid& multigrid() const { return equilibrium_.multigrid(); }
   // All memory that the solver takes while it solves, with its model's.
   std::size_t bytes() const;
 
  private:
   const VoxelModel* model_;
   ThreadTeam* team_;
-  std::vector<std::size_t> fixed_numbers_;  // of the fields, ascending
-  std::vector<double> fixed_values_;        // of each [m]
-  std::unique_ptr<VoxelMultigrid> multigrid_;
+  VoxelField<double> displacements_of_supports_;
+  VoxelEquilibrium equilibrium_;
 };
 
 }  // namespace fascicle

@@ -50,18 +50,16 @@ VoxelOperator<S>::VoxelOperator(const VoxelStiffness& stiffness, const VoxelKern
 
 template <class S>
 void VoxelOperator<S>::Apply(const VoxelField<S>& x, ThreadTeam& team, VoxelField<S>& y) const {
-  const VoxelMesh& mesh = *stiffness_->mesh;
-  FASCICLE_CHECK(x.nodes() == mesh.nodes() && y.nodes() == mesh.nodes() && x.data() != y.data(), "fields of this mesh");
-  ForSlabs(mesh, team, [&](std::size_t s) { ApplySlab(s, x, y); });
+  FASCICLE_CHECK(x.nodes() == mesh().nodes() && y.nodes() == mesh().nodes() && x.data() != y.data(),
+                 "fields of this mesh");
+  ForSlabs(mesh(), team, [&](std::size_t s) { ApplySlab(s, x, y); });
 }
 
 template <class S>
-void VoxelOperator<S>::ApplySlab(std::size_t s, const VoxelField<S>& x, VoxelField<S>& y) const {
-  const VoxelMesh& mesh = *stiffness_->mesh;
-  ClearSlab(mesh, s, y);
-  const VoxelSlab& slab = mesh.slabs()[s];
+ProductTask<S> VoxelOperator<S>::TaskOf(std::size_t s, const VoxelField<S>& x, VoxelField<S>& y) const {
+  const VoxelSlab& slab = mesh().slabs()[s];
   ProductTask<S> task;
-  task.runs = mesh.runs().data() + slab.first_run;
+  task.runs = mesh().runs().data() + slab.first_run;
   task.run_count = slab.end_run - slab.first_run;
   task.scale = stiffness_->scale.data();
   task.moduli = moduli_.data();
@@ -71,6 +69,13 @@ void VoxelOperator<S>::ApplySlab(std::size_t s, const VoxelField<S>& x, VoxelFie
     task.y[d] = y.component(d);
   }
   task.end_node = slab.end_node;
+  return task;
+}
+
+template <class S>
+void VoxelOperator<S>::ApplySlab(std::size_t s, const VoxelField<S>& x, VoxelField<S>& y) const {
+  ClearSlab(mesh(), s, y);
+  const ProductTask<S> task = TaskOf(s, x, y);
   if constexpr (std::is_same_v<S, double>) {
     kernels_->product(task);
   } else {

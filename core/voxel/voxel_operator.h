@@ -45,6 +45,11 @@ class VoxelOperator {
   // Its part of one slab, for loops over slabs that do more (ForSlabs).
   void ApplySlab(std::size_t slab, const VoxelField<S>& x, VoxelField<S>& y) const;
 
+  // What kernels need for y += ... of one slab.
+  ProductTask<S> TaskOf(std::size_t slab, const VoxelField<S>& x, VoxelField<S>& y) const;
+  const VoxelMesh& mesh() const { return *stiffness_->mesh; }
+  const VoxelKernels& kernels() const { return *kernels_; }
+
  private:
   const VoxelStiffness* stiffness_;
   const VoxelKernels* kernels_;

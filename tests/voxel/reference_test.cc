@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <fstream>
 #include <numbers>
 #include <sstream>
@@ -89,13 +89,13 @@ void Compare(const Row& row, const VoxelGrid& grid, double young, const Vec3& to
   const VoxelModel model(grid, {{young, row.nu}}, Dilatation::kFull);
   const Ends ends = EndsOf(model.mesh(), layers);
   ThreadTeam team(1);
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   VoxelStaticSolver solver(model, {{ends.bottom}, {ends.top, {true, true, true}, top}}, team);
   const StaticSolution solution = solver.Solve({}, {.tolerance = 1e-10});
   ASSERT_TRUE(solution.iterations.converged);
-  std::printf("%s, nu %g: %d voxels, %d iterations to 1e-10, %.2f s, %.0f bytes a voxel; %s\n", row.model.c_str(),
-              row.nu, model.mesh().voxels(), solution.iterations.iterations,
-              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+  std::printf("%s, nu %g: %d voxels, %d iterations to 1e-10, %.2f s of CPU, %.0f bytes a voxel; %s\n",
+              row.model.c_str(), row.nu, model.mesh().voxels(), solution.iterations.iterations,
+              static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC,
               static_cast<double>(solver.bytes()) / model.mesh().voxels(), solver.multigrid().Description().c_str());
   Vec3 R = Vec3::Zero();
   for (const GridIndex& at : ends.top) R += solution.reaction.At(model.mesh().NodeAt(at));
@@ -138,8 +138,8 @@ TEST(ParOSol, EveryRowIsMetToOneInAMillion) {
   }
 }
 
-// Iterations to 1e-8 of a body of 1 mm voxels and of its coarser levels that have levels below them, finest first. The
-// ends are held over 10 mm, and pulled by 3 mm.
+// Iterations to 1e-8 of a body of 1 mm voxels and of its coarser levels that are not factored at once, finest first.
+// The ends are held over 10 mm, and pulled by 3 mm.
 std::vector<int> IterationsOfLevels(const VoxelGrid& grid, double nu) {
   std::vector<int> iterations;
   for (VoxelLevel& level : MakeHierarchy(grid, 0.5, 5)) {
@@ -147,42 +147,42 @@ std::vector<int> IterationsOfLevels(const VoxelGrid& grid, double nu) {
     const VoxelModel model(level.grid, {{3e4, nu}}, Dilatation::kFull);
     const Ends ends = EndsOf(model.mesh(), std::max(1, 10 / level.voxel_size));
     ThreadTeam team(1);
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();
     VoxelStaticSolver solver(model, {{ends.bottom}, {ends.top, {true, true, true}, Vec3(0, 0, 3e-3)}}, team);
     const StaticSolution solution = solver.Solve({}, {.tolerance = 1e-8});
     EXPECT_TRUE(solution.iterations.converged);
-    std::printf("%2d mm: %d voxels, %d nodes, %d iterations to 1e-8, %.2f s, %.0f bytes a voxel; %s\n",
+    std::printf("%2d mm: %d voxels, %d nodes, %d iterations to 1e-8, %.2f s of CPU, %.0f bytes a voxel; %s\n",
                 level.voxel_size, model.mesh().voxels(), model.mesh().nodes(), solution.iterations.iterations,
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC,
                 static_cast<double>(solver.bytes()) / model.mesh().voxels(), solver.multigrid().Description().c_str());
-    if (solver.multigrid().levels() > 1) iterations.push_back(solution.iterations.iterations);
+    if (!solver.multigrid().IsDirect()) iterations.push_back(solution.iterations.iterations);
   }
   return iterations;
 }
 
 // A spindle as long and thick as the biceps.
-TEST(Multigrid, IterationsHardlyGrowWithTheLevelsOfASpindle) {
+TEST(Multigrid, IterationsDoNotGrowWithTheLevelsOfASpindle) {
   VoxelGrid grid = MakeVoxelGrid({60, 60, 320}, Vec3::Constant(1e-3));
   ForVoxels(grid, [&](std::size_t v, const GridIndex& at) {
     const double z = (at[2] + 0.5 - 160) / 160, radius = 10 + 20 * (1 - z * z);
     grid.material[v] = std::hypot(at[0] + 0.5 - 30, at[1] + 0.5 - 30) < radius ? 1 : 0;
   });
   const std::vector<int> iterations = IterationsOfLevels(grid, 0.45);
-  const auto [fewest, most] = std::minmax_element(iterations.begin(), iterations.end());
-  EXPECT_LE(*most - *fewest, 3);
+  ASSERT_GE(iterations.size(), 4u);
+  EXPECT_LE(iterations.front(), iterations.back() + 3);
+  EXPECT_LE(*std::max_element(iterations.begin(), iterations.end()), 15);
 }
 
-// The real one has tendons of six voxels across and 70 along, which coarse bricks are too stiff for in bending: that
-// costs iterations, but not more of them with the finest level.
-TEST(Multigrid, IterationsDoNotGrowWithTheFinestLevelOfTheBiceps) {
+// The real one has tendons of six voxels across and 70 along, which bricks as large are too stiff for in bending.
+TEST(Multigrid, IterationsHardlyGrowWithTheLevelsOfTheBiceps) {
   const std::optional<VoxelGrid> label = ReadLabel(LabelVolumePath(), 1);
   if (!label) GTEST_SKIP() << LabelVolumePath() << " is not there; set FASCICLE_DATA";
   VoxelGrid grid = CropToSolid(*label);
   KeepLargestIsland(grid);
   const std::vector<int> iterations = IterationsOfLevels(grid, 0.45);
-  ASSERT_GE(iterations.size(), 2u);
-  EXPECT_LE(iterations[0], iterations[1] + 3);
-  EXPECT_LE(iterations[0], 45);
+  ASSERT_GE(iterations.size(), 4u);
+  EXPECT_LE(iterations.front(), iterations.back() + 5);
+  EXPECT_LE(*std::max_element(iterations.begin(), iterations.end()), 28);
 }
 
 }  // namespace

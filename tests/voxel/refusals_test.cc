@@ -100,6 +100,14 @@ TEST(Refusals, AnIslandThatNothingHolds) {
                                         "along i, j and k, turns about i, j and k"));
 }
 
+TEST(Refusals, ABodyMayFlyInTime) {
+  Body body;
+  body.supports = {};
+  Problems problems;
+  CheckVoxelProblem(body.grid, body.materials, body.supports, body.loads, problems, /*may_fly=*/true);
+  EXPECT_EQ(problems.ToString(), "");
+}
+
 TEST(Refusals, RigidModesAreNamed) {
   Body body;
   body.supports = {};

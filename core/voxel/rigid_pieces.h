@@ -1,0 +1,43 @@
+#ifndef FASCICLE_CORE_VOXEL_RIGID_PIECES_H_
+#define FASCICLE_CORE_VOXEL_RIGID_PIECES_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "core/linalg/aggregation.h"
+#include "core/linalg/direct_solver.h"
+#include "core/voxel/galerkin.h"
+
+namespace fascicle {
+
+// A coarse space for a level of voxels that larger bricks fit badly: pieces of about 3x3x3 nodes that move as rigid
+// bodies, smoothed [Vanek, Mandel & Brezina 1996; core/linalg/aggregation.h]. Thin parts bend in it as they should, no
+// matter how much of a larger brick they fill. Its matrix P^T (K + D) P is factored. One thread at a time.
+class RigidPieces {
+ public:
+  // shift: D, or empty; inverse_diagonal: of K + D, zero where a component takes no part; largest_eigenvalue: of the
+  // matrix preconditioned by it.
+  RigidPieces(const LevelStiffness& K, const VoxelField<float>& shift, const VoxelField<float>& inverse_diagonal,
+              float largest_eigenvalue, ThreadTeam& team);
+
+  bool ok() const { return ok_; }
+  // x = P (P^T (K + D) P)^-1 P^T r.
+  void Correct(const VoxelField<float>& r, ThreadTeam& team, VoxelField<float>& x);
+
+  std::size_t unknowns() const { return side_.size(); }
+  std::size_t bytes() const;
+
+ private:
+  bool Factor(const BlockPattern& pattern, BlockValues& values);
+
+  BlockPattern rows_;  // of P
+  TransposedPattern columns_;
+  std::vector<Eigen::Matrix3f> values_;
+  DirectSolver solver_;
+  std::vector<double> side_;
+  bool ok_ = false;
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_VOXEL_RIGID_PIECES_H_

@@ -1,0 +1,26 @@
+#ifndef FASCICLE_CORE_VOXEL_VOXEL_STATE_H_
+#define FASCICLE_CORE_VOXEL_VOXEL_STATE_H_
+
+#include <cstdint>
+
+#include "core/base/archive.h"
+#include "core/voxel/voxel_field.h"
+
+namespace fascicle {
+
+// What changes from step to step, and all that a checkpoint saves.
+struct VoxelState {
+  double time = 0;  // [s]
+  std::int64_t step = 0;
+  VoxelField<double> displacement;  // u_n, at `time` [m]
+  VoxelField<double> previous;      // u_{n-1}, a step before [m]
+  std::int64_t iterations = 0;      // of linear solves so far
+
+  void Save(ArchiveWriter& archive) const;
+  // Sets failed() of the archive when sizes differ from the present ones.
+  void Load(ArchiveReader& archive);
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_VOXEL_VOXEL_STATE_H_
