@@ -17,12 +17,14 @@ struct Histogram {
   double width() const { return (highest - lowest) / static_cast<double>(counts.size()); }
   double CentreOf(std::size_t bin) const { return lowest + (static_cast<double>(bin) + 0.5) * width(); }
   std::size_t BinOf(double value) const;
+  // How many bins have counts.
+  std::size_t filled() const;
 };
 // bins >= 1; values finite, at least one.
 Histogram MakeHistogram(std::span<const float> values, int bins);
 
 // The classes - 1 rising values that part a histogram into classes of largest variance between them [Otsu 1979, Liao
-// 2001]. classes >= 2; at least as many bins have counts.
+// 2001]. classes >= 2; at least as many bins have counts. Takes a time of classes * bins^2.
 std::vector<double> OtsuThresholds(const Histogram& histogram, int classes);
 
 // Fuzzy c-means [Bezdek 1981]: minimizes the sum over voxels x and classes c of u_c(x)^m |value(x) - v_c|^2.

@@ -8,10 +8,10 @@
 
 namespace fascicle {
 
-// Blurs by a Gaussian of that standard deviation [m], the same in all directions whatever the spacing
-// (recursive filter of Deriche 1993).
+// Blurs by a Gaussian of that standard deviation [m], the same in all directions whatever the spacing: the discrete
+// kernel of [Lindeberg 1994].
 struct GaussianFilter {
-  double deviation = 1e-3;  // [m], > 0
+  double deviation = 1e-3;  // [m], > 0, at most 20 voxels
 
   bool operator==(const GaussianFilter&) const = default;
 };
@@ -24,10 +24,10 @@ struct CurvatureFilter {
   bool operator==(const CurvatureFilter&) const = default;
 };
 
-// Takes the noise out scale by scale: undecimated B3-spline wavelets (a trous) [Starck and Murtagh 1998], whose
-// coefficients are shrunk by `threshold` deviations of the noise at their scale (soft; Donoho 1995). The noise is that
-// of the finest scale, estimated by the median absolute deviation of its coefficients. With threshold 0 the image stays
-// as it was.
+// Takes the noise out scale by scale: undecimated B3-spline wavelets (a trous) [Starck and Murtagh 1994], whose
+// coefficients w are shrunk to w (1 - (t/w)^2), or 0 below t [non-negative garrote; Gao 1998], where t is `threshold`
+// deviations of the noise at their scale. The noise is estimated at the finest scale (EstimateNoise) and white. With
+// threshold 0 the image stays as it was.
 struct WaveletFilter {
   int scales = 3;        // 1 to 8, as far as the image is large enough: the coarsest is 2^scales voxels wide
   double threshold = 3;  // [1], >= 0

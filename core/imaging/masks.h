@@ -6,18 +6,22 @@
 
 namespace fascicle {
 
-// What is done to the solid voxels of a grid, before they are simulated. Materials stay those that they were.
+// What is done to the solid voxels of a grid before they are simulated. Materials stay those that they were.
 
-// Empties what no ball of that radius [m], inside of the solid voxels, reaches: thin bridges and sheets (opening). The
-// ball is round in metres, whatever the spacing; outside of the box counts as solid.
-void Open(VoxelGrid& grid, double radius, ThreadTeam& team);
+// Empties all voxels whose centres are no further from that of an empty one than `radius` [m], whatever the spacing:
+// what is left are the places where a ball fits in. Outside of the box counts as solid.
+void Erode(VoxelGrid& grid, double radius, ThreadTeam& team);
 
-// Empties all but the islands that hold one of these voxels; false when a voxel is outside of the box or empty.
-bool KeepIslandsOf(VoxelGrid& grid, const std::vector<GridIndex>& seeds);
+// Brings back the voxels of `whole` no further than `radius` [m] from those that are left in `grid`. After Erode this
+// is an opening: thin bridges and sheets are gone, and so is what hung on them when its island was emptied in between.
+void Restore(VoxelGrid& grid, const VoxelGrid& whole, double radius, ThreadTeam& team);
 
-// Makes empty voxels solid from where no way through empty voxels (by faces) leads to the box's sides; each gets the
-// material that most of its filled neighbours have. `in_slices`: the same in each plane of i and j by itself, before.
-void FillHoles(VoxelGrid& grid, bool in_slices);
+// Empties all but the islands (FindIslands) that hold one of these voxels, which must be inside of the box and solid.
+void KeepIslandsOf(VoxelGrid& grid, const std::vector<GridIndex>& seeds);
+
+// Makes empty voxels solid from where no way through empty voxels (by faces) leads to a side of the box: each hole gets
+// the material that most of the faces around it have.
+void FillHoles(VoxelGrid& grid);
 
 // 2 |A and B| / (|A| + |B|) of the solid voxels of two grids of the same size [Dice 1945]; 1 where both are empty.
 double DiceOverlap(const VoxelGrid& a, const VoxelGrid& b);

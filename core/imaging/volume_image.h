@@ -53,8 +53,11 @@ VolumeImage Resample(const VolumeImage& image, double spacing, Interpolation int
 // The size that the result has.
 GridIndex ResampledSize(const GridIndex& size, const Vec3& from, double spacing);
 
-// A grid of the image's place whose voxels are of `material` (one for each voxel, 0: empty).
+// A grid in the image's place whose voxels are of `material` (one for each voxel, 0: empty), in the image's order.
 VoxelGrid MakeVoxelGrid(const VolumeImage& image, std::vector<std::uint8_t> material);
+// Images may have left-handed axes; what is simulated must not. Such a grid is turned round along k: each voxel stays
+// where it is in space.
+void MakeRightHanded(VoxelGrid& grid);
 // The materials of a grid as an image.
 VolumeImage MakeLabelImage(const VoxelGrid& grid);
 
