@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <system_error>
 
+#include "core/imaging/dicom_check.h"
 #include "core/imaging/itk_image_io.h"
 
 namespace fascicle {
@@ -22,6 +24,11 @@ struct Slice {
   double height = 0;  // along the normal [m]
 };
 
+std::string BytesOf(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
 std::optional<std::vector<Slice>> ReadSlices(const std::vector<DicomFile>& files, std::int64_t memory_limit,
                                              Problems& problems) {
   std::vector<Slice> slices;
@@ -31,7 +38,8 @@ std::optional<std::vector<Slice>> ReadSlices(const std::vector<DicomFile>& files
     std::error_code error;
     const ItkFile one{VolumeFormat::kDicom, file.path, std::filesystem::file_size(file.path, error), true};
     Problems found;
-    std::optional<ItkVolume> volume = ReadByItk(one, left, found);
+    std::optional<ItkVolume> volume;
+    if (CheckDicom(BytesOf(file.path), found)) volume = ReadByItk(one, left, found);
     for (const Problem& problem : found.kept()) {
       problems.Add(problem.path, files.size() == 1 ? problem.message : file.name + ": " + problem.message,
                    problem.hint);

@@ -41,7 +41,7 @@ using ImageFilter = std::variant<GaussianFilter, CurvatureFilter, WaveletFilter>
 VolumeImage ApplyFilter(const VolumeImage& image, const ImageFilter& filter, ThreadTeam& team);
 
 // Standard deviation of the noise of an image, from the median absolute deviation of the finest wavelet coefficients
-// [the values' unit]. Voxels of value 0 with neighbours of value 0 alone, as masked background has, don't count.
+// [the values' unit]. Voxels of value 0, as masked background has, don't count.
 double EstimateNoise(const VolumeImage& image, ThreadTeam& team);
 
 }  // namespace fascicle

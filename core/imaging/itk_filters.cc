@@ -4,7 +4,6 @@
 #include <itkDiscreteGaussianImageFilter.h>
 #include <itkImage.h>
 #include <itkImportImageFilter.h>
-#include <itkSignedMaurerDistanceMapImageFilter.h>
 
 #include <algorithm>
 #include <cmath>
@@ -71,22 +70,6 @@ VolumeImage DiffusedOf(const VolumeImage& image, const CurvatureFilter& filter, 
   diffusion->SetUseImageSpacing(true);
   diffusion->SetNumberOfWorkUnits(threads);
   return WithValues(image, ValuesOf(*diffusion, image.voxels()));
-}
-
-std::vector<float> DistancesTo(const std::vector<std::uint8_t>& marked, const GridIndex& size, const Vec3& spacing,
-                               int threads) {
-  const auto import = Import(marked, size, spacing);
-  auto map = itk::SignedMaurerDistanceMapImageFilter<itk::Image<std::uint8_t, 3>, FloatImage>::New();
-  map->SetInput(import->GetOutput());
-  map->SetBackgroundValue(0);
-  map->SetSquaredDistance(false);
-  map->SetUseImageSpacing(true);
-  map->SetInsideIsPositive(false);
-  map->SetNumberOfWorkUnits(threads);
-  std::vector<float> distances = ValuesOf(*map, marked.size());
-  // Inside of marked parts it is negative.
-  for (float& distance : distances) distance = std::max(distance, 0.0F);
-  return distances;
 }
 
 }  // namespace fascicle

@@ -118,7 +118,8 @@ bool TakeHeader(const ImageIOBase& io, const ItkFile& file, std::int64_t memory_
                  "one is read: save one channel by itself");
     return false;
   }
-  VolumeClaim claim{{1, 1, 1}, io.GetComponentSize(), file.bytes, file.compressed};
+  const std::uint64_t width = file.bytes_per_voxel > 0 ? file.bytes_per_voxel : io.GetComponentSize();
+  VolumeClaim claim{{1, 1, 1}, width, file.bytes, file.compressed};
   const unsigned dimensions = io.GetNumberOfDimensions();
   for (unsigned axis = 0; axis < dimensions; ++axis) {
     const std::uint64_t length = io.GetDimensions(axis);

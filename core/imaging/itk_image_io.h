@@ -16,6 +16,7 @@ struct ItkFile {
   std::filesystem::path path;
   std::uint64_t bytes = 0;  // that the voxels can have in the file
   bool compressed = false;
+  std::uint64_t bytes_per_voxel = 0;  // in the file; 0: as ITK says, which is after rescaling
 };
 
 struct ItkVolume {

@@ -1,9 +1,9 @@
 #include "core/imaging/masks.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <map>
-
-#include "core/imaging/itk_filters.h"
 
 namespace fascicle {
 namespace {
@@ -14,30 +14,57 @@ std::vector<std::uint8_t> Marked(const VoxelGrid& grid, bool solid) {
   return marked;
 }
 
-bool AnyOf(const std::vector<std::uint8_t>& marked) {
-  return std::find(marked.begin(), marked.end(), 1) != marked.end();
-}
+// Squared distances are sums of rounded squares.
+constexpr double kRounding = 1 + 1e-9;
 
-// Distances of voxels on the same lattice are sums of squares, rounded.
-constexpr double kRounding = 1 + 1e-6;
+// Which voxels have a marked one, or are one, whose centre is no further than `radius` [m]. By axes: the squared
+// distance to the nearest is found along i, then the least of these and the square of the way along j, then k; no
+// further than the ball.
+std::vector<std::uint8_t> Within(const std::vector<std::uint8_t>& marked, const VoxelGrid& grid, double radius,
+                                 ThreadTeam& team) {
+  const double far = 4 * radius * radius + 1;
+  std::vector<double> squares(marked.size()), next(marked.size());
+  for (std::size_t v = 0; v < marked.size(); ++v) squares[v] = marked[v] != 0 ? 0 : far;
+  std::size_t stride = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int32_t size = grid.size[axis];
+    const double spacing = grid.spacing[axis];
+    const auto reach = static_cast<std::int32_t>(std::min<double>(size - 1, std::floor(radius * kRounding / spacing)));
+    team.For(marked.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        const auto at = static_cast<std::int32_t>(v / stride % size);
+        double least = squares[v];
+        for (std::int32_t d = std::max(-reach, -at); d <= std::min(reach, size - 1 - at); ++d) {
+          const double way = d * spacing;
+          least = std::min(least, squares[v + static_cast<std::ptrdiff_t>(stride) * d] + way * way);
+        }
+        next[v] = least;
+      }
+    });
+    squares.swap(next);
+    stride *= size;
+  }
+  std::vector<std::uint8_t> within(marked.size());
+  const double limit = radius * radius * kRounding;
+  for (std::size_t v = 0; v < marked.size(); ++v) within[v] = squares[v] <= limit ? 1 : 0;
+  return within;
+}
 
 }  // namespace
 
 void Erode(VoxelGrid& grid, double radius, ThreadTeam& team) {
-  const std::vector<std::uint8_t> empty = Marked(grid, false);
-  if (radius <= 0 || !AnyOf(empty)) return;
-  const std::vector<float> distances = DistancesTo(empty, grid.size, grid.spacing, team.size());
-  for (std::size_t v = 0; v < distances.size(); ++v) {
-    if (distances[v] <= radius * kRounding) grid.material[v] = 0;
+  if (radius <= 0) return;
+  const std::vector<std::uint8_t> near = Within(Marked(grid, false), grid, radius, team);
+  for (std::size_t v = 0; v < near.size(); ++v) {
+    if (near[v] != 0) grid.material[v] = 0;
   }
 }
 
 void Restore(VoxelGrid& grid, const VoxelGrid& whole, double radius, ThreadTeam& team) {
-  const std::vector<std::uint8_t> solid = Marked(grid, true);
-  if (radius <= 0 || !AnyOf(solid)) return;
-  const std::vector<float> distances = DistancesTo(solid, grid.size, grid.spacing, team.size());
-  for (std::size_t v = 0; v < distances.size(); ++v) {
-    if (distances[v] <= radius * kRounding) grid.material[v] = whole.material[v];
+  if (radius <= 0) return;
+  const std::vector<std::uint8_t> near = Within(Marked(grid, true), grid, radius, team);
+  for (std::size_t v = 0; v < near.size(); ++v) {
+    if (near[v] != 0) grid.material[v] = whole.material[v];
   }
 }
 

@@ -1,6 +1,7 @@
 #include "core/imaging/volume_files.h"
 
 #include <stdlib.h>
+#include <zlib.h>
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
 
 namespace fascicle {
 namespace {
@@ -60,7 +62,7 @@ bool CheckDataFile(const std::string& name, Problems& problems) {
   return true;
 }
 
-bool ReadMetaHeader(std::string_view text, TextHeader& header, Problems& problems) {
+bool ReadMetaHeader(std::string_view& text, TextHeader& header, Problems& problems) {
   bool has_dimensions = false;
   for (std::size_t lines = 0; lines < kMostLines; ++lines) {
     const std::optional<std::string_view> line = TakeLine(text);
@@ -89,7 +91,7 @@ bool ReadMetaHeader(std::string_view text, TextHeader& header, Problems& problem
   return AddNoHeader(VolumeFormat::kMetaImage, problems);
 }
 
-bool ReadNrrdHeader(std::string_view text, TextHeader& header, Problems& problems) {
+bool ReadNrrdHeader(std::string_view& text, TextHeader& header, Problems& problems) {
   const std::optional<std::string_view> magic = TakeLine(text);
   if (!magic || !magic->starts_with("NRRD000")) return AddNoHeader(VolumeFormat::kNrrd, problems);
   for (std::size_t lines = 0; lines < kMostLines; ++lines) {
@@ -155,9 +157,11 @@ bool IsDetachedHeader(std::string_view name) {
 
 std::optional<TextHeader> ReadTextHeader(VolumeFormat format, std::string_view bytes, Problems& problems) {
   TextHeader header;
-  const bool read = format == VolumeFormat::kMetaImage ? ReadMetaHeader(bytes, header, problems)
-                                                       : ReadNrrdHeader(bytes, header, problems);
+  std::string_view rest = bytes;
+  const bool read = format == VolumeFormat::kMetaImage ? ReadMetaHeader(rest, header, problems)
+                                                       : ReadNrrdHeader(rest, header, problems);
   if (!read) return std::nullopt;
+  header.bytes = bytes.size() - rest.size();
   return header;
 }
 
@@ -204,6 +208,30 @@ bool CheckClaim(const VolumeClaim& claim, std::int64_t memory_limit, Problems& p
     return false;
   }
   return true;
+}
+
+bool CheckDeflated(std::string_view bytes, Problems& problems) {
+  constexpr int kEitherHeader = 15 + 32;
+  std::vector<unsigned char> scratch(1 << 16);
+  z_stream stream = {};
+  int state = inflateInit2(&stream, kEitherHeader);
+  constexpr std::size_t kMost = 1 << 30;  // zlib counts in 32 bits
+  while (state == Z_OK) {
+    if (stream.avail_in == 0) {
+      const std::size_t taken = std::min(bytes.size(), kMost);
+      if (taken == 0) break;
+      stream.next_in = reinterpret_cast<unsigned char*>(const_cast<char*>(bytes.data()));
+      stream.avail_in = static_cast<unsigned>(taken);
+      bytes.remove_prefix(taken);
+    }
+    stream.next_out = scratch.data();
+    stream.avail_out = static_cast<unsigned>(scratch.size());
+    state = inflate(&stream, Z_NO_FLUSH);
+  }
+  inflateEnd(&stream);
+  if (state == Z_STREAM_END) return true;
+  problems.Add("", "the file's compressed voxels break off or are damaged", "is it complete?");
+  return false;
 }
 
 bool CheckPlace(VolumeImage& image, Problems& problems) {

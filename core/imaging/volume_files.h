@@ -26,6 +26,7 @@ struct TextHeader {
   std::string data_file;  // empty: they follow the header
   bool compressed = false;
   bool as_text = false;
+  std::size_t bytes = 0;  // of the text itself
 };
 // Adds to `problems`, and gives nothing, where the text is none, or names several files or one elsewhere.
 std::optional<TextHeader> ReadTextHeader(VolumeFormat format, std::string_view bytes, Problems& problems);
@@ -53,6 +54,10 @@ struct VolumeClaim {
   bool compressed = false;
 };
 bool CheckClaim(const VolumeClaim& claim, std::int64_t memory_limit, Problems& problems);
+
+// Whether bytes begin with a whole deflated stream (zlib or gzip), check sum and all: libraries take what there is for
+// the rest. False, with a problem, otherwise.
+bool CheckDeflated(std::string_view bytes, Problems& problems);
 
 // Spacing and axes as they stand in a file: spacings must be finite and above 0, axes unit vectors at right angles to
 // 1e-3. They are made so to the last bit. False, with problems, otherwise.

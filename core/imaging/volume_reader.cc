@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 constexpr const char* kTypeNames[] = {"uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"};
 // The header of a MetaImage or NRRD file is shorter.
 constexpr std::size_t kLongestHeader = 1 << 20;
+constexpr std::size_t kNiftiHeader = 352;
 
 std::string BaseName(std::string_view name) { return fs::path(name).filename().string(); }
 
@@ -89,24 +90,55 @@ std::optional<VolumeImage> ReadRaw(const fs::path& path, std::uint64_t bytes, co
   return image;
 }
 
+// Bits of a voxel stand in 16 bits of either order; 0 when it is none of those known.
+std::uint64_t NiftiVoxelBytes(const std::string& header) {
+  constexpr std::size_t kPlace = 72;
+  if (header.size() < kNiftiHeader) return 0;
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned>(static_cast<unsigned char>(header[at])); };
+  const unsigned bits = byte(kPlace) + byte(kPlace + 1);  // one of the two is 0
+  return bits == 8 || bits == 16 || bits == 32 || bits == 64 ? bits / 8 : 0;
+}
+
+// Deflated voxels at an offset of their file must be whole. Others, such as text, are left to ITK.
+bool CheckCompressed(const ItkFile& file, std::size_t offset, const fs::path& voxels, Problems& problems) {
+  const std::string bytes = StartOf(voxels, offset + file.bytes);
+  const std::string_view data = std::string_view(bytes).substr(std::min(offset, bytes.size()));
+  const bool gzip = data.starts_with("\x1f\x8b");
+  if (!gzip && file.format != VolumeFormat::kMetaImage) return true;
+  return CheckDeflated(data, problems);
+}
+
 std::optional<VolumeImage> ReadFile(const fs::path& path, const VolumeReaderOptions& options, Problems& problems) {
   const std::optional<VolumeFormat> format = FormatOf(path.filename().string());
   const std::optional<std::uint64_t> bytes = SizeOf(path, problems);
   if (!bytes) return std::nullopt;
   if (*format == VolumeFormat::kRaw) return ReadRaw(path, *bytes, options, problems);
   ItkFile file{*format, path, *bytes, true};
-  if (*format == VolumeFormat::kNifti) file.compressed = path.extension() != ".nii";
+  fs::path voxels = path;
+  std::size_t offset = 0;
+  if (*format == VolumeFormat::kNifti) {
+    file.compressed = path.extension() != ".nii";
+    if (!file.compressed) {
+      file.bytes -= std::min<std::uint64_t>(file.bytes, kNiftiHeader);
+      file.bytes_per_voxel = NiftiVoxelBytes(StartOf(path, kNiftiHeader));
+    }
+  }
   if (*format == VolumeFormat::kMetaImage || *format == VolumeFormat::kNrrd) {
     const std::optional<TextHeader> header = ReadTextHeader(*format, StartOf(path, kLongestHeader), problems);
     if (!header) return std::nullopt;
     // Text has a digit and a blank at least for each number, which are no fewer than half of its bytes there.
     file.compressed = header->compressed || header->as_text;
+    file.bytes -= header->bytes;
+    offset = header->bytes;
     if (!header->data_file.empty()) {
-      const std::optional<std::uint64_t> data = SizeOf(path.parent_path() / header->data_file, problems);
+      voxels = path.parent_path() / header->data_file;
+      offset = 0;
+      const std::optional<std::uint64_t> data = SizeOf(voxels, problems);
       if (!data) return std::nullopt;
       file.bytes = *data;
     }
   }
+  if (file.compressed && !CheckCompressed(file, offset, voxels, problems)) return std::nullopt;
   std::optional<ItkVolume> volume = ReadByItk(file, options.memory_limit, problems);
   if (!volume) return std::nullopt;
   return std::move(volume->image);
@@ -180,8 +212,8 @@ std::optional<VoxelType> VoxelTypeOf(std::string_view name) {
   return static_cast<VoxelType>(found - std::begin(kTypeNames));
 }
 
-std::optional<VolumeImage> ReadVolume(const std::vector<fs::path>& paths, const VolumeReaderOptions& options,
-                                      Problems& problems) {
+std::optional<VolumeImage> ReadVolumeFiles(const std::vector<fs::path>& paths, const VolumeReaderOptions& options,
+                                           Problems& problems) {
   std::error_code error;
   if (paths.size() != 1 || !fs::is_directory(paths[0], error)) return ReadFiles(paths, options, problems);
   const std::vector<fs::path> files = DicomFilesIn(paths[0]);

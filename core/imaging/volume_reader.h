@@ -54,8 +54,8 @@ struct VolumeFile {
 std::optional<VolumeImage> ReadVolume(const std::vector<VolumeFile>& files, const VolumeReaderOptions& options,
                                       Problems& problems);
 // The same, from the disk. A folder stands for the DICOM files in it, and a header for what it names, too.
-std::optional<VolumeImage> ReadVolume(const std::vector<std::filesystem::path>& paths,
-                                      const VolumeReaderOptions& options, Problems& problems);
+std::optional<VolumeImage> ReadVolumeFiles(const std::vector<std::filesystem::path>& paths,
+                                           const VolumeReaderOptions& options, Problems& problems);
 
 // The file beside it that a header (.mhd, .nhdr) names; empty when it has the numbers itself or is no header. Adds to
 // `problems` where it names several files, or one in another folder.

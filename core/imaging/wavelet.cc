@@ -79,7 +79,7 @@ double NoiseOf(const std::vector<float>& image, const std::vector<float>& blurre
   std::vector<float> sizes;
   for (std::size_t v = 0; v < image.size(); v += step) {
     // Masked background has no noise.
-    if (image[v] != 0 || blurred[v] != 0) sizes.push_back(std::abs(image[v] - blurred[v]));
+    if (image[v] != 0) sizes.push_back(std::abs(image[v] - blurred[v]));
   }
   if (sizes.empty()) return 0;
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
