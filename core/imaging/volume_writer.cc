@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cctype>
 #include <system_error>
 
 #include "core/imaging/itk_image_io.h"
@@ -15,8 +16,10 @@ void WriteVolume(const VolumeImage& image, VoxelType type, const std::filesystem
     problems.Add("", name + " is no image that can be written", "its name must end in .mha, .nrrd, .nii or .nii.gz");
     return;
   }
-  const std::filesystem::path beside =
-      path.parent_path() / ("." + std::to_string(getpid()) + "." + name);  // the extension tells ITK the format
+  // ITK tells the format by the extension, in small letters.
+  std::string beside_name = "." + std::to_string(getpid()) + "." + name;
+  for (char& c : beside_name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::filesystem::path beside = path.parent_path() / beside_name;
   std::error_code error;
   const bool written = WriteByItk(image, type, *format, beside);
   if (written) std::filesystem::rename(beside, path, error);
