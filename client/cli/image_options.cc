@@ -271,7 +271,7 @@ GivenImage ReadGivenImage(const ImageOptions& options, Problems problems) {
     if (const auto seed = ParseThree<std::int32_t>(text)) {
       seeds.push_back(*seed);
     } else {
-      problems.Add("--seed", "`" + text + "` is no voxel", "I,J,K, such as 97,119,35");
+      problems.Add("--seed", "`" + text + "` is no voxel", "I,J,K, such as 98,119,35");
     }
   }
   // Placed when the image is there.

@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kExamples =
     R"(  fascicle phantom arm.mha                                    140 x 220 x 71 voxels of 0.5 mm
   fascicle phantom arm.nii.gz --noise 0.1 --truth truth.nii.gz
-  fascicle segment arm.mha --filter wavelet --seed 97,119,35 --opening 0.6 --picture anconeus.png
+  fascicle segment arm.mha --filter wavelet --seed 98,119,35 --opening 0.6 --picture anconeus.png
 
 A section of an arm near the elbow, as T1-weighted magnetic resonance shows it, made of formulas. Labels of the truth: 0 air,
 1 skin, 2 fat, 3 muscles, 4 anconeus, 5 hard bone, 6 marrow.

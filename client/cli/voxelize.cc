@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kExamples =
     R"(  fascicle phantom arm.mha                                    an arm to try it on
-  fascicle voxelize arm.mha --filter wavelet --seed 97,119,35 --opening 0.6       the levels of the muscle, as a table
+  fascicle voxelize arm.mha --filter wavelet --seed 98,119,35 --opening 0.6       the levels of the muscle, as a table
   fascicle voxelize labels.mha --label 1 --fraction 0.25 --level 2 --out coarse.mha
   fascicle voxelize labels.mha --label 1 --level 1 --picture coarse.png
 

@@ -163,7 +163,7 @@ class Slice {
 // The slice with its lower left corner at (left, bottom), at so many points a metre.
 void Paint(const Slice& slice, double scale, int left, int bottom, std::pair<float, float> grey, Raster& raster) {
   const int width = static_cast<int>(slice.width() * scale), height = static_cast<int>(slice.height() * scale);
-  const double half_line = 0.8 * Canvas::kSampling / scale;
+  const double half_line = 1.2 * Canvas::kSampling / scale;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const double u = (x + 0.5) / scale, v = (y + 0.5) / scale;
