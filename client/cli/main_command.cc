@@ -48,6 +48,9 @@ int Main(int argc, char** argv) {
   AddRender(app, context);
   AddPlot(app, context);
   AddMesh(app, context);
+  AddPhantom(app, context);
+  AddSegment(app, context);
+  AddVoxelize(app, context);
   AddMaterials(app, context);
   AddSchema(app, context);
   AddExamples(app, context);

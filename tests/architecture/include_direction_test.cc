@@ -51,6 +51,7 @@ const std::map<std::string, std::set<std::string>>& AllowedRooms() {
   static const std::map<std::string, std::set<std::string>> allowed = {
       {"core/base", {}},
       {"core/geometry", {"core/base"}},
+      {"core/imaging", {"core/base", "core/geometry"}},
       {"core/linalg", {"core/base"}},
       {"core/materials", {"core/base"}},
       {"core/muscle", {"core/base", "core/geometry", "core/linalg", "core/materials"}},
@@ -73,8 +74,8 @@ const std::map<std::string, std::set<std::string>>& AllowedRooms() {
       {"client/import", {"core/base", "core/geometry", "fascicle/v1", "proto/rules"}},
       {"client/render", {"core/base", "client/lib", "fascicle/v1"}},
       {"client/cli",
-       {"core/base", "core/geometry", "core/materials", "client/lib", "client/import", "client/export", "client/image",
-        "client/render", "fascicle/v1", "proto/rules"}},
+       {"core/base", "core/geometry", "core/imaging", "core/materials", "client/lib", "client/import", "client/export",
+        "client/image", "client/render", "fascicle/v1", "proto/rules"}},
   };
   return allowed;
 }
@@ -110,6 +111,7 @@ TEST(IncludeDirection, LibrariesStayInTheirRooms) {
       {"Protobuf", std::regex("^google/protobuf/|\\.pb\\.h$"),
        std::regex("^(proto/rules|server/translate|server/rpc|server|client/.*)$")},
       {"SQLite", std::regex("^sqlite3\\.h$"), std::regex("^server/store$")},
+      {"ITK", std::regex("^(itk[A-Z]|vnl/)"), std::regex("^core/imaging$")},
       {"VTK", std::regex("^vtk[A-Z]"), std::regex("^client/(export|image|render)$")},
       {"CLI11", std::regex("^CLI/"), std::regex("^(client/cli|server)$")},
       {"JSON", std::regex("^nlohmann/"), std::regex("^client/(lib|cli|export)$")},

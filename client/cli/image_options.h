@@ -1,0 +1,69 @@
+#ifndef FASCICLE_CLIENT_CLI_IMAGE_OPTIONS_H_
+#define FASCICLE_CLIENT_CLI_IMAGE_OPTIONS_H_
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/cli/command.h"
+#include "core/base/problems.h"
+#include "core/imaging/image_stage.h"
+#include "core/imaging/volume_image.h"
+
+namespace fascicle::client {
+
+// What `segment` and `voxelize` are told about an image and what of it is the body. Lengths in millimetres, voxels
+// counted from 0 along i, j, k of the file.
+struct ImageOptions {
+  std::vector<std::string> files;
+  std::string raw_size, raw_spacing, raw_type = "int16";
+  bool raw_big_endian = false;
+  std::int64_t raw_skip = 0;
+  std::string region;
+  double resample = 0;
+  std::vector<std::string> filters;
+  std::string method = "fuzzy";
+  int classes = Classification().classes;
+  std::vector<double> thresholds;
+  std::optional<int> wanted_class;
+  double fuzziness = Classification().fuzziness;
+  double membership = 0;
+  std::vector<int> labels;
+  bool mask = false;
+  std::vector<std::string> seeds;
+  double opening = 0;
+  std::string keep;  // empty: seeds where there are some, else largest
+  bool no_fill = false;
+  int threads = 1;
+  std::string out;
+  std::string picture;
+};
+
+// IMAGE and all options of it. `options` must outlive parsing.
+void AddImageOptions(CLI::App& command, ImageOptions& options);
+
+struct GivenImage {
+  VolumeImage image;
+  ImageStage stage;
+};
+// Reads the image and the options. CommandError with all problems (paths: the option or file), and those that are
+// given, when there is any.
+GivenImage ReadGivenImage(const ImageOptions& options, Problems problems);
+
+// Runs the stage with progress on stderr. CommandError with all problems, whose paths are options.
+StagedImage RunStage(const ImageOptions& options, const GivenImage& given);
+
+// Writes the body's outline over slices of the image.
+void DrawBody(const StagedImage& staged, const ImageOptions& options, const std::string& title);
+
+// A file for people: the last part of the first path.
+std::string TitleOf(const ImageOptions& options);
+
+// Writes whole numbers below 256 as an image. CommandError when that fails.
+void WriteLabels(const VolumeImage& labels, const std::string& path);
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_CLI_IMAGE_OPTIONS_H_

@@ -1,0 +1,33 @@
+#include "core/imaging/volume_writer.h"
+
+#include <unistd.h>
+
+#include <cctype>
+#include <system_error>
+
+#include "core/imaging/itk_image_io.h"
+
+namespace fascicle {
+
+void WriteVolume(const VolumeImage& image, VoxelType type, const std::filesystem::path& path, Problems& problems) {
+  const std::string name = path.filename().string();
+  const std::optional<VolumeFormat> format = FormatOf(name);
+  if (!format || IsDetachedHeader(name) || *format == VolumeFormat::kDicom || *format == VolumeFormat::kRaw) {
+    problems.Add("", name + " is no image that can be written", "its name must end in .mha, .nrrd, .nii or .nii.gz");
+    return;
+  }
+  // ITK tells the format by the extension, in small letters.
+  std::string beside_name = "." + std::to_string(getpid()) + "." + name;
+  for (char& c : beside_name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::filesystem::path beside = path.parent_path() / beside_name;
+  std::error_code error;
+  const bool written = WriteByItk(image, type, *format, beside);
+  if (written) std::filesystem::rename(beside, path, error);
+  if (!written || error) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    problems.Add("", "it can't be written", "does the folder exist, may it be written to, and is there room?");
+  }
+}
+
+}  // namespace fascicle

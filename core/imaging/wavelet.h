@@ -1,0 +1,25 @@
+#ifndef FASCICLE_CORE_IMAGING_WAVELET_H_
+#define FASCICLE_CORE_IMAGING_WAVELET_H_
+
+#include <vector>
+
+#include "core/imaging/filters.h"
+#include "core/imaging/volume_image.h"
+
+// Undecimated wavelets with holes (a trous) of the cubic B-spline [Starck and Murtagh 1994]: c_0 is the image, c_s is
+// c_{s-1} blurred along each axis by (1 4 6 4 1) / 16 with 2^(s-1) - 1 holes between, and w_s = c_{s-1} - c_s. So the
+// image is the sum of all w_s and the last c_s. Mirrored at the sides of the box. For this room alone.
+namespace fascicle {
+
+// c_s from c_{s-1}: scale s >= 1.
+std::vector<float> Blurred(const std::vector<float>& values, const GridIndex& size, int scale, ThreadTeam& team);
+
+// Standard deviation of w_s where the image is white noise of standard deviation 1. An axis one voxel long blurs
+// nothing.
+double NoiseGain(const GridIndex& size, int scale);
+
+VolumeImage WaveletFiltered(const VolumeImage& image, const WaveletFilter& filter, ThreadTeam& team);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_IMAGING_WAVELET_H_
