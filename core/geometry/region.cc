@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <type_traits>
 #include <utility>
 
 #include "core/geometry/faces.h"
@@ -14,32 +15,67 @@ namespace {
 
 constexpr double kRoundOff = 1e-9;  // of the diagonal; for angles in [rad]
 
-double Diagonal(const TetMesh& mesh) {
-  if (mesh.nodes.empty()) return 0;
-  Vec3 lowest = mesh.nodes[0], highest = mesh.nodes[0];
-  for (const Vec3& node : mesh.nodes) {
+// What selection needs of a kind of mesh: its elements, and the faces of its surface.
+struct Tetrahedra {
+  using Surface = std::vector<Triangle>;
+  const TetMesh& mesh;
+  const Surface& surface;
+
+  const std::vector<Tetrahedron>& elements() const { return mesh.tetrahedra; }
+  const std::vector<std::int32_t>& tags() const { return mesh.tetrahedron_tags; }
+  static const Surface& Triangles(const Surface& faces) { return faces; }
+  static void AddFace(const Triangle& face, Region& region) { region.triangles.push_back(face); }
+  static const Surface& FacesOf(const Region& region) { return region.triangles; }
+  static std::array<Triangle, 4> SidesOf(const Tetrahedron& tet) {
+    return {OutwardTriangle(tet, 0), OutwardTriangle(tet, 1), OutwardTriangle(tet, 2), OutwardTriangle(tet, 3)};
+  }
+};
+
+struct Bricks {
+  using Surface = std::vector<Quad>;
+  const BrickMesh& mesh;
+  const Surface& surface;
+
+  const std::vector<Brick>& elements() const { return mesh.bricks; }
+  const std::vector<std::int32_t>& tags() const { return mesh.labels; }
+  static std::vector<Triangle> Triangles(const Surface& faces) {
+    std::vector<Triangle> triangles;
+    for (const Quad& q : faces) triangles.insert(triangles.end(), {{q[0], q[1], q[2]}, {q[0], q[2], q[3]}});
+    return triangles;
+  }
+  static void AddFace(const Quad& face, Region& region) { region.quads.push_back(face); }
+  static const Surface& FacesOf(const Region& region) { return region.quads; }
+  static std::array<Quad, 6> SidesOf(const Brick& brick) {
+    std::array<Quad, 6> sides;
+    for (int s = 0; s < 6; ++s) {
+      for (int c = 0; c < 4; ++c) sides[s][c] = brick[kBrickSides[s][c]];
+    }
+    return sides;
+  }
+};
+
+double Diagonal(const std::vector<Vec3>& nodes) {
+  if (nodes.empty()) return 0;
+  Vec3 lowest = nodes[0], highest = nodes[0];
+  for (const Vec3& node : nodes) {
     lowest = lowest.cwiseMin(node);
     highest = highest.cwiseMax(node);
   }
   return (highest - lowest).norm();
 }
 
-// Nodes that are `inside`, the surface triangles between them, and the tetrahedra with their centroid inside.
-template <class Inside>
-void SelectNodes(const TetMesh& mesh, const std::vector<Triangle>& surface, const Inside& inside, Region& region) {
-  std::vector<char> chosen(mesh.nodes.size());
-  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
-    chosen[n] = inside(mesh.nodes[n]);
-    if (chosen[n]) region.nodes.push_back(static_cast<std::int32_t>(n));
-  }
-  for (const Triangle& triangle : surface) {
-    if (chosen[triangle[0]] && chosen[triangle[1]] && chosen[triangle[2]]) region.triangles.push_back(triangle);
-  }
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-    const auto& [a, b, c, d] = mesh.tetrahedra[t];
-    const Vec3 centroid = 0.25 * (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c] + mesh.nodes[d]);
-    if (inside(centroid)) region.tetrahedra.push_back(static_cast<std::int32_t>(t));
-  }
+template <class Cell>
+Vec3 CentroidOf(const std::vector<Vec3>& nodes, const Cell& cell) {
+  Vec3 sum = Vec3::Zero();
+  for (const std::int32_t node : cell) sum += nodes[node];
+  return sum / static_cast<double>(cell.size());
+}
+
+// The same face whichever corner it starts from and whichever way it turns.
+template <class FaceNodes>
+FaceNodes Sorted(FaceNodes face) {
+  std::sort(face.begin(), face.end());
+  return face;
 }
 
 // Appends the nodes of a cell; SortNodes must follow.
@@ -53,38 +89,83 @@ void SortNodes(Region& region) {
   region.nodes.erase(std::unique(region.nodes.begin(), region.nodes.end()), region.nodes.end());
 }
 
+template <class Cells>
 struct Select {
-  const TetMesh& mesh;
-  const std::vector<Triangle>& surface;
+  using FaceNodes = typename Cells::Surface::value_type;
+  const Cells cells;
   Region& region;
 
-  // The file lists triangles in any orientation, and perhaps inside of the body: those of the surface are taken from
-  // there.
   void operator()(const TagSelector& selector) const {
-    std::vector<Triangle> chosen;
-    for (std::size_t i = 0; i < mesh.triangle_tags.size(); ++i) {
-      if (mesh.triangle_tags[i] != selector.tag) continue;
-      AddNodes(mesh.tagged_triangles[i], region);
-      chosen.push_back(Ascending(mesh.tagged_triangles[i]));
+    std::vector<FaceNodes> chosen;
+    if constexpr (std::is_same_v<Cells, Tetrahedra>) chosen = TaggedTriangles(selector.tag);
+    for (std::size_t t = 0; t < cells.tags().size(); ++t) {
+      if (cells.tags()[t] == selector.tag) region.elements.push_back(static_cast<std::int32_t>(t));
     }
-    for (std::size_t t = 0; t < mesh.tetrahedron_tags.size(); ++t) {
-      if (mesh.tetrahedron_tags[t] == selector.tag) region.tetrahedra.push_back(static_cast<std::int32_t>(t));
+    if (chosen.empty() && region.elements.empty()) {
+      if constexpr (std::is_same_v<Cells, Tetrahedra>) SelectTaggedNodes(selector.tag);
+      return;
     }
-    if (chosen.empty() && region.tetrahedra.empty()) return SelectTaggedNodes(selector.tag);
     if (chosen.empty()) {
-      for (const std::int32_t t : region.tetrahedra) {
-        AddNodes(mesh.tetrahedra[t], region);
-        for (int side = 0; side < 4; ++side) chosen.push_back(Ascending(OutwardTriangle(mesh.tetrahedra[t], side)));
+      for (const std::int32_t t : region.elements) {
+        AddNodes(cells.elements()[t], region);
+        for (const FaceNodes& side : Cells::SidesOf(cells.elements()[t])) chosen.push_back(Sorted(side));
       }
     }
     SortNodes(region);
     std::sort(chosen.begin(), chosen.end());
-    for (const Triangle& triangle : surface) {
-      if (std::binary_search(chosen.begin(), chosen.end(), Ascending(triangle))) region.triangles.push_back(triangle);
+    for (const FaceNodes& face : cells.surface) {
+      if (std::binary_search(chosen.begin(), chosen.end(), Sorted(face))) Cells::AddFace(face, region);
     }
   }
 
+  void operator()(const PlaneSelector& selector) const {
+    const double tolerance = kRoundOff * Diagonal(cells.mesh.nodes);
+    const Vec3 normal = selector.normal.normalized();
+    SelectNodes([&](const Vec3& x) { return (x - selector.point).dot(normal) >= -tolerance; });
+  }
+
+  void operator()(const BoxSelector& selector) const {
+    const double tolerance = kRoundOff * Diagonal(cells.mesh.nodes);
+    SelectNodes([&](const Vec3& x) {
+      return ((x - selector.min).array() >= -tolerance).all() && ((selector.max - x).array() >= -tolerance).all();
+    });
+  }
+
+  void operator()(const SphereSelector& selector) const {
+    const double tolerance = kRoundOff * Diagonal(cells.mesh.nodes);
+    SelectNodes([&](const Vec3& x) { return (x - selector.center).norm() <= selector.radius + tolerance; });
+  }
+
+  void operator()(const SideSelector& selector) const {
+    for (const FaceNodes& face : cells.surface) {
+      const Vec3& origin = cells.mesh.nodes[face[0]];
+      const Vec3 normal = (cells.mesh.nodes[face[1]] - origin).cross(cells.mesh.nodes[face[2]] - origin);
+      // atan2 keeps the angle exact near 0 and pi, where the arc cosine loses half of the digits.
+      const double angle = std::atan2(normal.cross(selector.direction).norm(), normal.dot(selector.direction));
+      if (normal.isZero(0) || angle > selector.max_angle + kRoundOff) continue;
+      Cells::AddFace(face, region);
+      AddNodes(face, region);
+    }
+    SortNodes(region);
+    if (selector.depth > 0 && !Cells::FacesOf(region).empty()) SelectLayer(selector.depth);
+  }
+
+ private:
+  // The file lists triangles in any orientation, and perhaps inside of the body: those of the surface are taken from
+  // there.
+  std::vector<Triangle> TaggedTriangles(std::int32_t tag) const {
+    const TetMesh& mesh = cells.mesh;
+    std::vector<Triangle> tagged;
+    for (std::size_t i = 0; i < mesh.triangle_tags.size(); ++i) {
+      if (mesh.triangle_tags[i] != tag) continue;
+      AddNodes(mesh.tagged_triangles[i], region);
+      tagged.push_back(Ascending(mesh.tagged_triangles[i]));
+    }
+    return tagged;
+  }
+
   void SelectTaggedNodes(std::int32_t tag) const {
+    const TetMesh& mesh = cells.mesh;
     std::vector<char> chosen(mesh.nodes.size());
     for (std::size_t p = 0; p < mesh.node_tags.size(); ++p) {
       if (mesh.node_tags[p] != tag) continue;
@@ -92,54 +173,40 @@ struct Select {
       chosen[mesh.tagged_nodes[p]] = 1;
     }
     SortNodes(region);
-    for (const Triangle& triangle : surface) {
-      if (chosen[triangle[0]] && chosen[triangle[1]] && chosen[triangle[2]]) region.triangles.push_back(triangle);
+    SelectFacesBetween(chosen);
+  }
+
+  void SelectFacesBetween(const std::vector<char>& chosen) const {
+    for (const FaceNodes& face : cells.surface) {
+      if (std::all_of(face.begin(), face.end(), [&](std::int32_t n) { return chosen[n] != 0; }))
+        Cells::AddFace(face, region);
     }
   }
 
-  void operator()(const PlaneSelector& selector) const {
-    const double tolerance = kRoundOff * Diagonal(mesh);
-    const Vec3 normal = selector.normal.normalized();
-    SelectNodes(
-        mesh, surface, [&](const Vec3& x) { return (x - selector.point).dot(normal) >= -tolerance; }, region);
-  }
-
-  void operator()(const BoxSelector& selector) const {
-    const double tolerance = kRoundOff * Diagonal(mesh);
-    const auto inside = [&](const Vec3& x) {
-      return ((x - selector.min).array() >= -tolerance).all() && ((selector.max - x).array() >= -tolerance).all();
-    };
-    SelectNodes(mesh, surface, inside, region);
-  }
-
-  void operator()(const SphereSelector& selector) const {
-    const double tolerance = kRoundOff * Diagonal(mesh);
-    const auto inside = [&](const Vec3& x) { return (x - selector.center).norm() <= selector.radius + tolerance; };
-    SelectNodes(mesh, surface, inside, region);
-  }
-
-  void operator()(const SideSelector& selector) const {
-    for (const Triangle& triangle : surface) {
-      const Vec3& origin = mesh.nodes[triangle[0]];
-      const Vec3 normal = (mesh.nodes[triangle[1]] - origin).cross(mesh.nodes[triangle[2]] - origin);
-      // atan2 keeps the angle exact near 0 and pi, where the arc cosine loses half of the digits.
-      const double angle = std::atan2(normal.cross(selector.direction).norm(), normal.dot(selector.direction));
-      if (normal.isZero(0) || angle > selector.max_angle + kRoundOff) continue;
-      region.triangles.push_back(triangle);
-      AddNodes(triangle, region);
+  // Nodes that are `inside`, the surface between them, and the elements with their centroid inside.
+  template <class Inside>
+  void SelectNodes(const Inside& inside) const {
+    const std::vector<Vec3>& nodes = cells.mesh.nodes;
+    std::vector<char> chosen(nodes.size());
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      chosen[n] = inside(nodes[n]);
+      if (chosen[n]) region.nodes.push_back(static_cast<std::int32_t>(n));
     }
-    SortNodes(region);
-    if (selector.depth > 0 && !region.triangles.empty()) SelectLayer(selector.depth);
+    SelectFacesBetween(chosen);
+    for (std::size_t t = 0; t < cells.elements().size(); ++t) {
+      if (inside(CentroidOf(nodes, cells.elements()[t]))) region.elements.push_back(static_cast<std::int32_t>(t));
+    }
   }
 
-  // The tetrahedra with their centroid within a distance of the region's triangles.
+  // The elements with their centroid within a distance of the region's faces.
   void SelectLayer(double depth) const {
-    const TriangleDistance distance(mesh.nodes, region.triangles);
-    const double reach = depth + kRoundOff * Diagonal(mesh);
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-      const auto& [a, b, c, d] = mesh.tetrahedra[t];
-      const Vec3 centroid = 0.25 * (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c] + mesh.nodes[d]);
-      if (distance.IsWithin(centroid, reach)) region.tetrahedra.push_back(static_cast<std::int32_t>(t));
+    const std::vector<Vec3>& nodes = cells.mesh.nodes;
+    const std::vector<Triangle> triangles = Cells::Triangles(Cells::FacesOf(region));
+    const TriangleDistance distance(nodes, triangles);
+    const double reach = depth + kRoundOff * Diagonal(nodes);
+    for (std::size_t t = 0; t < cells.elements().size(); ++t) {
+      if (distance.IsWithin(CentroidOf(nodes, cells.elements()[t]), reach))
+        region.elements.push_back(static_cast<std::int32_t>(t));
     }
   }
 };
@@ -159,13 +226,21 @@ Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, s
                     const Selector& selector) {
   Region region;
   region.name = std::move(name);
-  std::visit(Select{mesh, surface, region}, selector);
+  std::visit(Select<Tetrahedra>{{mesh, surface}, region}, selector);
+  return region;
+}
+
+Region SelectRegion(const BrickMesh& mesh, const std::vector<Quad>& surface, std::string name,
+                    const Selector& selector) {
+  Region region;
+  region.name = std::move(name);
+  std::visit(Select<Bricks>{{mesh, surface}, region}, selector);
   return region;
 }
 
 Region Intersection(const Region& first, const Region& second) {
   return {first.name, Common(first.nodes, second.nodes), Common(first.triangles, second.triangles),
-          Common(first.tetrahedra, second.tetrahedra)};
+          Common(first.elements, second.elements), Common(first.quads, second.quads)};
 }
 
 }  // namespace fascicle

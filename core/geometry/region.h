@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/geometry/brick_mesh.h"
 #include "core/geometry/tet_mesh.h"
 
 namespace fascicle {
@@ -34,18 +35,24 @@ using Selector = std::variant<TagSelector, PlaneSelector, BoxSelector, SphereSel
 // A named part of a mesh.
 struct Region {
   std::string name;
-  std::vector<std::int32_t> nodes;       // ascending, no duplicates
-  std::vector<Triangle> triangles;       // of the surface: outward, all nodes in `nodes` (side, tag: the selected ones)
-  std::vector<std::int32_t> tetrahedra;  // ascending; tag: those with it; plane, box, sphere: whose centroid is inside;
-                                         // side: whose centroid is no further than its depth from a triangle
+  std::vector<std::int32_t> nodes;  // ascending, no duplicates
+  std::vector<Triangle> triangles;  // of a tetrahedral surface: outward, all nodes in `nodes` (side, tag: the selected
+                                    // ones)
+  std::vector<std::int32_t> elements;  // ascending; tag: those with it; plane, box, sphere: whose centroid is inside;
+                                       // side: whose centroid is no further than its depth from a face
+  std::vector<Quad> quads;             // the same of a surface of bricks
 };
 
-// Selects what a selector names; may be empty. Tag: the triangles with the tag, and if there are none the tetrahedra
+// Selects what a selector names; may be empty. Tag: the triangles with the tag, and if there are none the elements
 // with it, and if there are none of these either the nodes with it and the surface between them; triangles inside of
-// the body give nodes only. Tetrahedra are those with the tag in any case. Side: triangles whose outward normal is
+// the body give nodes only. Elements are those with the tag in any case. Side: faces whose outward normal is
 // within the angle. Round-off allowance of plane, box and sphere: 1e-9 of the mesh's diagonal; of the angle: 1e-9 rad.
 // `surface` must be BoundaryTriangles(mesh).
 Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name,
+                    const Selector& selector);
+
+// The same of bricks; the tag is their label. `surface` must be BoundaryQuads(mesh).
+Region SelectRegion(const BrickMesh& mesh, const std::vector<Quad>& surface, std::string name,
                     const Selector& selector);
 
 // What lies in both regions, under the name of the first.

@@ -61,9 +61,9 @@ TEST_F(RegionTest, SideWithDepthTakesALayer) {
   for (const double depth : {0.1, 0.2, 0.55}) {
     const Region layer = Select(SideSelector{{1, 0, 0}, 0.1, depth});
     EXPECT_EQ(layer.nodes.size(), 25u) << "the nodes stay those of the side";
-    EXPECT_EQ(layer.tetrahedra, Select(PlaneSelector{{0.9 - depth, 0, 0}, {1, 0, 0}}).tetrahedra) << depth;
+    EXPECT_EQ(layer.elements, Select(PlaneSelector{{0.9 - depth, 0, 0}, {1, 0, 0}}).elements) << depth;
   }
-  EXPECT_TRUE(Select(SideSelector{{1, 0, 0}, 0.1, 0}).tetrahedra.empty());
+  EXPECT_TRUE(Select(SideSelector{{1, 0, 0}, 0.1, 0}).elements.empty());
 }
 
 TEST_F(RegionTest, IntersectionIsWhatLiesInBoth) {
@@ -73,7 +73,7 @@ TEST_F(RegionTest, IntersectionIsWhatLiesInBoth) {
   EXPECT_EQ(both.name, "part");
   EXPECT_EQ(both.nodes.size(), 15u);
   EXPECT_NEAR(Area(mesh_, both), 0.08, 1e-15);
-  EXPECT_EQ(both.tetrahedra.size(), side.tetrahedra.size() / 2);
+  EXPECT_EQ(both.elements.size(), side.elements.size() / 2);
   EXPECT_TRUE(Intersection(side, Select(PlaneSelector{{0.1, 0, 0}, {-1, 0, 0}})).nodes.empty());
 }
 
@@ -88,7 +88,7 @@ TEST(TriangleDistanceTest, IsThatToTheNearestPoint) {
 
 // 9 x 4 x 4 hexahedra of six tetrahedra each: those of whole layers, for no centroid lies on a node's plane.
 TEST_F(RegionTest, TetrahedraAreThoseWithTheirCentroidInside) {
-  const auto count = [&](const Selector& selector) { return Select(selector).tetrahedra.size(); };
+  const auto count = [&](const Selector& selector) { return Select(selector).elements.size(); };
   EXPECT_EQ(count(PlaneSelector{{0.3, 0, 0}, {-1, 0, 0}}), 3u * 16u * 6u);
   EXPECT_EQ(count(PlaneSelector{{0.9, 0, 0}, {1, 0, 0}}), 0u);
   EXPECT_EQ(count(BoxSelector{{0.1, 0.1, 0.1}, {0.3, 0.2, 0.4}}), 2u * 1u * 3u * 6u);
@@ -96,7 +96,7 @@ TEST_F(RegionTest, TetrahedraAreThoseWithTheirCentroidInside) {
   EXPECT_EQ(count(SideSelector{{0, 0, 1}, 0.1}), 0u);
   mesh_.tetrahedron_tags.assign(mesh_.tetrahedra.size(), 1);
   mesh_.tetrahedron_tags[5] = mesh_.tetrahedron_tags[77] = 3;
-  EXPECT_EQ(Select(TagSelector{3}).tetrahedra, (std::vector<std::int32_t>{5, 77}));
+  EXPECT_EQ(Select(TagSelector{3}).elements, (std::vector<std::int32_t>{5, 77}));
 }
 
 TEST_F(RegionTest, BoxIncludesItsFaces) {
@@ -156,7 +156,7 @@ TEST_F(TagRegionTest, PointsGiveNodesAndTheSurfaceBetweenThem) {
   const Region region = Select(9);
   EXPECT_EQ(region.nodes, (std::vector<std::int32_t>{0, 2, 3}));
   EXPECT_EQ(region.triangles, (std::vector<Triangle>{{0, 3, 2}}));
-  EXPECT_TRUE(region.tetrahedra.empty());
+  EXPECT_TRUE(region.elements.empty());
   const std::string one = Replaced(kGmsh4, "1 0 0 0 0\n", "1 0 0 0 1 9\n");
   mesh_ = ReadMesh({"m.msh", one, ""}, problems).value_or(TetMesh());
   ASSERT_TRUE(problems.empty()) << problems.ToString();

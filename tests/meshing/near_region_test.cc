@@ -54,7 +54,7 @@ TEST(MeshWriterTest, TagsComeBackAsTheRegionsThatTheyWere) {
     const Region back = SelectRegion(*read, BoundaryTriangles(*read), "r", TagSelector{number});
     EXPECT_EQ(back.nodes, region->nodes);
     EXPECT_EQ(back.triangles, region->triangles);
-    EXPECT_TRUE(back.tetrahedra.empty());
+    EXPECT_TRUE(back.elements.empty());
   }
 }
 
