@@ -1,0 +1,77 @@
+#include "core/muscle/stern_muscle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/base/line_fitter.h"
+#include "core/materials/fibre_curves.h"
+#include "core/materials/force_velocity.h"
+
+namespace fascicle {
+namespace {
+
+constexpr std::size_t kMaxPoints = 10'000;
+constexpr double kTolerance = 1e-4;  // of the peak force, of lines; as much again may be left between samples
+constexpr int kSamples = 512;        // between two points of the curves
+
+double ContractileLength(const SternMuscle& muscle) {
+  return muscle.contractile_fraction * LengthOf(muscle, muscle.optimal_angle);
+}
+
+// The times between which neither curve has a bend.
+std::vector<double> Bends(const Curve& angle, const Curve& activation, double duration) {
+  std::vector<double> times = {0, duration};
+  for (const Curve* curve : {&angle, &activation}) {
+    for (const double time : curve->times) {
+      if (time > 0 && time < duration) times.push_back(time);
+    }
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+}  // namespace
+
+double LengthOf(const SternMuscle& muscle, double angle) {
+  const double B = muscle.origin_distance, C = muscle.insertion_distance;
+  return std::sqrt(std::max(0.0, B * B + C * C - 2 * B * C * std::cos(angle)));
+}
+
+double ForceOf(const SternMuscle& muscle, double angle, double rate, double activation) {
+  const double optimal = LengthOf(muscle, muscle.optimal_angle);
+  const double contractile = ContractileLength(muscle);
+  const double length = LengthOf(muscle, angle);
+  const double stretch = (length - (optimal - contractile)) / contractile;
+  // dL/dt, of which the contractile part takes all. At L = 0 both ends meet, and nothing pulls.
+  if (!(length > 0)) return 0;
+  const double speed = muscle.origin_distance * muscle.insertion_distance * std::sin(angle) * rate / length;
+  const double largest_rate = muscle.hill_rate / muscle.hill_curvature;  // of shortening: b/a [lengths/s]
+  const ForceVelocityCurve force_velocity(muscle.hill_curvature, muscle.eccentric_force);
+  return muscle.peak_force * ActiveCurve::Value(stretch) * force_velocity.Value(speed / contractile / largest_rate) *
+         activation;
+}
+
+Curve ForceOverTime(const SternMuscle& muscle, const Curve& angle, const Curve& activation, double duration,
+                    Problems& problems) {
+  LineFitter fitter(kTolerance * muscle.peak_force);
+  const std::vector<double> bends = Bends(angle, activation, duration);
+  for (std::size_t i = 0; i + 1 < bends.size(); ++i) {
+    // The rate of the angle, and so the force, may jump at a bend: both sides get a point.
+    const double begin = bends[i], end = bends[i + 1], gap = 1e-9 * (end - begin);
+    for (int k = 0; k <= kSamples; ++k) {
+      const double time = std::clamp(begin + (end - begin) * k / kSamples, begin, end - gap);
+      fitter.Add(time, ForceOf(muscle, angle.At(time), angle.RateAt(time), activation.At(time)));
+    }
+  }
+  Curve force = fitter.Finish();
+  if (force.times.size() <= kMaxPoints) return force;
+  problems.Add(
+      {}, "the force changes so often that it takes " + std::to_string(force.times.size()) + " points to follow it",
+      "at most 10,000: shorten the scene, or give the curves fewer points");
+  return Curve::Constant(0);
+}
+
+}  // namespace fascicle
