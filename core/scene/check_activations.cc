@@ -8,14 +8,13 @@ namespace {
 void CheckScale(const Body& body, const std::string& path, Problems& problems) {
   const std::vector<double>& scale = body.activation_scale;
   if (scale.empty()) return;
-  if (scale.size() != body.mesh.tetrahedra.size()) {
-    problems.Add(path, std::to_string(scale.size()) + " values for " + std::to_string(body.mesh.tetrahedra.size()) +
-                           " tetrahedra");
+  if (scale.size() != body.elements()) {
+    problems.Add(path, std::to_string(scale.size()) + " values for " + std::to_string(body.elements()) + " elements");
   }
   const auto wrong = std::find_if(scale.begin(), scale.end(), [](double s) { return !(s >= 0 && s <= 1); });
   if (wrong != scale.end()) {
-    problems.Add(path, "the value of tetrahedron " + std::to_string(wrong - scale.begin()) + " is outside [0, 1]",
-                 "it is the part of the activation that reaches the tetrahedron");
+    problems.Add(path, "the value of element " + std::to_string(wrong - scale.begin()) + " is outside [0, 1]",
+                 "it is the part of the activation that reaches the element");
   }
 }
 
@@ -25,7 +24,7 @@ void CheckActivations(const Scene& scene, Problems& problems) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     const std::string path = IndexPath("bodies", i);
-    CheckPartNumbers(body.activation_of, body.mesh.tetrahedra.size(), body.more_activations.size(),
+    CheckPartNumbers(body.activation_of, body.elements(), body.more_activations.size(),
                      JoinPath(path, "region_activations"), problems);
     CheckScale(body, JoinPath(path, "activation_scale"), problems);
   }

@@ -10,7 +10,10 @@ void CheckBodies(const Scene& scene, Problems& problems) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     const std::string path = IndexPath("bodies", i);
-    if (body.mesh.tetrahedra.empty()) problems.Add(JoinPath(path, "mesh"), "the mesh has no tetrahedra");
+    const bool voxels = scene.method == Method::kVoxel;
+    if (voxels ? body.bricks.bricks.empty() : body.mesh.tetrahedra.empty()) {
+      problems.Add(JoinPath(path, "mesh"), voxels ? "there are no voxels" : "the mesh has no tetrahedra");
+    }
     if (!(body.density > 0))
       problems.Add(JoinPath(path, "density"), "a body needs mass", "give a density above 0 kg/m^3");
     if (!names.insert(body.name).second) {

@@ -19,9 +19,9 @@ void CheckBody(const Body& body, const std::string& path, Problems& problems) {
     }
     return;
   }
-  if (body.fibres.size() != body.mesh.tetrahedra.size()) {
-    problems.Add(path, std::to_string(body.fibres.size()) + " fibre directions for " +
-                           std::to_string(body.mesh.tetrahedra.size()) + " tetrahedra");
+  if (body.fibres.size() != body.elements()) {
+    problems.Add(path, std::to_string(body.fibres.size()) + " fibre directions for " + std::to_string(body.elements()) +
+                           " tetrahedra");
     return;
   }
   for (std::size_t e = 0; e < body.fibres.size(); ++e) {

@@ -10,8 +10,8 @@ namespace {
 // How deep the body's rest shape, moved by its initial displacement, is in a floor [m]; negative above it.
 double DepthOf(const Body& body, const Floor& floor) {
   double deepest = -INFINITY;
-  for (std::size_t n = 0; n < body.mesh.nodes.size(); ++n) {
-    Vec3 x = body.mesh.nodes[n];
+  for (std::size_t n = 0; n < body.nodes().size(); ++n) {
+    Vec3 x = body.nodes()[n];
     if (n < body.initial_displacement.size()) x += body.initial_displacement[n];
     deepest = std::max(deepest, (floor.point - x).dot(floor.normal));
   }
@@ -21,7 +21,7 @@ double DepthOf(const Body& body, const Floor& floor) {
 // Bodies may lie on a floor: this part of their size is round-off.
 double RoundOff(const Body& body) {
   double size = 0;
-  for (const Vec3& x : body.mesh.nodes) size = std::max(size, (x - body.mesh.nodes[0]).norm());
+  for (const Vec3& x : body.nodes()) size = std::max(size, (x - body.nodes()[0]).norm());
   return 1e-9 * size;
 }
 

@@ -10,9 +10,9 @@ void CheckInitialDisplacement(const Scene& scene, Problems& problems) {
     const std::vector<Vec3>& u = body.initial_displacement;
     if (u.empty()) continue;
     const std::string path = JoinPath(IndexPath("bodies", i), "initial_displacement");
-    if (u.size() != body.mesh.nodes.size()) {
-      problems.Add(
-          path, std::to_string(u.size()) + " displacements for " + std::to_string(body.mesh.nodes.size()) + " nodes");
+    if (u.size() != body.nodes().size()) {
+      problems.Add(path,
+                   std::to_string(u.size()) + " displacements for " + std::to_string(body.nodes().size()) + " nodes");
     }
     const auto wrong = std::find_if(u.begin(), u.end(), [](const Vec3& x) { return !x.allFinite(); });
     if (wrong != u.end()) problems.Add(path, "that of node " + std::to_string(wrong - u.begin()) + " is not finite");

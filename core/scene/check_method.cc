@@ -3,7 +3,8 @@
 namespace fascicle::scene_checks {
 
 void CheckMethod(const Scene& scene, Problems& problems) {
-  const TetMethod& method = scene.method;
+  if (scene.method != Method::kTet) return;
+  const TetMethod& method = scene.tet;
   if (method.precision == Precision::kSingle && method.stepping != Stepping::kExplicit &&
       method.stepping != Stepping::kMixed) {
     problems.Add("tet.precision", "steps that are solved for need double precision",

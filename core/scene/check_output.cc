@@ -26,7 +26,7 @@ void CheckOutput(const Scene& scene, Problems& problems) {
     }
     if (probe.body < 0 || probe.body >= static_cast<std::int32_t>(scene.bodies.size())) {
       problems.Add(JoinPath(path, "body"), "there is no such body");
-    } else if (probe.node < 0 || probe.node >= static_cast<std::int64_t>(scene.bodies[probe.body].mesh.nodes.size())) {
+    } else if (probe.node < 0 || probe.node >= static_cast<std::int64_t>(scene.bodies[probe.body].nodes().size())) {
       problems.Add(JoinPath(path, "point"), "there is no such node");
     }
   }

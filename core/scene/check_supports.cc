@@ -11,12 +11,24 @@ namespace {
 // Resultant of a load at scale 1 [N].
 Vec3 Resultant(const Body& body, const Load& load) {
   if (const auto* force = std::get_if<NodalForce>(&load.kind)) return force->total;
-  const auto& X = body.mesh.nodes;
+  const auto& X = body.nodes();
   double area = 0;
   for (const Triangle& t : body.regions[load.region].triangles) {
     area += 0.5 * (X[t[1]] - X[t[0]]).cross(X[t[2]] - X[t[0]]).norm();
   }
+  for (const Quad& q : body.regions[load.region].quads) area += (X[q[1]] - X[q[0]]).cross(X[q[3]] - X[q[0]]).norm();
   return area * std::get<Traction>(load.kind).vector;
+}
+
+double VolumeOf(const Body& body) {
+  const VoxelGrid& grid = body.bricks.grid;
+  return TotalVolume(body.mesh) + static_cast<double>(body.bricks.bricks.size()) * grid.spacing.prod();
+}
+
+// Whether the scene asks for places where nothing moves.
+bool IsStatic(const Scene& scene) {
+  return scene.method == Method::kVoxel ? scene.voxel.stepping == VoxelStepping::kStatic || scene.voxel.start_loaded
+                                        : scene.tet.stepping == Stepping::kQuasiStatic;
 }
 
 std::array<bool, 3> HeldAxes(const Body& body) {
@@ -58,9 +70,9 @@ void CheckSupports(const Scene& scene, Problems& problems) {
     const std::array<bool, 3> held = HeldAxes(body);
     std::vector<Vec3> resultants;
     for (const Load& load : body.loads) resultants.push_back(Resultant(body, load));
-    const double mass = body.density * TotalVolume(body.mesh);
+    const double mass = body.density * VolumeOf(body);
     for (int axis = 0; axis < 3; ++axis) {
-      if (!held[axis] && scene.method.stepping == Stepping::kQuasiStatic) {
+      if (!held[axis] && IsStatic(scene)) {
         problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
                      std::string("nothing holds the body along ") + "xyz"[axis],
                      "equilibrium needs a place to be: add a constraint, or use a stepping with inertia");

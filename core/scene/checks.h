@@ -11,9 +11,9 @@
 // The checks that CheckScene runs, one to a file. Each adds what it finds to `problems` and leaves the rest alone.
 namespace fascicle::scene_checks {
 
-// At least one body; each with tetrahedra, a positive density and a name of its own.
+// At least one body; each with elements, a positive density and a name of its own.
 void CheckBodies(const Scene& scene, Problems& problems);
-// Materials of the parts of a body: one for each tetrahedron, of those that there are.
+// Materials of the parts of a body: one for each element, of those that there are.
 void CheckMaterials(const Scene& scene, Problems& problems);
 // Activations of the parts likewise, and what each tetrahedron makes of its own: within [0, 1].
 void CheckActivations(const Scene& scene, Problems& problems);
@@ -33,11 +33,14 @@ void CheckSupports(const Scene& scene, Problems& problems);
 void CheckFloors(const Scene& scene, Problems& problems);
 // Steppings with the precision that they need.
 void CheckMethod(const Scene& scene, Problems& problems);
+// What the voxel method has no answer for: other laws than its two, fibres, activation, floors, damping that is not
+// proportional to mass, single axes held across the axes of an image.
+void CheckVoxels(const Scene& scene, Problems& problems);
 // Probes that follow a node that exists; the number of frames; duration.
 void CheckOutput(const Scene& scene, Problems& problems);
 
-// `parts` is empty or has, for each tetrahedron, 0 or one of the numbers of `others`, counted from 1.
-void CheckPartNumbers(const std::vector<std::int32_t>& parts, std::size_t tetrahedra, std::size_t others,
+// `parts` is empty or has, for each element, 0 or one of the numbers of `others`, counted from 1.
+void CheckPartNumbers(const std::vector<std::int32_t>& parts, std::size_t elements, std::size_t others,
                       const std::string& path, Problems& problems);
 
 }  // namespace fascicle::scene_checks

@@ -10,6 +10,7 @@
 
 #include "core/base/curve.h"
 #include "core/base/problems.h"
+#include "core/geometry/brick_mesh.h"
 #include "core/geometry/region.h"
 #include "core/geometry/tet_mesh.h"
 #include "core/materials/material.h"
@@ -48,6 +49,7 @@ struct Load {
   std::int32_t region = 0;  // index into Body::regions
   std::variant<Traction, NodalForce> kind;
   Curve scale = Curve::Constant(1);
+  bool kept = false;  // the scale as a series: of a unit force it is the force [N]
 };
 
 struct Damping {
@@ -58,10 +60,11 @@ struct Damping {
 
 struct Body {
   std::string name;
-  TetMesh mesh;           // [m]
+  TetMesh mesh;           // of the tet method [m]
+  BrickMesh bricks;       // of the voxel method [m]
   double density = 1060;  // [kg/m^3]
   Material material = NeoHookean(std::array{1e4, 0.3});
-  // Materials beside `material`, and which one each tetrahedron has: 0 for `material`, k for more_materials[k - 1].
+  // Materials beside `material`, and which one each element has: 0 for `material`, k for more_materials[k - 1].
   // All have `material` when empty.
   std::vector<Material> more_materials;
   std::vector<std::int32_t> material_of;
@@ -80,6 +83,10 @@ struct Body {
   Damping damping;
   // What the user should know of how the body came about; does not change results.
   std::vector<std::string> notes;
+
+  // Of whichever mesh the body has.
+  const std::vector<Vec3>& nodes() const { return mesh.nodes.empty() ? bricks.nodes : mesh.nodes; }
+  std::size_t elements() const { return mesh.tetrahedra.size() + bricks.bricks.size(); }
 };
 
 struct Gravity {
@@ -129,6 +136,19 @@ enum class OutputField {
   kFibreDirection
 };
 
+enum class VoxelStepping { kStatic, kDynamic };
+
+struct VoxelMethod {
+  VoxelStepping stepping = VoxelStepping::kStatic;
+  bool mean_dilatation = false;     // the volume strain of a brick as its mean, which does not lock
+  std::optional<double> time_step;  // [s]; the frame interval when absent
+  double tolerance = 1e-8;          // relative residual at which solutions end
+  bool start_loaded = false;        // in equilibrium with what acts at time 0
+};
+
+// What steps the scene; the settings of the others are not looked at.
+enum class Method { kTet, kVoxel };
+
 struct Probe {
   std::string name;
   std::int32_t body = 0;
@@ -147,7 +167,9 @@ struct Scene {
   std::vector<Body> bodies;
   Gravity gravity;
   std::vector<Floor> floors;
-  TetMethod method;
+  Method method = Method::kTet;
+  TetMethod tet;
+  VoxelMethod voxel;
   double duration = 0;  // [s]
   Output output;
 };

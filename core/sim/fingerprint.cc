@@ -19,15 +19,21 @@ class Fingerprint {
       PutItems(floor.point);
       PutItems(floor.normal);
     }
-    Put(static_cast<int>(scene.method.stepping));
-    Put(scene.method.time_step.value_or(0.0));
-    Put(scene.method.safety);
-    Put(scene.method.solver_tolerance);
-    Put(static_cast<int>(scene.method.element));
-    Put(static_cast<int>(scene.method.volume));
-    Put(static_cast<int>(scene.method.precision));
-    Put(scene.method.newton_tolerance);
-    Put(static_cast<int>(scene.method.linear_solver));
+    Put(static_cast<int>(scene.tet.stepping));
+    Put(scene.tet.time_step.value_or(0.0));
+    Put(scene.tet.safety);
+    Put(scene.tet.solver_tolerance);
+    Put(static_cast<int>(scene.tet.element));
+    Put(static_cast<int>(scene.tet.volume));
+    Put(static_cast<int>(scene.tet.precision));
+    Put(scene.tet.newton_tolerance);
+    Put(static_cast<int>(scene.tet.linear_solver));
+    Put(static_cast<int>(scene.method));
+    Put(static_cast<int>(scene.voxel.stepping));
+    Put(scene.voxel.mean_dilatation);
+    Put(scene.voxel.time_step.value_or(0.0));
+    Put(scene.voxel.tolerance);
+    Put(scene.voxel.start_loaded);
     Put(scene.bodies.size());
     for (const Body& body : scene.bodies) Put(body);
     Put(scene.output);
@@ -90,6 +96,10 @@ class Fingerprint {
       PutItems(edge.ends);
       PutItems(edge.middle);
     }
+    PutItems(body.bricks.nodes);
+    PutItems(body.bricks.bricks);
+    PutItems(body.bricks.grid.direction);
+    PutItems(body.bricks.grid.stiffness);
     Put(body.density);
     Put(body.material);
     Put(body.more_materials.size());
@@ -101,6 +111,7 @@ class Fingerprint {
       Put(region.name);
       PutItems(region.nodes);
       PutItems(region.triangles);
+      PutItems(region.quads);
     }
     Put(body.constraints.size());
     for (const Constraint& constraint : body.constraints) {
@@ -114,6 +125,7 @@ class Fingerprint {
       Put(load.kind.index());
       std::visit([this](const auto& kind) { PutItems(VectorOf(kind)); }, load.kind);
       Put(load.scale);
+      Put(load.kept);
     }
     Put(body.activation);
     Put(body.more_activations.size());

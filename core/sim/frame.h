@@ -10,7 +10,7 @@
 
 namespace fascicle {
 
-enum class FieldLocation { kNode, kTetrahedron };
+enum class FieldLocation { kNode, kTetrahedron, kBrick };
 
 struct FieldValues {
   std::string name;  // `velocity`, `cauchy_stress`, ... as in scene.proto

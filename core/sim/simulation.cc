@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/base/archive.h"
 #include "core/sim/fingerprint.h"
-#include "core/sim/measure.h"
-#include "core/tet/diagnostics.h"
+#include "core/sim/method_run.h"
 
 namespace fascicle {
 namespace {
@@ -33,6 +33,9 @@ ProblemText TextOf(StepProblem problem) {
     case StepProblem::kNotConverged:
       return {"NOT_CONVERGED", "the linear solve of the damping did not reach its tolerance",
               "use a larger solver_tolerance or less damping"};
+    case StepProblem::kNotSolved:
+      return {"NOT_CONVERGED", "the conjugate gradients did not reach their tolerance",
+              "use a larger tolerance, a smaller contrast of stiffness, or remove parts that hang on single voxels"};
     case StepProblem::kNoEquilibrium:
       return {
           "NOT_CONVERGED", "no equilibrium was found, also with the step cut to a few thousandths",
@@ -52,7 +55,11 @@ ProblemText TextOf(StepProblem problem) {
 
 struct Simulation::Impl {
   Impl(std::shared_ptr<const Scene> s, int threads, Profile* p)
-      : profile(p), scene(std::move(s)), team(threads), model(*scene), solver(model, team, p), series(SeriesOf(model)) {
+      : profile(p),
+        scene(std::move(s)),
+        team(threads),
+        method(MakeMethodRun(*scene, team, p)),
+        series(method->Series()) {
     const double intervals = scene->duration / scene->output.frame_interval;
     // The allowance keeps rounding from adding a frame to a whole number of intervals.
     last_frame = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(intervals * (1 - 1e-12))));
@@ -64,8 +71,8 @@ struct Simulation::Impl {
     if (profile != nullptr) profile->NoteCpu(team.others_cpu_seconds());
   }
 
-  void StartFromRest() {
-    state = solver.InitialState();
+  void Start() {
+    method->Start();
     next_frame = 0;
     iterations_at_frame = 0;
     settled = false;
@@ -78,30 +85,32 @@ struct Simulation::Impl {
   bool AtEnd() const { return settled || next_frame > last_frame; }
 
   bool IsSettled() const {
-    return scene->output.settle_speed && state.step > 0 && state.time >= model.curves_end() &&
-           LargestSpeed(state.velocities) <= *scene->output.settle_speed;
+    const RunClock clock = method->clock();
+    return scene->output.settle_speed && clock.step > 0 && clock.time >= method->curves_end() &&
+           method->LargestSpeed() <= *scene->output.settle_speed;
   }
 
   Frame TakeFrame() {
     const StageTimer timer(profile, "frame");
+    const RunClock clock = method->clock();
     Frame frame;
     frame.index = next_frame;
-    frame.time = state.time;
-    frame.step = state.step;
+    frame.time = clock.time;
+    frame.step = clock.step;
     {
       const StageTimer fields(profile, "fields");
-      frame.bodies = MeasureBodies(model, state, team);
+      frame.bodies = method->MeasureBodies();
     }
     {
       const StageTimer series_timer(profile, "series");
-      frame.series = MeasureSeries(model, state, iterations_at_frame, team);
+      frame.series = method->MeasureSeries(iterations_at_frame);
     }
     {
       const StageTimer digest(profile, "digest");
       frame.digest = DigestOf(frame);
     }
     ++next_frame;
-    iterations_at_frame = state.iterations;
+    iterations_at_frame = clock.iterations;
     settled = IsSettled();
     return frame;
   }
@@ -113,7 +122,7 @@ struct Simulation::Impl {
     archive.PutInt("next_frame", next_frame);
     archive.PutInt("iterations_at_frame", iterations_at_frame);
     archive.PutInt("settled", settled ? 1 : 0);
-    state.Save(archive);
+    method->Save(archive);
     return archive.Finish();
   }
 
@@ -123,13 +132,20 @@ struct Simulation::Impl {
     next_frame = archive.GetInt("next_frame");
     iterations_at_frame = archive.GetInt("iterations_at_frame");
     settled = archive.GetInt("settled") != 0;
-    state.Load(archive);
+    method->Load(archive);
     return archive.AtEnd();
   }
 
-  StepReport Step(double end, const std::stop_token& stop) {
+  StepOutcome Step(double end, const std::stop_token& stop) {
     const StageTimer timer(profile, "step");
-    return solver.Advance(state, end, stop);
+    return method->Advance(end, stop);
+  }
+
+  // How the run ends with a step; not at all when it was made.
+  std::optional<Outcome> Ended(const StepOutcome& step) const {
+    if (step.problem == StepProblem::kNone) return std::nullopt;
+    if (step.problem == StepProblem::kStopped) return Outcome{Outcome::Kind::kCancelled, {}};
+    return Outcome{Outcome::Kind::kFailed, FailureOf(step)};
   }
 
   bool Put(FrameSink& sink, Frame frame, std::string checkpoint) {
@@ -139,25 +155,25 @@ struct Simulation::Impl {
   }
 
   Progress ProgressNow() const {
-    return {settled ? 1.0 : std::min(1.0, state.time / scene->duration), state.time, state.step, state.time_step};
+    const RunClock clock = method->clock();
+    return {settled ? 1.0 : std::min(1.0, clock.time / scene->duration), clock.time, clock.step, clock.time_step};
   }
 
-  Failure FailureOf(const StepReport& report) const {
-    const ProblemText text = TextOf(report.problem);
-    return {text.reason,         text.message, state.step, state.time, model.bodies()[report.bad.body].source->name,
-            report.bad.elements, text.advice};
+  Failure FailureOf(const StepOutcome& outcome) const {
+    const ProblemText text = TextOf(outcome.problem);
+    const RunClock clock = method->clock();
+    return {text.reason,          text.message, clock.step, clock.time, scene->bodies[outcome.bad.body].name,
+            outcome.bad.elements, text.advice};
   }
 
   Profile* const profile;
   std::shared_ptr<const Scene> scene;
   ThreadTeam team;
-  TetModel model;
-  TetSolver solver;
+  std::unique_ptr<MethodRun> method;
   std::vector<SeriesInfo> series;
   Digest fingerprint = FingerprintOf(*scene);
   std::int64_t last_frame = 0;
 
-  TetState state;
   std::int64_t next_frame = 0;
   std::int64_t iterations_at_frame = 0;
   bool settled = false;
@@ -165,7 +181,7 @@ struct Simulation::Impl {
 
 Simulation::Simulation(std::shared_ptr<const Scene> scene, int threads, Profile* profile)
     : impl_(std::make_unique<Impl>(std::move(scene), threads, profile)) {
-  impl_->StartFromRest();
+  impl_->Start();
 }
 
 Simulation::~Simulation() = default;
@@ -174,7 +190,7 @@ const std::vector<SeriesInfo>& Simulation::series() const { return impl_->series
 
 bool Simulation::Restore(std::string_view checkpoint) {
   const bool restored = impl_->Restore(checkpoint);
-  if (!restored) impl_->StartFromRest();
+  if (!restored) impl_->Start();
   return restored;
 }
 
@@ -184,13 +200,14 @@ Outcome Simulation::Run(FrameSink& sink, std::stop_token stop, std::chrono::mill
   using Clock = std::chrono::steady_clock;
   Impl& run = *impl_;
   Clock::time_point last_checkpoint = Clock::now();
+  if (run.next_frame == 0) {
+    if (const auto ended = run.Ended(run.method->SolveStart(stop))) return *ended;
+  }
   while (!run.AtEnd()) {
     const double frame_time = run.TimeOfFrame(run.next_frame);
-    while (run.state.time < frame_time) {
+    while (run.method->clock().time < frame_time) {
       if (stop.stop_requested()) return {Outcome::Kind::kCancelled, {}};
-      const StepReport report = run.Step(frame_time, stop);
-      if (report.problem == StepProblem::kStopped) return {Outcome::Kind::kCancelled, {}};
-      if (report.problem != StepProblem::kNone) return {Outcome::Kind::kFailed, run.FailureOf(report)};
+      if (const auto ended = run.Ended(run.Step(frame_time, stop))) return *ended;
       sink.PutProgress(run.ProgressNow());
     }
     Frame frame = run.TakeFrame();
@@ -203,8 +220,8 @@ Outcome Simulation::Run(FrameSink& sink, std::stop_token stop, std::chrono::mill
       return {Outcome::Kind::kFailed,
               {"STORAGE",
                "a frame could not be stored",
-               run.state.step,
-               run.state.time,
+               run.method->clock().step,
+               run.method->clock().time,
                {},
                {},
                "make room where results are kept, then start the job again"}};

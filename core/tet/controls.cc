@@ -19,22 +19,6 @@ void Prescribe(const TetModel& model, const TetControls& controls, const ValueOf
 
 }  // namespace
 
-RigidMotion MotionAt(const Motion& motion, double time) {
-  RigidMotion at;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!motion.translation[axis]) continue;
-    at.translation[axis] = motion.translation[axis]->At(time);
-    at.velocity[axis] = motion.translation[axis]->RateAt(time);
-  }
-  if (motion.rotation) {
-    const Rotation& rotation = *motion.rotation;
-    at.rotation = Eigen::AngleAxisd(rotation.angle.At(time), rotation.axis).toRotationMatrix();
-    at.angular_velocity = rotation.angle.RateAt(time) * rotation.axis;
-    at.point = rotation.point;
-  }
-  return at;
-}
-
 void TetControls::Set(const TetModel& model, double at_time) {
   time = at_time;
   activation.resize(model.activations().size());

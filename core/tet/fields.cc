@@ -61,8 +61,6 @@ std::vector<double> OverElements(const TetModel& model, std::size_t body_index, 
   return values;
 }
 
-}  // namespace
-
 int ComponentsOf(OutputField field) {
   switch (field) {
     case OutputField::kVelocity:
@@ -74,6 +72,8 @@ int ComponentsOf(OutputField field) {
       return 1;
   }
 }
+
+}  // namespace
 
 std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body, OutputField field, const FibreDrive& drive,
                                   const TetState& state, ThreadTeam& team) {

@@ -8,11 +8,9 @@
 
 namespace fascicle {
 
-// Number of components of a field: 1, 3 or 6 (xx yy zz xy yz xz).
-int ComponentsOf(OutputField field);
-
 // Values of a field over the mesh nodes (velocity) or elements (all others: the mean over their points) of one body,
-// component fastest, as in scene.proto Field. Stresses are elastic and active, without the viscous part.
+// component fastest (stresses xx yy zz xy yz xz), as in scene.proto Field. Stresses are elastic and active, without the
+// viscous part.
 std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body, OutputField field, const FibreDrive& drive,
                                   const TetState& state, ThreadTeam& team);
 

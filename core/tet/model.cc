@@ -79,7 +79,7 @@ TetModel::TetModel(const Scene& scene) : scene_(&scene) {
   Invert(element_nodes, nodes(), node_use_begin_, node_uses_);
   if (order() == ElementOrder::kLinear) SetSmoothing();
   SetChunks();
-  if (scene.method.precision == Precision::kSingle) {
+  if (scene.tet.precision == Precision::kSingle) {
     SetBlocks<float>();
   } else {
     SetBlocks<double>();
@@ -233,7 +233,7 @@ void TetModel::AddElements(const Body& body, TetBody& entry) {
 
 // The laws of a group, and the patches that take over what its elements give away of their volume modulus.
 void TetModel::FillGroup(const Body& body, TetGroup& group) {
-  const bool nodal = scene_->method.volume == VolumeForm::kNodal;
+  const bool nodal = scene_->tet.volume == VolumeForm::kNodal;
   std::vector<double> given(group.tet_end - group.tet_begin, 0.0);
   const auto fill = [&]<class Law>(const Law&) {
     std::map<const Material*, std::int32_t> places;

@@ -85,7 +85,7 @@ class TetModel {
   // X, moved by the bodies' initial displacements [m].
   NodalVector InitialPositions() const;
   const std::vector<Tetrahedron>& corners() const { return tetrahedra_; }
-  ElementOrder order() const { return scene_->method.element; }
+  ElementOrder order() const { return scene_->tet.element; }
   // Calls visitor(LinearElement{}) or visitor(QuadraticElement{}).
   template <class Visitor>
   decltype(auto) VisitElement(const Visitor& visitor) const {

@@ -60,7 +60,7 @@ NewtonSystem::NewtonSystem(const TetModel& model, Profile* profile)
       energy_rounding_(EnergyRounding(model)) {
   unknowns_ = model.patches().size();
   for (const auto& free : assembly_.matrix().free) unknowns_ += std::count(free.begin(), free.end(), true);
-  const LinearSolver choice = model.scene().method.linear_solver;
+  const LinearSolver choice = model.scene().tet.linear_solver;
   prefers_iterative_ =
       choice == LinearSolver::kIterative || (choice == LinearSolver::kAutomatic && unknowns_ > kMostDirectUnknowns);
   is_iterative_ = prefers_iterative_;

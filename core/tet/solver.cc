@@ -29,7 +29,7 @@ constexpr double kMostSteps = 1e9;
 }  // namespace
 
 TetSolver::TetSolver(const TetModel& model, ThreadTeam& team, Profile* profile)
-    : model_(model), team_(team), profile_(profile), method_(model.scene().method) {
+    : model_(model), team_(team), profile_(profile), method_(model.scene().tet) {
   if (!IsImplicit()) return;
   const StageTimer timer(profile_, "matrix pattern");
   newton_ = std::make_unique<NewtonSolver>(model, team, profile);

@@ -5,6 +5,7 @@
 #include <stop_token>
 
 #include "core/base/profile.h"
+#include "core/base/step_problem.h"
 #include "core/linalg/conjugate_gradient.h"
 #include "core/tet/bad_elements.h"
 #include "core/tet/controls.h"
@@ -14,18 +15,6 @@
 #include "core/tet/state.h"
 
 namespace fascicle {
-
-// What can go wrong with a step. An element counts as inverted also when it loses much of its volume in a single step.
-enum class StepProblem {
-  kNone,
-  kInvertedElement,
-  kNotFinite,
-  kNotConverged,  // the linear solve of the damping
-  kUnstable,
-  kStepTooSmall,
-  kNoEquilibrium,  // Newton's method of implicit and quasi-static steps
-  kStopped         // as asked
-};
 
 struct StepReport {
   StepProblem problem = StepProblem::kNone;

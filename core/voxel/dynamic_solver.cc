@@ -89,6 +89,23 @@ VoxelStepReport VoxelDynamicSolver::Step(const VoxelField<double>& force, const 
   return report;
 }
 
+VoxelField<double> VoxelDynamicSolver::Reaction(const VoxelField<double>& force, const VoxelState& before,
+                                                const VoxelState& now) {
+  const double dt = settings_.time_step, a = settings_.mass_damping;
+  VoxelField<double> reaction(model_->mesh().nodes());
+  equilibrium_.InternalForces(now.displacement, reaction);
+  ForNodes(*team_, mass_.size(), [&](std::size_t n) {
+    for (int d = 0; d < 3; ++d) {
+      const double next = now.displacement.component(d)[n], present = before.displacement.component(d)[n],
+                   previous = before.previous.component(d)[n];
+      reaction.component(d)[n] +=
+          mass_[n] * ((next - 2 * present + previous) / (dt * dt) + a * (next - previous) / (2 * dt)) -
+          force.component(d)[n];
+    }
+  });
+  return reaction;
+}
+
 VoxelMode LowestMode(const VoxelModel& model, const std::vector<VoxelSupport>& supports, double density,
                      ThreadTeam& team, double tolerance) {
   const std::vector<double> mass = LumpedMass(model.mesh(), density);

@@ -48,6 +48,10 @@ class VoxelDynamicSolver {
   VoxelStepReport Step(const VoxelField<double>& force, const VoxelField<double>& prescribed, VoxelState& state,
                        std::stop_token stop = {});
 
+  // The force [N] that makes up for what the scheme leaves at a step from `before` to `now` under `force`: that of
+  // supports on the body in the components that they hold, and the residual elsewhere.
+  VoxelField<double> Reaction(const VoxelField<double>& force, const VoxelState& before, const VoxelState& now);
+
   const DynamicSettings& settings() const { return settings_; }
   // Of each node [kg].
   const std::vector<double>& mass() const { return mass_; }

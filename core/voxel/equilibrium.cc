@@ -49,7 +49,7 @@ VoxelEquilibrium::VoxelEquilibrium(const VoxelModel& model, const std::vector<Vo
     : model_(&model), team_(&team), prescribed_(model.mesh(), supports), shift_(std::move(shift)) {
   multigrid_ = std::make_unique<VoxelMultigrid>(model.mesh(), ForMultigrid(model.stiffness()), prescribed_.of_nodes(),
                                                 team, shift_);
-  if (model.rotation() == Rotation::kLarge) rotated_.emplace(model.K());
+  if (model.rotation() == VoxelRotation::kLarge) rotated_.emplace(model.K());
 }
 
 double VoxelEquilibrium::InternalForces(const VoxelField<double>& u, VoxelField<double>& f_int) {

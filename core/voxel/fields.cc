@@ -9,11 +9,11 @@ SymmetricTensor SymmetricPartOf(const Mat3& A) {
   return {A(0, 0), A(1, 1), A(2, 2), 0.5 * (A(0, 1) + A(1, 0)), 0.5 * (A(1, 2) + A(2, 1)), 0.5 * (A(2, 0) + A(0, 2))};
 }
 
-SymmetricTensor StrainOf(Rotation rotation, const Eigen::Matrix<double, 3, 8>& gradients, const VoxelField<double>& u,
-                         const std::array<std::int32_t, 8>& nodes) {
+SymmetricTensor StrainOf(VoxelRotation rotation, const Eigen::Matrix<double, 3, 8>& gradients,
+                         const VoxelField<double>& u, const std::array<std::int32_t, 8>& nodes) {
   Mat3 grad = Mat3::Zero();  // (i, j) = du_i/dx_j
   for (int c = 0; c < 8; ++c) grad += u.At(nodes[c]) * gradients.col(c).transpose();
-  if (rotation == Rotation::kSmall) return SymmetricPartOf(grad);
+  if (rotation == VoxelRotation::kSmall) return SymmetricPartOf(grad);
   const Mat3 F = Mat3::Identity() + grad;
   return SymmetricPartOf(NearestRotation(F).transpose() * F - Mat3::Identity());
 }

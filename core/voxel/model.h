@@ -10,7 +10,7 @@
 namespace fascicle {
 
 // How far bricks may turn.
-enum class Rotation {
+enum class VoxelRotation {
   kSmall,  // linear elasticity, the paper's: right for small gradients of the displacement
   kLarge,  // corotated: linear in the frame of each brick, which turns by the rotation nearest to the deformation
            // gradient at its centre [Mueller & Gross 2004, Interactive virtual materials]
@@ -22,7 +22,7 @@ class VoxelModel {
  public:
   // Checked input (CheckVoxelProblem); the grid must outlive the model. materials[m - 1] is that of voxels with m.
   VoxelModel(const VoxelGrid& grid, std::vector<VoxelMaterial> materials, Dilatation dilatation,
-             Rotation rotation = Rotation::kSmall)
+             VoxelRotation rotation = VoxelRotation::kSmall)
       : grid_(&grid),
         rotation_(rotation),
         materials_(std::move(materials)),
@@ -33,7 +33,7 @@ class VoxelModel {
   VoxelModel& operator=(const VoxelModel&) = delete;
 
   const VoxelGrid& grid() const { return *grid_; }
-  Rotation rotation() const { return rotation_; }
+  VoxelRotation rotation() const { return rotation_; }
   const VoxelMesh& mesh() const { return mesh_; }
   const std::vector<VoxelMaterial>& materials() const { return materials_; }
   const VoxelStiffness& stiffness() const { return stiffness_; }
@@ -42,7 +42,7 @@ class VoxelModel {
 
  private:
   const VoxelGrid* grid_;
-  Rotation rotation_;
+  VoxelRotation rotation_;
   std::vector<VoxelMaterial> materials_;
   VoxelMesh mesh_;
   VoxelStiffness stiffness_;

@@ -50,7 +50,7 @@ void RunMuscle(const MuscleGrid& grid, const Options& options, Report& report) {
   const auto start = std::chrono::steady_clock::now();
   const auto passed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   Scene scene = IsometricMuscle(grid);
-  if (options.tolerance > 0) scene.method.newton_tolerance = options.tolerance;
+  if (options.tolerance > 0) scene.tet.newton_tolerance = options.tolerance;
   const double before_model = passed();
   const TetModel model(scene);
   ThreadTeam team(options.threads);

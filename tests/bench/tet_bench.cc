@@ -21,7 +21,7 @@ Scene MuscleBox(Stepping stepping) {
   body.damping.viscosity = stepping == Stepping::kMixed ? 20 : 0;
   Scene scene;
   scene.bodies.push_back(std::move(body));
-  scene.method.stepping = stepping;
+  scene.tet.stepping = stepping;
   scene.duration = 1000;
   scene.output.frame_interval = 1000;
   return scene;

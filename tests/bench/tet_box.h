@@ -36,8 +36,8 @@ struct TetBox {
     body.activation = Curve::Constant(kActivation);
     Scene scene;
     scene.bodies.push_back(std::move(body));
-    scene.method.volume = volume;
-    scene.method.precision = precision;
+    scene.tet.volume = volume;
+    scene.tet.precision = precision;
     scene.duration = 1;
     scene.output.frame_interval = 1;
     return scene;

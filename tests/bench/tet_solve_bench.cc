@@ -39,16 +39,16 @@ Scene FallingBox() {
   body.constraints = {testing::Fix(testing::kX0)};
   Scene scene = testing::OneBody(std::move(body));
   scene.gravity.acceleration = Vec3(0, 0, -9.81);
-  scene.method.stepping = Stepping::kBackwardEuler;
-  scene.method.newton_tolerance = 1e-4;
-  scene.method.time_step = 0.01;
+  scene.tet.stepping = Stepping::kBackwardEuler;
+  scene.tet.newton_tolerance = 1e-4;
+  scene.tet.time_step = 0.01;
   return scene;
 }
 
 // CHOLMOD solves for the first Newton step of the very step that core makes, so both are one move of the same body.
 void CompareImplicit(const std::string& row) {
   const Scene scene = FallingBox();
-  const double dt = *scene.method.time_step;
+  const double dt = *scene.tet.time_step;
   const TetModel model(scene);
   ThreadTeam team(1);
   TetSolver solver(model, team);
@@ -105,7 +105,7 @@ void CompareMuscle(const std::string& row, const MuscleGrid& grid, int rounds) {
   const auto run_plain = [&] {
     const TetModel model(scene);
     PlainNewton plain(model);
-    if (!plain.Run(0, kMuscleActivation, /*steps=*/1, scene.method.newton_tolerance)) std::abort();
+    if (!plain.Run(0, kMuscleActivation, /*steps=*/1, scene.tet.newton_tolerance)) std::abort();
     theirs = plain.positions();
     iterations = plain.iterations();
     factorizations = plain.factorizations();

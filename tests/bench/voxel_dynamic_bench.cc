@@ -31,7 +31,7 @@ VoxelGrid Spindle(std::int64_t voxels) {
 }
 
 // Bent by a force at its top and let go.
-bool Release(std::int64_t voxels, Rotation rotation, int threads) {
+bool Release(std::int64_t voxels, VoxelRotation rotation, int threads) {
   VoxelGrid grid = Spindle(voxels);
   KeepLargestIsland(grid);
   const VoxelModel model(grid, {{3e4, 0.45}}, Dilatation::kMean, rotation);
@@ -59,7 +59,7 @@ bool Release(std::int64_t voxels, Rotation rotation, int threads) {
       "%d voxels, %d nodes, %s rotation, %d threads: %.2f ms a frame, %.2f of CPU (slowest %.2f): %.0f frames a "
       "second, "
       "%.1f iterations a frame\n",
-      mesh.voxels(), mesh.nodes(), rotation == Rotation::kSmall ? "small" : "large", threads, 1e3 * Median(times),
+      mesh.voxels(), mesh.nodes(), rotation == VoxelRotation::kSmall ? "small" : "large", threads, 1e3 * Median(times),
       1e3 * Median(cpu_times), 1e3 * *std::max_element(cpu_times.begin(), cpu_times.end()), 1 / Median(times),
       static_cast<double>(state.iterations) / kFrames);
   return converged;
@@ -68,7 +68,8 @@ bool Release(std::int64_t voxels, Rotation rotation, int threads) {
 int Main() {
   bool converged = true;
   for (const std::int64_t voxels : {219, 1840, 14578}) {
-    for (const Rotation rotation : {Rotation::kSmall, Rotation::kLarge}) converged &= Release(voxels, rotation, 1);
+    for (const VoxelRotation rotation : {VoxelRotation::kSmall, VoxelRotation::kLarge})
+      converged &= Release(voxels, rotation, 1);
   }
   return converged ? EXIT_SUCCESS : EXIT_FAILURE;
 }

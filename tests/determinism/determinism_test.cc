@@ -40,8 +40,8 @@ Scene BusyScene(Stepping stepping, ElementOrder element, int across) {
   Scene scene;
   scene.bodies = {muscle, bar};
   scene.gravity.acceleration = Vec3(0, 0, -9.81);
-  scene.method.stepping = stepping;
-  scene.method.element = element;
+  scene.tet.stepping = stepping;
+  scene.tet.element = element;
   scene.duration = 0.006;
   scene.output.frame_interval = 0.0008;
   scene.output.fields = {OutputField::kVelocity, OutputField::kCauchyStress, OutputField::kFibreStretch};

@@ -59,7 +59,7 @@ inline std::shared_ptr<const Scene> MakeScene(const BoxSpec& spec) {
   scene->name = "box";
   scene->bodies.push_back(std::move(body));
   scene->gravity = {Vec3(0, 0, -1), {{0, spec.duration}, {0, spec.gravity}, Curve::Interpolation::kLinear}};
-  scene->method.time_step = spec.time_step;
+  scene->tet.time_step = spec.time_step;
   scene->duration = spec.duration;
   scene->output.frame_interval = spec.frame_interval;
   Problems problems;

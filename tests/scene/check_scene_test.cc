@@ -102,7 +102,7 @@ TEST(CheckSceneTest, PartsWithMaterialsAndActivationsThatThereAreNot) {
     EXPECT_TRUE(none.empty()) << none.ToString();
     parts[7] = 1;
     EXPECT_EQ(ProblemOf(scene).path, path);
-    EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 7"));
+    EXPECT_THAT(ProblemOf(scene).message, HasSubstr("element 7"));
     parts[7] = -1;
     EXPECT_EQ(ProblemOf(scene).path, path);
     parts.assign(tetrahedra - 1, 0);
@@ -122,9 +122,9 @@ TEST(CheckSceneTest, ActivationScale) {
   scale.assign(scene.bodies[0].mesh.tetrahedra.size(), 0.5);
   scale[9] = 1.5;
   EXPECT_EQ(ProblemOf(scene).path, "bodies[0].activation_scale");
-  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 9"));
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("element 9"));
   scale[9] = std::nan("");
-  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 9"));
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("element 9"));
   scale[9] = 1;
   scale.pop_back();
   EXPECT_THAT(ProblemOf(scene).message, HasSubstr("71 values for 72"));
@@ -220,29 +220,29 @@ TEST(CheckSceneTest, BodyThatWouldFlyAway) {
 // Equilibrium alone says nothing about where an unheld body is, loaded or not.
 TEST(CheckSceneTest, EquilibriumNeedsSupportsAlongEveryAxis) {
   Scene scene = GoodScene();
-  scene.method.stepping = Stepping::kQuasiStatic;
+  scene.tet.stepping = Stepping::kQuasiStatic;
   Problems held;
   CheckScene(scene, held);
   EXPECT_TRUE(held.empty()) << held.ToString();
   scene.bodies[0].constraints[0].axes = {true, false, true};
   EXPECT_THAT(ProblemOf(scene).message, HasSubstr("along y"));
-  scene.method.stepping = Stepping::kBackwardEuler;
+  scene.tet.stepping = Stepping::kBackwardEuler;
   CheckScene(scene, held);
   EXPECT_TRUE(held.empty()) << held.ToString();
 }
 
 TEST(CheckSceneTest, StepsThatAreSolvedForNeedDouble) {
   Scene scene = GoodScene();
-  scene.method.precision = Precision::kSingle;
+  scene.tet.precision = Precision::kSingle;
   for (const Stepping stepping : {Stepping::kExplicit, Stepping::kMixed}) {
-    scene.method.stepping = stepping;
+    scene.tet.stepping = stepping;
     Problems problems;
     CheckScene(scene, problems);
     EXPECT_TRUE(problems.empty()) << problems.ToString();
   }
   for (const Stepping stepping :
        {Stepping::kBackwardEuler, Stepping::kNewmark, Stepping::kBdf2, Stepping::kQuasiStatic}) {
-    scene.method.stepping = stepping;
+    scene.tet.stepping = stepping;
     EXPECT_EQ(ProblemOf(scene).path, "tet.precision");
     EXPECT_THAT(ProblemOf(scene).hint, HasSubstr("explicit"));
   }

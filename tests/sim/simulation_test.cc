@@ -110,7 +110,7 @@ TEST(SimulationTest, SettlesAfterTheCurvesHaveComeToRest) {
 TEST(SimulationTest, AProfileCountsTheStagesAndChangesNoBit) {
   for (const Stepping stepping : {Stepping::kExplicit, Stepping::kMixed, Stepping::kBackwardEuler}) {
     Scene scene = Beam();
-    scene.method.stepping = stepping;
+    scene.tet.stepping = stepping;
     const RunResult run = RunScene(scene);
     Profile profile;
     CollectingSink sink;
@@ -189,7 +189,7 @@ TEST(CheckpointTest, RestoresOnlyItsOwnScene) {
   other.bodies[0].mesh.nodes[0][0] += 1e-9;
   EXPECT_FALSE(restores(other, checkpoint));
   other = scene;
-  other.method.safety = 0.8;
+  other.tet.safety = 0.8;
   EXPECT_FALSE(restores(other, checkpoint));
   other = scene;
   other.bodies[0].loads[0].scale.times[1] = 0.06;

@@ -33,7 +33,7 @@ Scene BusyScene(Stepping stepping) {
     scene.bodies.push_back(std::move(body));
   }
   scene.gravity.acceleration = Vec3(0, 0, -9.81);
-  scene.method.stepping = stepping;
+  scene.tet.stepping = stepping;
   scene.duration = 1;
   return scene;
 }
@@ -83,7 +83,7 @@ TEST(MemoryTest, LessThan400BytesForATetrahedron) {
   scene.bodies.push_back(std::move(body));
   scene.duration = 1;
   for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
-    scene.method.precision = precision;
+    scene.tet.precision = precision;
     const std::size_t before = BytesInUse();
     const TetModel model(scene);
     ThreadTeam team(1);

@@ -20,8 +20,8 @@ Scene FallingCube(Stepping stepping, ElementOrder element, double height) {
   scene.bodies = {cube};
   scene.gravity.acceleration = Vec3(0, 0, -9.81);
   scene.floors = {kGround};
-  scene.method.stepping = stepping;
-  scene.method.element = element;
+  scene.tet.stepping = stepping;
+  scene.tet.element = element;
   scene.duration = 0.3;
   scene.output.frame_interval = 0.005;
   return scene;
@@ -63,7 +63,7 @@ TEST(FloorTest, ForceIsTheSlopeOfTheEnergy) {
 TEST(FloorTest, ABouncingCubeKeepsItsEnergy) {
   for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
     Scene scene = FallingCube(Stepping::kExplicit, element, 0.02);
-    scene.method.safety = 0.3;  // a side that hits the ground as a whole is the worst case: 3 % at 0.9
+    scene.tet.safety = 0.3;  // a side that hits the ground as a whole is the worst case: 3 % at 0.9
     const RunResult run = RunScene(scene, 2);
     ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded) << run.outcome.failure.message;
     const double mass = 1060 * 8e-6, fallen = mass * 9.81 * 0.02;

@@ -169,7 +169,7 @@ TEST_P(SingleTest, ForcesToSixDigits) {
   const auto [law, element] = GetParam();
   const Setting s(LawsOfKernels()[law], element, VolumeForm::kNodal, element == ElementOrder::kLinear ? 9 : 6);
   Scene scene = s.scene;
-  scene.method.precision = Precision::kSingle;
+  scene.tet.precision = Precision::kSingle;
   const TetModel model(scene);
   const auto evaluate = [&](const TetModel& m, InstructionSet set, int threads, NodalVector& force) {
     ThreadTeam team(threads);
@@ -207,7 +207,7 @@ TEST(SingleTest, ContractionFollowsDouble) {
     body.activation = Curve{{0, 0.02}, {0, 1}, Curve::Interpolation::kSmooth};
     body.damping.mass_proportional = 50;
     Scene scene = OneBody(std::move(body));
-    scene.method.precision = precision;
+    scene.tet.precision = precision;
     const TetModel model(scene);
     ThreadTeam team(1);
     TetSolver solver(model, team);

@@ -35,7 +35,7 @@ TetMesh IrregularBox(const std::array<int, 3>& divisions) {
 
 struct Patched {
   Patched(ElementOrder element, const Material& law, TetMesh mesh) : scene(OneBody(MakeBody("box", mesh, law))) {
-    scene.method.element = element;
+    scene.tet.element = element;
     model = std::make_unique<TetModel>(scene);
   }
 
@@ -172,7 +172,7 @@ Eigen::VectorXd InfSupValues(ElementOrder order, int n, bool smooth) {
   Body body = BoxBody(Vec3::Ones(), {n, n, n}, NearlyIncompressible());
   body.constraints = {Fix(kZ0), Fix(kZ1)};
   Scene scene = OneBody(std::move(body));
-  scene.method.element = order;
+  scene.tet.element = order;
   const TetModel model(scene);
   std::vector<int> unknown(model.nodes(), -1);
   int count = 0;

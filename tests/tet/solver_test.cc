@@ -25,8 +25,8 @@ class Mode {
     body.constraints.push_back(Fix(kX0));
     body.damping = damping;
     scene_ = OneBody(body);
-    scene_.method.stepping = stepping;
-    scene_.method.solver_tolerance = 1e-13;
+    scene_.tet.stepping = stepping;
+    scene_.tet.solver_tolerance = 1e-13;
     model_.emplace(scene_);
     solver_.emplace(*model_, team_);
     FindMode();
@@ -155,8 +155,8 @@ TEST_P(NonlinearConvergence, Order) {
   body.constraints.push_back(Fix(kX0));
   if (GetParam() == Stepping::kMixed) body.damping.viscosity = 20;
   Scene scene = OneBody(body);
-  scene.method.stepping = GetParam();
-  scene.method.solver_tolerance = 1e-13;
+  scene.tet.stepping = GetParam();
+  scene.tet.solver_tolerance = 1e-13;
   const TetModel model(scene);
   ThreadTeam team(1);
   TetSolver solver(model, team);
@@ -183,7 +183,7 @@ INSTANTIATE_TEST_SUITE_P(Steppings, NonlinearConvergence, ::testing::Values(Step
 // Newton's method ends when it is asked to, and the step that is made later is the one that would have been made.
 TEST(StopTest, EndsALongStepAndLeavesNoTrace) {
   Scene scene = OneBody(BoxBody(Vec3(0.02, 0.02, 0.06), {8, 8, 24}, NeoHookean(std::array{2e4, 0.4})));
-  scene.method.stepping = Stepping::kQuasiStatic;
+  scene.tet.stepping = Stepping::kQuasiStatic;
   scene.bodies[0].constraints = {Fix(kZ0)};
   scene.gravity.acceleration = Vec3(9.81, 0, 0);
   const TetModel model(scene);
@@ -209,7 +209,7 @@ TEST(FreeFallTest, IsExact) {
   for (const Stepping stepping : {Stepping::kExplicit, Stepping::kMixed}) {
     Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
     Scene scene = OneBody(body);
-    scene.method.stepping = stepping;
+    scene.tet.stepping = stepping;
     scene.gravity.acceleration = Vec3(0, 1, -9.81);
     const TetModel model(scene);
     ThreadTeam team(1);
@@ -234,8 +234,8 @@ TEST(MomentumTest, IsConserved) {
     Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
     body.damping.viscosity = 0.5;
     Scene scene = OneBody(body);
-    scene.method.stepping = stepping;
-    scene.method.solver_tolerance = 1e-14;
+    scene.tet.stepping = stepping;
+    scene.tet.solver_tolerance = 1e-14;
     const TetModel model(scene);
     ThreadTeam team(1);
     TetSolver solver(model, team);
@@ -274,7 +274,7 @@ TEST(FixedStepTest, IsHalvedUntilItIsStable) {
   ThreadTeam team(1);
   const double limit = TetSolver(automatic, team).StableStepAt(TetSolver(automatic, team).InitialState());
   for (const double factor : {0.5, 3.0}) {
-    scene.method.time_step = factor * limit;
+    scene.tet.time_step = factor * limit;
     const TetModel model(scene);
     TetSolver solver(model, team);
     TetState state = solver.InitialState();

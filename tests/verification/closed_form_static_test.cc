@@ -53,9 +53,9 @@ TEST(ContractionTest, BarWithFibresAcross) {
     const Vec3 fibre(0.5, 0, std::sqrt(0.75));
     Body body = BoxBody(Vec3(0.01, 0.01, 0.04), {2, 2, 4}, kMuscle);
     body.fibres = ConstantFibres(body.mesh, fibre);
-    body.regions.push_back({"origin", {0}, {}, {}});
-    body.regions.push_back({"along_x", {2}, {}, {}});
-    body.regions.push_back({"along_y", {6}, {}, {}});
+    body.regions.push_back({"origin", {0}, {}, {}, {}});
+    body.regions.push_back({"along_x", {2}, {}, {}, {}});
+    body.regions.push_back({"along_y", {6}, {}, {}, {}});
     body.constraints = {{6, {true, true, true}, {}}, {7, {false, true, true}, {}}, {8, {false, false, true}, {}}};
     body.activation = Ramp(0.5);
     SteppedRun run(StaticScene(body, element));

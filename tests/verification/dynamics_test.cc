@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, TorusEnergy, ::testing::Values(0, 1));
 // Every node prescribed to turn: it is where the curve says, at the speed of the curve, without stress.
 TEST(PrescribedMotionTest, RigidRotation) {
   Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
-  Region all{"all", {}, {}, {}};
+  Region all{"all", {}, {}, {}, {}};
   for (std::size_t n = 0; n < body.mesh.nodes.size(); ++n) all.nodes.push_back(static_cast<std::int32_t>(n));
   body.regions.push_back(all);
   Constraint turn{6, {true, true, true}, {}};
@@ -61,7 +61,7 @@ TEST(PrescribedMotionTest, RigidRotation) {
   body.constraints = {turn};
   body.damping = {.stiffness_proportional = 1e-3, .viscosity = 3};
   Scene scene = OneBody(body);
-  scene.method.time_step = 1e-4;
+  scene.tet.time_step = 1e-4;
   scene.duration = 0.5;
   scene.output.fields = {OutputField::kVelocity, OutputField::kVonMisesStress};
   const RunResult run = RunScene(scene);

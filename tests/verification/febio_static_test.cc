@@ -114,7 +114,7 @@ TEST(FebioStaticTest, QuadraticElementsNodeByNode) {
 // Linear elements that each keep their own volume lock as FEBio's do.
 TEST(FebioStaticTest, LockingElementsNodeByNode) {
   Scene scene = StaticScene(LockingCantilever(2, Ramp(1)), kLinear);
-  scene.method.volume = VolumeForm::kElement;
+  scene.tet.volume = VolumeForm::kElement;
   CompareField(scene, "f_bending_locking", "full_fields_coarse", "tet4", "f_tet4_20_def", 0.005);
 }
 

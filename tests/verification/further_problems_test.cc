@@ -140,7 +140,7 @@ Body Arch(int n) {
   };
   Body body = MappedBody(Vec3(1, 1, 1), {10 * n, n, n}, place, NeoHookean(std::array{1e6, 0.4}));
   body.constraints = {Fix(kX0), Fix(kX1)};
-  Region middle{"middle", {}, {}, {}};
+  Region middle{"middle", {}, {}, {}, {}};
   for (std::size_t k = 0; k < body.mesh.nodes.size(); ++k) {
     if (std::abs(body.mesh.nodes[k][0] - 0.02) < 1e-9) middle.nodes.push_back(static_cast<std::int32_t>(k));
   }
@@ -174,7 +174,7 @@ TEST(FurtherProblems, AnArchSnapsThrough) {
   pressed.loads.push_back({kMiddle, NodalForce{Vec3(0, 0, -load)}, Ramp(1)});
   for (const double time_step : {1.0, 0.05}) {
     Scene scene = StaticScene(pressed, ElementOrder::kQuadratic);
-    scene.method.time_step = time_step;
+    scene.tet.time_step = time_step;
     SteppedRun run(scene);
     ASSERT_TRUE(run.To(1)) << "stopped at " << run.state.time;
     const double way = -run.DisplacementAt(Vec3(0.02, 0.002, 0.0035))[2];

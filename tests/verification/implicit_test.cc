@@ -14,9 +14,9 @@ using namespace fascicle::testing;
 // A free box that rings after a push along its long axis, in steps of a fixed length.
 Scene RingingBox(Stepping stepping, ElementOrder element, const Material& law, double time_step) {
   Scene scene = OneBody(BoxBody(Vec3(0.04, 0.02, 0.02), {2, 1, 1}, law));
-  scene.method.stepping = stepping;
-  scene.method.element = element;
-  scene.method.time_step = time_step;
+  scene.tet.stepping = stepping;
+  scene.tet.element = element;
+  scene.tet.time_step = time_step;
   return scene;
 }
 
@@ -122,11 +122,11 @@ TEST(QuasiStaticTest, IsWhereExplicitStepsComeToRest) {
     body.density = 1060;
     Scene scene = OneBody(std::move(body));
     scene.gravity = {Vec3(3, 0, -9.81), Curve{{0, 0.05}, {0, 1}, Curve::Interpolation::kSmooth}};
-    scene.method.element = element;
+    scene.tet.element = element;
     SteppedRun slow(scene);
     while (slow.state.time < 0.1 || LargestSpeed(slow.state.velocities) > 1e-9)
       ASSERT_TRUE(slow.To(slow.state.time + 0.02));
-    scene.method.stepping = Stepping::kQuasiStatic;
+    scene.tet.stepping = Stepping::kQuasiStatic;
     SteppedRun still(scene);
     ASSERT_TRUE(still.To(0.1));
     double deflection = 0;
@@ -156,8 +156,8 @@ TEST(CancelTest, BetweenTwoImplicitSteps) {
   for (const Stepping stepping :
        {Stepping::kBackwardEuler, Stepping::kNewmark, Stepping::kBdf2, Stepping::kQuasiStatic}) {
     Scene scene = StaticScene(LockingCantilever(1, Ramp(1)), ElementOrder::kQuadratic);
-    scene.method.stepping = stepping;
-    scene.method.time_step = 0.1;
+    scene.tet.stepping = stepping;
+    scene.tet.time_step = 0.1;
     Simulation simulation(std::make_shared<Scene>(scene), 1);
     StoppingSink sink(3);
     EXPECT_EQ(simulation.Run(sink, sink.source.get_token()).kind, Outcome::Kind::kCancelled);

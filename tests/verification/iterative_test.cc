@@ -12,8 +12,8 @@ using namespace fascicle::testing;
 
 Scene MuscleScene(ElementOrder element, LinearSolver solver, Stepping stepping = Stepping::kQuasiStatic) {
   Scene scene = StaticScene(ReferenceMuscle(3, Ramp(1)), element);
-  scene.method.linear_solver = solver;
-  scene.method.stepping = stepping;
+  scene.tet.linear_solver = solver;
+  scene.tet.stepping = stepping;
   return scene;
 }
 
@@ -87,9 +87,9 @@ Scene FallingScene(ElementOrder element, LinearSolver solver) {
   body.constraints = {Fix(kX0)};
   Scene scene = StaticScene(std::move(body), element);
   scene.gravity.acceleration = Vec3(0, 0, -9.81);
-  scene.method.linear_solver = solver;
-  scene.method.stepping = Stepping::kBackwardEuler;
-  scene.method.time_step = 0.01;
+  scene.tet.linear_solver = solver;
+  scene.tet.stepping = Stepping::kBackwardEuler;
+  scene.tet.time_step = 0.01;
   return scene;
 }
 
@@ -135,7 +135,7 @@ INSTANTIATE_TEST_SUITE_P(Elements, IterativeTest, ::testing::Values(ElementOrder
 TEST(IterativeGrowthTest, IterationsDoNotGrow) {
   const auto iterations = [](int n) {
     Scene scene = StaticScene(ReferenceMuscle(n, Ramp(0.3)), ElementOrder::kQuadratic);
-    scene.method.linear_solver = LinearSolver::kIterative;
+    scene.tet.linear_solver = LinearSolver::kIterative;
     SteppedRun run(scene);
     const StepReport report = run.solver.Advance(run.state, 1);
     EXPECT_EQ(report.problem, StepProblem::kNone);

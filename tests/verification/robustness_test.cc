@@ -49,7 +49,7 @@ TEST_P(RobustnessTest, Twist) {
   turn.motion.rotation = Rotation{Vec3::Zero(), Vec3::UnitZ(), Ramp(std::numbers::pi / 2)};
   body.constraints = {Fix(kZ0), turn};
   Scene scene = SceneOf(body);
-  scene.method.time_step = 0.1;  // 9 degrees
+  scene.tet.time_step = 0.1;  // 9 degrees
   SteppedRun run(scene);
   Finish(run, "twist by 90 degrees");
   EXPECT_EQ(run.state.step, 10);

@@ -75,7 +75,7 @@ TEST(WeightTest, ReactionBalancesIt) {
     body.damping = {.mass_proportional = 60, .viscosity = 2};
     Scene scene = OneBody(body);
     scene.gravity = {Vec3(0, 0, -9.81), Curve{{0, 0.05}, {0, 1}, Curve::Interpolation::kSmooth}};
-    scene.method.stepping = stepping;
+    scene.tet.stepping = stepping;
     scene.output.settle_speed = 1e-9;
     scene.output.frame_interval = 0.02;
     scene.duration = 2;

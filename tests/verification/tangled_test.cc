@@ -20,8 +20,8 @@ Scene TangledBlock(unsigned seed, ElementOrder element) {
   const NodalVector moved = Shaken(body.mesh.nodes, 0.8 * kSize / kDivisions, seed);
   for (std::size_t n = 0; n < moved.size(); ++n) body.initial_displacement.push_back(moved[n] - body.mesh.nodes[n]);
   Scene scene = OneBody(std::move(body));
-  scene.method.stepping = Stepping::kQuasiStatic;
-  scene.method.element = element;
+  scene.tet.stepping = Stepping::kQuasiStatic;
+  scene.tet.element = element;
   scene.output.frame_interval = scene.duration;
   return scene;
 }

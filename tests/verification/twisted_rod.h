@@ -45,7 +45,7 @@ inline RodForces TwistRod(Body body, double activation, const RodForces& exact) 
   body.constraints = {Fix(kZ0), turn};
   body.activation = Ramp(activation);
   Scene scene = StaticScene(std::move(body), ElementOrder::kQuadratic);
-  scene.method.time_step = 0.25;
+  scene.tet.time_step = 0.25;
   SteppedRun run(scene);
   EXPECT_TRUE(run.To(1));
   NodalVector force;

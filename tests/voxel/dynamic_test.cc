@@ -25,7 +25,7 @@ bool HaveSameBits(const VoxelField<double>& a, const VoxelField<double>& b) {
 
 // A cantilever, clamped at its left end.
 struct Cantilever {
-  explicit Cantilever(const GridIndex& size, Rotation rotation = Rotation::kSmall,
+  explicit Cantilever(const GridIndex& size, VoxelRotation rotation = VoxelRotation::kSmall,
                       const VoxelMaterial& material = kMuscle)
       : grid(BoxGrid(size, Vec3::Constant(2e-3))),
         model(grid, {material}, Dilatation::kFull, rotation),
@@ -39,7 +39,7 @@ struct Cantilever {
 
 // The lowest frequency is that of the beam [Timoshenko, Young & Weaver 1974]: 1.8751^2/(2 pi L^2) sqrt(E I/(rho A)).
 TEST(LowestMode, IsThatOfABeam) {
-  const Cantilever body({40, 4, 6}, Rotation::kSmall, {3e4, 0});
+  const Cantilever body({40, 4, 6}, VoxelRotation::kSmall, {3e4, 0});
   ThreadTeam team(1);
   const VoxelMode mode = LowestMode(body.model, body.supports, kDensity, team);
   ASSERT_TRUE(mode.converged);
@@ -188,7 +188,7 @@ void SwingFor(int steps, const Cantilever& body, VoxelDynamicSolver& solver, Vox
 }
 
 TEST(Dynamic, ASavedStateGoesOnWithTheSameBits) {
-  for (const Rotation rotation : {Rotation::kSmall, Rotation::kLarge}) {
+  for (const VoxelRotation rotation : {VoxelRotation::kSmall, VoxelRotation::kLarge}) {
     const Cantilever body({12, 4, 4}, rotation);
     ThreadTeam team(1);
     const DynamicSettings settings = {.density = kDensity, .time_step = 5e-3};
@@ -215,7 +215,7 @@ TEST(Dynamic, ASavedStateGoesOnWithTheSameBits) {
 }
 
 TEST(Dynamic, HasTheSameBitsForAnyThreads) {
-  for (const Rotation rotation : {Rotation::kSmall, Rotation::kLarge}) {
+  for (const VoxelRotation rotation : {VoxelRotation::kSmall, VoxelRotation::kLarge}) {
     const Cantilever body({40, 40, 42}, rotation);
     ASSERT_GT(body.model.mesh().slabs().size(), 2u);
     std::vector<VoxelState> states;

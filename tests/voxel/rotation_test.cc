@@ -1,4 +1,4 @@
-// Bricks that turn: VoxelModel with Rotation::kLarge.
+// Bricks that turn: VoxelModel with VoxelRotation::kLarge.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ const Mat3 kQuarterAndMore = Eigen::AngleAxisd(2.3, Vec3(1, 2, -0.5).normalized(
 struct Sponge {
   explicit Sponge(Dilatation dilatation, const GridIndex& size = {9, 6, 7})
       : grid(SpongeGrid(size, {0.9e-3, 1.1e-3, 1.6e-3})),
-        model(grid, {kMuscle, {1e6, 0.3}}, dilatation, Rotation::kLarge),
+        model(grid, {kMuscle, {1e6, 0.3}}, dilatation, VoxelRotation::kLarge),
         bricks(model.K()),
         R(model.mesh().voxels()),
         f(model.mesh().nodes()) {}
@@ -219,7 +219,7 @@ TEST(LargeRotation, CantileverBendsAsTheElastica) {
   std::vector<double> errors;
   for (const std::int32_t n : {2, 4}) {
     const VoxelGrid grid = BoxGrid({20 * n, n, n}, Vec3::Constant(1.0 / n));
-    const VoxelModel model(grid, {{1e3, 0}}, Dilatation::kFull, Rotation::kLarge);
+    const VoxelModel model(grid, {{1e3, 0}}, Dilatation::kFull, VoxelRotation::kLarge);
     VoxelStaticSolver solver(model, {{NodesInBox(model.mesh(), {0, 0, 0}, {0, n, n})}}, team);
     VoxelLoads loads;
     loads.tractions = {{OuterFaces(grid, 1, {0, 0, 0}, {20 * n, n, n}), Vec3(0, 0, kLoad * 1e3 / 12 / 400)}};
@@ -239,7 +239,7 @@ TEST(LargeRotation, CantileverBendsAsTheElastica) {
 // The clamp turns by 120 degrees, step by step: the body goes along, without stress.
 TEST(LargeRotation, ATurnedClampTakesTheBodyAlong) {
   const VoxelGrid grid = BoxGrid({12, 4, 3}, {1e-3, 1.5e-3, 1e-3});
-  const VoxelModel model(grid, {kMuscle}, Dilatation::kMean, Rotation::kLarge);
+  const VoxelModel model(grid, {kMuscle}, Dilatation::kMean, VoxelRotation::kLarge);
   ThreadTeam team(1);
   VoxelStaticSolver solver(model, {{NodesInBox(model.mesh(), {0, 0, 0}, {0, 4, 3})}}, team);
   VoxelField<double> none(model.mesh().nodes()), u = none;
@@ -261,7 +261,7 @@ TEST(LargeRotation, ATurnedClampTakesTheBodyAlong) {
 TEST(LargeRotation, HasTheSameBitsForAnyThreads) {
   VoxelGrid grid = SpongeGrid({40, 36, 44}, Vec3::Constant(1e-3));
   KeepLargestIsland(grid);
-  const VoxelModel model(grid, {{3e4, 0.4}, {1e6, 0.3}}, Dilatation::kMean, Rotation::kLarge);
+  const VoxelModel model(grid, {{3e4, 0.4}, {1e6, 0.3}}, Dilatation::kMean, VoxelRotation::kLarge);
   ASSERT_GT(model.mesh().slabs().size(), 2u);
   const std::vector<VoxelSupport> supports = {{NodesInBox(model.mesh(), {0, 0, 0}, {40, 36, 3})}};
   VoxelLoads loads;

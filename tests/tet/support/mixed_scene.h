@@ -34,8 +34,8 @@ inline Scene MixedScene(const Material& law, ElementOrder element, VolumeForm vo
     body.damping.stiffness_proportional = b == 0 ? 1e-3 : 0;
     scene.bodies.push_back(std::move(body));
   }
-  scene.method.element = element;
-  scene.method.volume = volume;
+  scene.tet.element = element;
+  scene.tet.volume = volume;
   scene.duration = 1;
   return scene;
 }

@@ -50,8 +50,8 @@ inline Curve Ramp(double value) { return {{0, 1}, {0, value}, Curve::Interpolati
 inline Scene StaticScene(Body body, ElementOrder element) {
   Scene scene = OneBody(std::move(body));
   scene.output.frame_interval = 1;
-  scene.method.stepping = Stepping::kQuasiStatic;
-  scene.method.element = element;
+  scene.tet.stepping = Stepping::kQuasiStatic;
+  scene.tet.element = element;
   return scene;
 }
 

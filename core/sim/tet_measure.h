@@ -1,5 +1,5 @@
-#ifndef FASCICLE_CORE_SIM_MEASURE_H_
-#define FASCICLE_CORE_SIM_MEASURE_H_
+#ifndef FASCICLE_CORE_SIM_TET_MEASURE_H_
+#define FASCICLE_CORE_SIM_TET_MEASURE_H_
 
 #include <vector>
 
@@ -9,7 +9,7 @@
 // Turns a state into what a frame carries.
 namespace fascicle {
 
-// The series of a scene, in the order in which MeasureSeries gives their values.
+// The series of a scene of the tet method, in the order in which MeasureSeries gives their values.
 std::vector<SeriesInfo> SeriesOf(const TetModel& model);
 
 // `iterations_before`: of the linear solves up to the frame before.
@@ -21,4 +21,4 @@ std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& stat
 
 }  // namespace fascicle
 
-#endif  // FASCICLE_CORE_SIM_MEASURE_H_
+#endif  // FASCICLE_CORE_SIM_TET_MEASURE_H_

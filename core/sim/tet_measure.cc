@@ -1,7 +1,7 @@
-#include "core/sim/measure.h"
+#include "core/sim/tet_measure.h"
 
-#include <map>
-
+#include "core/sim/field_info.h"
+#include "core/sim/series.h"
 #include "core/tet/diagnostics.h"
 #include "core/tet/fields.h"
 #include "core/tet/floor_contact.h"
@@ -11,53 +11,8 @@ namespace {
 
 constexpr const char* kAxes[] = {"x", "y", "z"};
 
-// Several constraints may act on one region (different axes): their reactions are one series. In order of first use.
-struct RegionReaction {
-  std::size_t body;
-  std::int32_t region;
-  std::vector<std::size_t> supports;
-};
-
-std::vector<RegionReaction> RegionReactions(const TetModel& model) {
-  std::vector<RegionReaction> reactions;
-  std::map<std::pair<std::size_t, std::int32_t>, std::size_t> places;
-  for (std::size_t s = 0; s < model.supports().size(); ++s) {
-    const Support& support = model.supports()[s];
-    const std::pair key{static_cast<std::size_t>(support.body), support.source->region};
-    const auto [place, is_new] = places.try_emplace(key, reactions.size());
-    if (is_new) reactions.push_back({key.first, key.second, {}});
-    reactions[place->second].supports.push_back(s);
-  }
-  return reactions;
-}
-
 std::size_t NodeOf(const TetModel& model, const Probe& probe) {
   return model.bodies()[probe.body].node_begin + static_cast<std::size_t>(probe.node);
-}
-
-struct FieldInfo {
-  const char* name;
-  const char* unit;
-};
-
-FieldInfo InfoOf(OutputField field) {
-  switch (field) {
-    case OutputField::kVelocity:
-      return {"velocity", "m/s"};
-    case OutputField::kCauchyStress:
-      return {"cauchy_stress", "Pa"};
-    case OutputField::kVonMisesStress:
-      return {"von_mises_stress", "Pa"};
-    case OutputField::kPressure:
-      return {"pressure", "Pa"};
-    case OutputField::kVolumeRatio:
-      return {"volume_ratio", "1"};
-    case OutputField::kFibreStretch:
-      return {"fibre_stretch", "1"};
-    case OutputField::kFibreDirection:
-      return {"fibre_direction", "1"};
-  }
-  return {"", ""};
 }
 
 }  // namespace
@@ -80,26 +35,14 @@ std::vector<SeriesInfo> SeriesOf(const TetModel& model) {
           {"floor/" + floor.name + "/" + axis, "N", "force of the floor on all bodies along " + std::string(axis)});
     }
   }
-  const std::vector<RegionReaction> reactions = RegionReactions(model);
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const Body& body = *model.bodies()[b].source;
     series.push_back({body.name + "/volume_ratio", "1", "present volume over rest volume"});
     series.push_back({body.name + "/min_volume_ratio", "1", "smallest volume ratio J of an element"});
     series.push_back({body.name + "/activation", "1", "activation"});
-    for (const RegionReaction& reaction : reactions) {
-      if (reaction.body != b) continue;
-      const std::string& region = body.regions[reaction.region].name;
-      for (const char* axis : kAxes) {
-        series.push_back({body.name + "/reaction/" + region + "/" + axis, "N",
-                          "force of the support of `" + region + "` on the body along " + axis});
-      }
-    }
+    AddBodySeries(body, series);
   }
-  for (const Probe& probe : model.scene().output.probes) {
-    for (const char* axis : kAxes) {
-      series.push_back({"probe/" + probe.name + "/" + axis, "m", std::string("displacement along ") + axis});
-    }
-  }
+  AddProbeSeries(model.scene(), series);
   return series;
 }
 
@@ -121,17 +64,15 @@ std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, 
   for (const Vec3& force : FloorForces(model, state.positions)) {
     values.insert(values.end(), force.begin(), force.end());
   }
-  const std::vector<RegionReaction> reactions = RegionReactions(model);
+  // One for each constraint, body by body.
   const std::vector<Vec3> forces = Reactions(model, state, team);
+  auto of_body = forces.begin();
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const VolumeRatios ratios = VolumeRatiosOf(model, b, state.positions);
     values.insert(values.end(), {ratios.total, ratios.smallest, controls.activation[model.bodies()[b].activation]});
-    for (const RegionReaction& reaction : reactions) {
-      if (reaction.body != b) continue;
-      Vec3 sum = Vec3::Zero();
-      for (const std::size_t s : reaction.supports) sum += forces[s];
-      values.insert(values.end(), sum.begin(), sum.end());
-    }
+    const std::size_t count = model.bodies()[b].source->constraints.size();
+    AddBodyValues(*model.bodies()[b].source, state.time, {of_body, count}, values);
+    of_body += static_cast<std::ptrdiff_t>(count);
   }
   for (const Probe& probe : model.scene().output.probes) {
     const std::size_t n = NodeOf(model, probe);
@@ -150,11 +91,8 @@ std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& stat
     frames[b].positions.assign(state.positions.begin() + static_cast<std::ptrdiff_t>(body.node_begin),
                                state.positions.begin() + static_cast<std::ptrdiff_t>(body.mesh_node_end));
     for (const OutputField field : model.scene().output.fields) {
-      const FieldInfo info = InfoOf(field);
-      const FieldLocation location =
-          field == OutputField::kVelocity ? FieldLocation::kNode : FieldLocation::kTetrahedron;
-      frames[b].fields.push_back({info.name, location, ComponentsOf(field), info.unit,
-                                  FieldValuesOf(model, b, field, FibreDrive{controls.activation}, state, team)});
+      frames[b].fields.push_back(FieldOf(field, FieldLocation::kTetrahedron,
+                                         FieldValuesOf(model, b, field, FibreDrive{controls.activation}, state, team)));
     }
   }
   return frames;

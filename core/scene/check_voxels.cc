@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/scene/checks.h"
+
+namespace fascicle::scene_checks {
+namespace {
+
+bool IsLinear(const Material& material) { return std::holds_alternative<LinearElastic>(material); }
+bool IsCorotated(const Material& material) { return std::holds_alternative<CorotatedLinear>(material); }
+
+void CheckLaws(const Body& body, const std::string& path, Problems& problems) {
+  std::vector<Material> laws = body.more_materials;
+  laws.push_back(body.material);
+  if (!std::all_of(laws.begin(), laws.end(), [](const Material& m) { return IsLinear(m) || IsCorotated(m); })) {
+    problems.Add(JoinPath(path, "material"), "voxels are linear elastic, but a material here is not",
+                 "linear_elastic for small deflections, corotated_linear for large rotations; other laws need the tet "
+                 "method");
+  } else if (std::any_of(laws.begin(), laws.end(), IsLinear) && std::any_of(laws.begin(), laws.end(), IsCorotated)) {
+    problems.Add(JoinPath(path, "region_materials"), "mix linear_elastic and corotated_linear",
+                 "take one of them for the whole body");
+  }
+}
+
+void CheckLeftOut(const Body& body, const std::string& path, Problems& problems) {
+  const auto is_zero = [](const Curve& curve) {
+    return std::all_of(curve.values.begin(), curve.values.end(), [](double value) { return value == 0; });
+  };
+  if (!body.fibres.empty()) {
+    problems.Add(JoinPath(path, "fibres"), "voxels have no fibres", "leave them out, or use the tet method");
+  }
+  if (!is_zero(body.activation) || !body.more_activations.empty() || !body.activation_scale.empty()) {
+    problems.Add(JoinPath(path, "activation"), "voxels don't contract",
+                 "put the muscle's force on a region as a load, or use the tet method");
+  }
+  if (!body.initial_displacement.empty()) {
+    problems.Add(JoinPath(path, "initial_displacement"), "voxels start from rest",
+                 "use start_loaded to begin in equilibrium with loads");
+  }
+  if (body.damping.stiffness_proportional != 0 || body.damping.viscosity != 0) {
+    problems.Add(JoinPath(path, "damping"), "the voxel method damps in proportion to mass only",
+                 "give mass_proportional alone");
+  }
+}
+
+// Whether every axis of the image is one of the world's, so that world components are grid components.
+bool IsAlongAxes(const Mat3& direction) { return (direction.cwiseAbs().array() > 1 - 1e-9).count() == 3; }
+
+void CheckAxes(const Body& body, const std::string& path, Problems& problems) {
+  if (IsAlongAxes(body.bricks.grid.direction)) return;
+  for (std::size_t k = 0; k < body.constraints.size(); ++k) {
+    const auto& axes = body.constraints[k].axes;
+    if (axes[0] == axes[1] && axes[1] == axes[2]) continue;
+    problems.Add(JoinPath(path, JoinPath(IndexPath("constraints", k), "axes")),
+                 "single axes can't be held where the image stands askew",
+                 "hold all three, or resample the image along x, y and z");
+  }
+}
+
+}  // namespace
+
+void CheckVoxels(const Scene& scene, Problems& problems) {
+  if (scene.method != Method::kVoxel) return;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const std::string path = IndexPath("bodies", i);
+    CheckLaws(scene.bodies[i], path, problems);
+    CheckLeftOut(scene.bodies[i], path, problems);
+    CheckAxes(scene.bodies[i], path, problems);
+  }
+  if (!scene.floors.empty()) {
+    problems.Add("floors", "voxels don't know floors", "leave them out, or use the tet method");
+  }
+  if (scene.voxel.stepping == VoxelStepping::kDynamic && scene.output.frame_interval > 0) {
+    const double frames = scene.duration / scene.output.frame_interval;
+    if (std::abs(frames - std::round(frames)) > 1e-9 * frames) {
+      problems.Add("duration",
+                   "is no whole number of frame intervals, but the voxel method's steps are all equally long",
+                   "choose the duration as a multiple of output.frame_interval");
+    }
+  }
+  if (scene.voxel.stepping == VoxelStepping::kStatic && scene.output.settle_speed) {
+    problems.Add("output.settle_speed", "static solutions have no speed", "leave it out, or step dynamically");
+  }
+}
+
+}  // namespace fascicle::scene_checks

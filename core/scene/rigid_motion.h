@@ -1,0 +1,27 @@
+#ifndef FASCICLE_CORE_SCENE_RIGID_MOTION_H_
+#define FASCICLE_CORE_SCENE_RIGID_MOTION_H_
+
+#include <Eigen/Geometry>
+
+#include "core/scene/scene.h"
+
+namespace fascicle {
+
+// A rigid motion at one time: x = R (X - point) + point + translation.
+struct RigidMotion {
+  Mat3 rotation = Mat3::Identity();
+  Vec3 angular_velocity = Vec3::Zero();  // [rad/s]
+  Vec3 point = Vec3::Zero();             // [m]
+  Vec3 translation = Vec3::Zero();       // [m]
+  Vec3 velocity = Vec3::Zero();          // of the translation [m/s]
+
+  Vec3 PositionOf(const Vec3& X) const { return rotation * (X - point) + point + translation; }
+  Vec3 VelocityOf(const Vec3& X) const { return angular_velocity.cross(rotation * (X - point)) + velocity; }
+};
+
+// Motion of one constraint at a time.
+RigidMotion MotionAt(const Motion& motion, double time);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_SCENE_RIGID_MOTION_H_

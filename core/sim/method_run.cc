@@ -1,0 +1,17 @@
+#include "core/sim/method_run.h"
+
+#include "core/sim/tet_run.h"
+#include "core/sim/voxel_run.h"
+
+namespace fascicle {
+
+std::unique_ptr<MethodRun> MakeMethodRun(const Scene& scene, ThreadTeam& team, Profile* profile) {
+  switch (scene.method) {
+    case Method::kVoxel:
+      return MakeVoxelRun(scene, team, profile);
+    default:
+      return MakeTetRun(scene, team, profile);
+  }
+}
+
+}  // namespace fascicle

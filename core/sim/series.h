@@ -1,0 +1,24 @@
+#ifndef FASCICLE_CORE_SIM_SERIES_H_
+#define FASCICLE_CORE_SIM_SERIES_H_
+
+#include <span>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "core/sim/frame.h"
+
+// Series that all methods have in common: those of supports, loads and probes.
+namespace fascicle {
+
+// Of a body: the force of the supports of each region, x, y and z, then the loads that are kept.
+void AddBodySeries(const Body& body, std::vector<SeriesInfo>& series);
+// Their values at a time.
+//   forces  of the body's constraints on it, one each, in their order [N]
+void AddBodyValues(const Body& body, double time, std::span<const Vec3> forces, std::vector<double>& values);
+
+// The displacement of each probe, x, y and z.
+void AddProbeSeries(const Scene& scene, std::vector<SeriesInfo>& series);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_SIM_SERIES_H_

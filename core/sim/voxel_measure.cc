@@ -1,0 +1,157 @@
+#include "core/sim/voxel_measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/materials/rotation.h"
+#include "core/sim/field_info.h"
+#include "core/sim/series.h"
+#include "core/voxel/brick.h"
+#include "core/voxel/fields.h"
+
+namespace fascicle {
+namespace {
+
+// Deformation gradient at the centre of every voxel, along the axes of the grid.
+std::vector<Mat3> GradientsAtCentres(const VoxelModel& model, const VoxelField<double>& u) {
+  const auto gradients = BrickGradients(model.mesh().spacing(), Vec3::Zero());
+  std::vector<Mat3> F(static_cast<std::size_t>(model.mesh().voxels()));
+  ForVoxels(model.mesh(), [&](std::int32_t voxel, const GridIndex&, const Brick& nodes) {
+    Mat3 sum = Mat3::Identity();
+    for (int c = 0; c < 8; ++c) sum += u.At(nodes[c]) * gradients.col(c).transpose();
+    F[static_cast<std::size_t>(voxel)] = sum;
+  });
+  return F;
+}
+
+// The tensors of the grid along the axes of the world; with large rotation they turned with their bricks.
+std::vector<Mat3> StressesOf(const VoxelSceneBody& body, const VoxelField<double>& u) {
+  const VoxelModel& model = body.model();
+  const bool turns = model.rotation() == VoxelRotation::kLarge;
+  const std::vector<Mat3> gradients = turns ? GradientsAtCentres(model, u) : std::vector<Mat3>();
+  std::vector<Mat3> stresses;
+  for (const SymmetricTensor& s : StressAtCentres(model, u)) {
+    Mat3 sigma;
+    sigma << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
+    Mat3 turn = body.direction();
+    if (turns) turn *= NearestRotationBySvd(gradients[stresses.size()]);
+    stresses.push_back(turn * sigma * turn.transpose());
+  }
+  return stresses;
+}
+
+double VonMises(const Mat3& s) {
+  const Mat3 deviator = s - s.trace() / 3 * Mat3::Identity();
+  return std::sqrt(1.5) * deviator.norm();
+}
+
+template <class Value>
+std::vector<double> OfStresses(const std::vector<Mat3>& stresses, const Value& value) {
+  std::vector<double> values;
+  for (const Mat3& s : stresses) value(s, values);
+  return values;
+}
+
+std::vector<double> Velocities(const VoxelSceneBody& body, const VoxelState& state, double time_step) {
+  std::vector<double> values;
+  for (std::int32_t n = 0; n < state.displacement.nodes(); ++n) {
+    const Vec3 change = state.displacement.At(n) - state.previous.At(n);
+    const Vec3 v = time_step > 0 ? body.ToWorld(change / time_step) : Vec3(Vec3::Zero());
+    values.insert(values.end(), v.begin(), v.end());
+  }
+  return values;
+}
+
+std::vector<double> FieldValuesOf(const VoxelSceneBody& body, const VoxelState& state, double time_step,
+                                  OutputField field) {
+  const VoxelField<double>& u = state.displacement;
+  switch (field) {
+    case OutputField::kVelocity:
+      return Velocities(body, state, time_step);
+    case OutputField::kCauchyStress:
+      return OfStresses(StressesOf(body, u), [](const Mat3& s, std::vector<double>& values) {
+        values.insert(values.end(), {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)});
+      });
+    case OutputField::kVonMisesStress:
+      return OfStresses(StressesOf(body, u),
+                        [](const Mat3& s, std::vector<double>& values) { values.push_back(VonMises(s)); });
+    case OutputField::kPressure:
+      return OfStresses(StressesOf(body, u),
+                        [](const Mat3& s, std::vector<double>& values) { values.push_back(s.trace() / 3); });
+    case OutputField::kVolumeRatio: {
+      std::vector<double> ratios;
+      for (const Mat3& F : GradientsAtCentres(body.model(), u)) ratios.push_back(F.determinant());
+      return ratios;
+    }
+    default:
+      return {};  // fields of fibres: CheckScene lets none through
+  }
+}
+
+Vec3 PositionOf(const VoxelSceneBody& body, const VoxelField<double>& u, std::size_t node) {
+  return body.source().bricks.nodes[node] + body.ToWorld(u.At(static_cast<std::int32_t>(node)));
+}
+
+}  // namespace
+
+std::vector<SeriesInfo> VoxelSeriesOf(const Scene& scene) {
+  std::vector<SeriesInfo> series = {
+      {"energy/elastic", "J", "elastic energy of all bodies"},
+      {"energy/kinetic", "J", "kinetic energy of all bodies, of the mean velocity of the last step"},
+      {"solver/step", "s", "length of the last time step"},
+      {"solver/iterations", "1", "iterations of conjugate gradients since the frame before"},
+  };
+  for (const Body& body : scene.bodies) {
+    series.push_back({body.name + "/volume_ratio", "1", "mean volume ratio J of the voxels, at their centres"});
+    series.push_back({body.name + "/min_volume_ratio", "1", "smallest volume ratio J of a voxel, at its centre"});
+    AddBodySeries(body, series);
+  }
+  AddProbeSeries(scene, series);
+  return series;
+}
+
+std::vector<double> MeasureVoxelSeries(const Scene& scene, const VoxelSolver& solver, const VoxelSceneState& state,
+                                       std::int64_t iterations_before) {
+  double elastic = 0, kinetic = 0;
+  for (const double energy : state.elastic) elastic += energy;
+  for (const double energy : state.kinetic) kinetic += energy;
+  std::vector<double> values = {elastic, kinetic, state.time_step,
+                                static_cast<double>(state.iterations - iterations_before)};
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    double sum = 0, smallest = INFINITY;
+    const std::vector<Mat3> gradients = GradientsAtCentres(solver.bodies()[b]->model(), state.bodies[b].displacement);
+    for (const Mat3& F : gradients) {
+      const double J = F.determinant();
+      sum += J;
+      smallest = std::min(smallest, J);
+    }
+    values.insert(values.end(), {sum / static_cast<double>(gradients.size()), smallest});
+    AddBodyValues(scene.bodies[b], state.time, state.reactions[b], values);
+  }
+  for (const Probe& probe : scene.output.probes) {
+    const auto b = static_cast<std::size_t>(probe.body);
+    const Vec3 u = solver.bodies()[b]->ToWorld(state.bodies[b].displacement.At(probe.node));
+    values.insert(values.end(), u.begin(), u.end());
+  }
+  return values;
+}
+
+std::vector<BodyFrame> MeasureVoxelBodies(const Scene& scene, const VoxelSolver& solver, const VoxelSceneState& state) {
+  std::vector<BodyFrame> frames(scene.bodies.size());
+  for (std::size_t b = 0; b < frames.size(); ++b) {
+    const VoxelSceneBody& body = *solver.bodies()[b];
+    const std::size_t nodes = scene.bodies[b].bricks.nodes.size();
+    frames[b].positions.reserve(nodes);
+    for (std::size_t n = 0; n < nodes; ++n) {
+      frames[b].positions.push_back(PositionOf(body, state.bodies[b].displacement, n));
+    }
+    for (const OutputField field : scene.output.fields) {
+      frames[b].fields.push_back(
+          FieldOf(field, FieldLocation::kBrick, FieldValuesOf(body, state.bodies[b], state.time_step, field)));
+    }
+  }
+  return frames;
+}
+
+}  // namespace fascicle

@@ -1,0 +1,209 @@
+#include "core/voxel/scene_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <utility>
+
+#include "core/voxel/free_motions.h"
+#include "core/voxel/prescribed.h"
+
+namespace fascicle {
+namespace {
+
+// E and nu of a law's moduli at small strain.
+VoxelMaterial MaterialOf(const Material& material) {
+  const double mu = std::visit([](const auto& law) { return law.ShearModulus(); }, material);
+  const double bulk = std::visit([](const auto& law) { return law.BulkModulus(); }, material);
+  return {9 * bulk * mu / (3 * bulk + mu), (3 * bulk - 2 * mu) / (2 * (3 * bulk + mu))};
+}
+
+constexpr std::size_t kMostMaterials = 254;  // of a grid, where they are bytes
+
+// The body's grid with its materials in place of labels. Where each voxel has parameters of its own, those of one
+// Poisson's ratio are one material, and differ in the grid's stiffness.
+struct GridAndMaterials {
+  VoxelGrid grid;
+  std::vector<VoxelMaterial> materials;
+};
+
+GridAndMaterials GridOf(const Body& body) {
+  GridAndMaterials made = {body.bricks.grid, {MaterialOf(body.material)}};
+  for (const Material& material : body.more_materials) made.materials.push_back(MaterialOf(material));
+  const std::vector<VoxelMaterial> of_parts = made.materials;
+  const bool by_ratio = of_parts.size() > kMostMaterials;
+  std::vector<std::size_t> number(of_parts.size());
+  if (by_ratio) made.materials.clear();
+  for (std::size_t p = 0; p < of_parts.size(); ++p) {
+    number[p] = p;
+    if (!by_ratio) continue;
+    const auto same = std::find_if(made.materials.begin(), made.materials.end(), [&](const VoxelMaterial& m) {
+      return std::abs(m.poisson_ratio - of_parts[p].poisson_ratio) < 1e-9;
+    });
+    number[p] = static_cast<std::size_t>(same - made.materials.begin());
+    if (same == made.materials.end()) made.materials.push_back(of_parts[p]);
+  }
+  if (by_ratio && made.grid.stiffness.empty()) made.grid.stiffness.assign(made.grid.voxels(), 1.0F);
+  std::size_t element = 0;
+  for (std::size_t v = 0; v < made.grid.voxels(); ++v) {
+    if (made.grid.material[v] == 0) continue;
+    const auto part = static_cast<std::size_t>(body.material_of.empty() ? 0 : body.material_of[element]);
+    ++element;
+    made.grid.material[v] = static_cast<std::uint8_t>(1 + number[part]);
+    if (!by_ratio) continue;
+    made.grid.stiffness[v] *=
+        static_cast<float>(of_parts[part].young_modulus / made.materials[number[part]].young_modulus);
+  }
+  return made;
+}
+
+VoxelRotation RotationOf(const Body& body) {
+  return std::holds_alternative<CorotatedLinear>(body.material) ? VoxelRotation::kLarge : VoxelRotation::kSmall;
+}
+
+// Which components along the grid hold those along the world's axes; CheckScene lets single ones through only where the
+// grid's axes are the world's.
+std::array<bool, 3> ComponentsOf(const std::array<bool, 3>& axes, const Mat3& direction) {
+  std::array<bool, 3> components = {};
+  for (int along = 0; along < 3; ++along) {
+    int axis = 0;
+    direction.col(along).cwiseAbs().maxCoeff(&axis);
+    components[static_cast<std::size_t>(along)] = axes[static_cast<std::size_t>(axis)];
+  }
+  return components;
+}
+
+}  // namespace
+
+VoxelSceneBody::VoxelSceneBody(const Scene& scene, const Body& body) : scene_(&scene), source_(&body) {
+  GridAndMaterials made = GridOf(body);
+  grid_ = std::move(made.grid);
+  model_ = std::make_unique<VoxelModel>(grid_, std::move(made.materials),
+                                        scene.voxel.mean_dilatation ? Dilatation::kMean : Dilatation::kFull,
+                                        RotationOf(body));
+  AddSupports(model_->mesh().NodePlaces());
+  AddLoads();
+  if (scene.gravity.acceleration == Vec3::Zero()) return;
+  gravity_share_.assign(body.bricks.nodes.size(), 0.0);
+  const double share = body.density * grid_.spacing.prod() / 8;
+  for (const Brick& brick : body.bricks.bricks) {
+    for (const std::int32_t node : brick) gravity_share_[static_cast<std::size_t>(node)] += share;
+  }
+}
+
+void VoxelSceneBody::AddSupports(const std::vector<GridIndex>& places) {
+  for (const Constraint& constraint : source_->constraints) {
+    VoxelSupport support;
+    for (const std::int32_t node : source_->regions[constraint.region].nodes) {
+      support.nodes.push_back(places[static_cast<std::size_t>(node)]);
+    }
+    support.components = ComponentsOf(constraint.axes, direction());
+    supports_.push_back(std::move(support));
+  }
+}
+
+std::vector<Vec3> VoxelSceneBody::SumOverSupports(const VoxelField<double>& reaction) const {
+  std::vector<std::array<bool, 3>> counted(source_->bricks.nodes.size());
+  std::vector<Vec3> sums;
+  for (std::size_t s = 0; s < supports_.size(); ++s) {
+    Vec3 sum = Vec3::Zero();
+    for (const std::int32_t node : source_->regions[source_->constraints[s].region].nodes) {
+      std::array<bool, 3>& done = counted[static_cast<std::size_t>(node)];
+      for (std::size_t d = 0; d < 3; ++d) {
+        if (!supports_[s].components[d] || done[d]) continue;
+        done[d] = true;
+        sum[static_cast<Eigen::Index>(d)] += reaction(node, static_cast<int>(d));
+      }
+    }
+    sums.push_back(ToWorld(sum));
+  }
+  return sums;
+}
+
+void VoxelSceneBody::AddLoads() {
+  const std::vector<Vec3>& X = source_->bricks.nodes;
+  for (const Load& load : source_->loads) {
+    const Region& region = source_->regions[load.region];
+    std::map<std::int32_t, Vec3> forces;
+    if (const auto* force = std::get_if<NodalForce>(&load.kind)) {
+      for (const std::int32_t node : region.nodes)
+        forces[node] = force->total / static_cast<double>(region.nodes.size());
+    } else {
+      for (const Quad& q : region.quads) {
+        const double area = (X[q[1]] - X[q[0]]).cross(X[q[3]] - X[q[0]]).norm();
+        for (const std::int32_t node : q) {
+          forces.try_emplace(node, Vec3::Zero()).first->second += area / 4 * std::get<Traction>(load.kind).vector;
+        }
+      }
+    }
+    NodalLoad nodal = {&load.scale, {}, {}};
+    for (const auto& [node, force] : forces) {
+      nodal.nodes.push_back(node);
+      nodal.forces.push_back(direction().transpose() * force);
+    }
+    loads_.push_back(std::move(nodal));
+  }
+}
+
+void VoxelSceneBody::ForceAt(double time, VoxelField<double>& force) const {
+  std::fill_n(force.data(), force.size(), 0.0);
+  if (!gravity_share_.empty()) {
+    const Vec3 gravity = scene_->gravity.scale.At(time) * (direction().transpose() * scene_->gravity.acceleration);
+    for (std::int32_t n = 0; n < force.nodes(); ++n)
+      force.Add(n, gravity_share_[static_cast<std::size_t>(n)] * gravity);
+  }
+  for (const NodalLoad& load : loads_) {
+    const double scale = load.scale->At(time);
+    for (std::size_t k = 0; k < load.nodes.size(); ++k) force.Add(load.nodes[k], scale * load.forces[k]);
+  }
+}
+
+void VoxelSceneBody::PrescribeAt(double time, VoxelField<double>& displacement) const {
+  for (std::size_t s = 0; s < supports_.size(); ++s) {
+    const RigidMotion motion = MotionAt(source_->constraints[s].motion, time);
+    for (const std::int32_t node : source_->regions[source_->constraints[s].region].nodes) {
+      const Vec3& X = source_->bricks.nodes[static_cast<std::size_t>(node)];
+      const Vec3 along_grid = direction().transpose() * (motion.PositionOf(X) - X);
+      for (int d = 0; d < 3; ++d) {
+        if (supports_[s].components[static_cast<std::size_t>(d)]) displacement(node, d) = along_grid[d];
+      }
+    }
+  }
+}
+
+double VoxelSceneBody::curves_end() const {
+  double end = 0;
+  const auto take = [&end](const Curve& curve) {
+    if (curve.times.size() > 1) end = std::max(end, curve.end());
+  };
+  take(scene_->gravity.scale);
+  for (const Load& load : source_->loads) take(load.scale);
+  for (const Constraint& constraint : source_->constraints) {
+    for (const auto& translation : constraint.motion.translation) {
+      if (translation) take(*translation);
+    }
+    if (constraint.motion.rotation) take(constraint.motion.rotation->angle);
+  }
+  return end;
+}
+
+void CheckVoxelSupports(const Scene& scene, Problems& problems) {
+  if (scene.method != Method::kVoxel) return;
+  if (scene.voxel.stepping == VoxelStepping::kDynamic && !scene.voxel.start_loaded) return;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const VoxelSceneBody body(scene, scene.bodies[i]);
+    const PrescribedComponents held(body.model().mesh(), body.supports());
+    for (const FreeMotion& motion : FindFreeMotions(body.model().grid(), body.model().mesh(), held.of_nodes())) {
+      const Vec3 place = body.model().grid().CornerAt(motion.first_voxel);
+      char where[96];
+      std::snprintf(where, sizeof where, "[%.4g, %.4g, %.4g] m", place[0], place[1], place[2]);
+      problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
+                   "nothing holds a part of " + std::to_string(motion.voxels) + " voxels near " + where + ": it " +
+                       motion.motions + " of the image",
+                   "hold it, keep only the largest part of the image, or step dynamically");
+    }
+  }
+}
+
+}  // namespace fascicle

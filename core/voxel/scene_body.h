@@ -1,0 +1,68 @@
+#ifndef FASCICLE_CORE_VOXEL_SCENE_BODY_H_
+#define FASCICLE_CORE_VOXEL_SCENE_BODY_H_
+
+#include <memory>
+#include <vector>
+
+#include "core/base/problems.h"
+#include "core/scene/rigid_motion.h"
+#include "core/scene/scene.h"
+#include "core/voxel/model.h"
+
+namespace fascicle {
+
+// A body of a scene made ready for the solvers of voxels: places and directions of the world become those of the grid,
+// constraints become supports, loads forces on nodes. Immutable; may be shared between threads.
+class VoxelSceneBody {
+ public:
+  // The scene must have passed CheckScene; it must outlive this.
+  VoxelSceneBody(const Scene& scene, const Body& body);
+
+  const Body& source() const { return *source_; }
+  const VoxelModel& model() const { return *model_; }
+  // One for each constraint.
+  const std::vector<VoxelSupport>& supports() const { return supports_; }
+
+  // Loads and gravity at a time [N].
+  void ForceAt(double time, VoxelField<double>& force) const;
+  // What supports prescribe at a time [m]; other components are left alone.
+  void PrescribeAt(double time, VoxelField<double>& displacement) const;
+
+  // The force of each support on the body [N], along the axes of the world: of components that two share it counts for
+  // the first. `reaction` is the force on every node [N].
+  std::vector<Vec3> SumOverSupports(const VoxelField<double>& reaction) const;
+
+  // The time after which no curve of the body changes any more [s].
+  double curves_end() const;
+
+  // From the axes of the grid to those of the world.
+  const Mat3& direction() const { return grid_.direction; }
+  Vec3 ToWorld(const Vec3& along_grid) const { return direction() * along_grid; }
+  double volume() const { return static_cast<double>(model_->mesh().voxels()) * grid_.spacing.prod(); }  // [m^3]
+
+ private:
+  // A load as forces on nodes at scale 1, along the axes of the grid.
+  struct NodalLoad {
+    const Curve* scale;
+    std::vector<std::int32_t> nodes;
+    std::vector<Vec3> forces;  // [N]
+  };
+  void AddSupports(const std::vector<GridIndex>& places);
+  void AddLoads();
+
+  const Scene* scene_;
+  const Body* source_;
+  VoxelGrid grid_;
+  std::unique_ptr<VoxelModel> model_;
+  std::vector<VoxelSupport> supports_;
+  std::vector<NodalLoad> loads_;
+  std::vector<double> gravity_share_;  // of each node: its mass where gravity acts, else empty [kg]
+};
+
+// Parts of bodies that nothing holds, with their rigid motions named: where the scene asks for equilibrium, they have
+// none. The scene must have passed CheckScene. Paths are `bodies[i].constraints`.
+void CheckVoxelSupports(const Scene& scene, Problems& problems);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_VOXEL_SCENE_BODY_H_

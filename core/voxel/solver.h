@@ -1,0 +1,73 @@
+#ifndef FASCICLE_CORE_VOXEL_SOLVER_H_
+#define FASCICLE_CORE_VOXEL_SOLVER_H_
+
+#include <cstdint>
+#include <memory>
+#include <stop_token>
+#include <vector>
+
+#include "core/base/archive.h"
+#include "core/base/profile.h"
+#include "core/base/step_problem.h"
+#include "core/voxel/dynamic_solver.h"
+#include "core/voxel/scene_body.h"
+#include "core/voxel/static_solver.h"
+
+namespace fascicle {
+
+// What changes from step to step, and all that a checkpoint saves.
+struct VoxelSceneState {
+  double time = 0;  // [s]
+  std::int64_t step = 0;
+  double time_step = 0;         // of the last step [s]
+  std::int64_t iterations = 0;  // of conjugate gradients so far
+  std::vector<VoxelState> bodies;
+  // Of each body at `time`: elastic and kinetic energy [J], and the force of each support on it, along the axes of the
+  // world [N].
+  std::vector<double> elastic, kinetic;
+  std::vector<std::vector<Vec3>> reactions;
+
+  void Save(ArchiveWriter& archive) const;
+  void Load(ArchiveReader& archive);
+};
+
+struct VoxelSolveReport {
+  StepProblem problem = StepProblem::kNone;
+  std::size_t body = 0;  // that has it
+};
+
+// Steps the bodies of a scene by the voxel method [Zhu, Chen & Kaufman 1998]. One thread at a time.
+class VoxelSolver {
+ public:
+  // The scene must have passed CheckScene and CheckVoxelSupports. Scene, team and profile must outlive the solver.
+  VoxelSolver(const Scene& scene, ThreadTeam& team, Profile* profile = nullptr);
+
+  const std::vector<std::unique_ptr<VoxelSceneBody>>& bodies() const { return bodies_; }
+
+  // At time 0 and at rest; SolveStart must follow.
+  VoxelSceneState InitialState() const;
+
+  // Finds the equilibrium of time 0 where the scene asks for it (statics, `start_loaded`).
+  VoxelSolveReport SolveStart(VoxelSceneState& state, std::stop_token stop = {});
+
+  // Makes one step towards `end` [s], the time of the next frame. Static: straight to it. Dynamic: of the whole part of
+  // the frame interval that is no longer than the scene's time step. On a problem the state stays as it was.
+  VoxelSolveReport Advance(VoxelSceneState& state, double end, std::stop_token stop = {});
+
+ private:
+  VoxelSolveReport SolveStatic(VoxelSceneState& state, double time, const std::stop_token& stop);
+  VoxelSolveReport StepDynamic(VoxelSceneState& state, double time, const std::stop_token& stop);
+  VoxelStaticSolver& StaticSolverOf(std::size_t body);
+
+  const Scene& scene_;
+  ThreadTeam& team_;
+  Profile* const profile_;
+  std::int64_t steps_per_frame_ = 1;
+  std::vector<std::unique_ptr<VoxelSceneBody>> bodies_;
+  std::vector<std::unique_ptr<VoxelStaticSolver>> static_solvers_;
+  std::vector<std::unique_ptr<VoxelDynamicSolver>> dynamic_solvers_;
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_VOXEL_SOLVER_H_
