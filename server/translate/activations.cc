@@ -32,11 +32,11 @@ Curve TranslateExcitation(const v1::Excitation& excitation, double duration, con
   return activation;
 }
 
-void TranslateRegionActivations(const v1::Body& body, const std::string& body_path, const TetMesh* mesh,
+void TranslateRegionActivations(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
                                 const TranslatedRegions& regions, Body& result, Problems& problems) {
   Problems own;
   std::vector<Curve> curves;
-  std::vector<std::int32_t> parts(mesh != nullptr ? mesh->tetrahedra.size() : 0);
+  std::vector<std::int32_t> parts(mesh != nullptr ? mesh->elements() : 0);
   for (int i = 0; i < body.region_activations_size(); ++i) {
     const v1::RegionActivation& part = body.region_activations(i);
     const std::string path = JoinPath(body_path, IndexPath("region_activations", static_cast<std::size_t>(i)));
@@ -55,9 +55,9 @@ void TranslateRegionActivations(const v1::Body& body, const std::string& body_pa
 
 }  // namespace
 
-void TranslateActivations(const v1::Body& body, const std::string& body_path, double duration, const TetMesh* mesh,
-                          const TranslatedRegions& regions, const AssetReader& assets, Body& result,
-                          Problems& problems) {
+void TranslateActivations(const v1::Body& body, const std::string& body_path, double duration,
+                          const TranslatedMesh* mesh, const TranslatedRegions& regions, const AssetReader& assets,
+                          Body& result, Problems& problems) {
   if (body.has_activation()) {
     result.activation =
         TranslateCurve(body.activation(), kActivationCurve, JoinPath(body_path, "activation"), problems);
@@ -72,8 +72,8 @@ void TranslateActivations(const v1::Body& body, const std::string& body_path, do
   }
   TranslateRegionActivations(body, body_path, mesh, regions, result, problems);
   if (body.has_activation_scale()) {
-    NumberFile scale = {"tetrahedra", std::nullopt, 1, 0, 1};
-    if (mesh != nullptr) scale.lines = mesh->tetrahedra.size();
+    NumberFile scale = {"elements", std::nullopt, 1, 0, 1};
+    if (mesh != nullptr) scale.lines = mesh->elements();
     result.activation_scale =
         ReadNumberFile(body.activation_scale(), scale, JoinPath(body_path, "activation_scale"), assets, problems);
   }

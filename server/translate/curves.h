@@ -18,6 +18,7 @@ struct CurveUse {
 inline constexpr CurveUse kActivationCurve = {"1", 0, 1, 0};
 inline constexpr CurveUse kFactorCurve = {"1", -1000, 1000, 1};
 inline constexpr CurveUse kTranslationCurve = {"m", -10, 10, 0};
+inline constexpr CurveUse kJointAngleCurve = {"rad", 0, 3.14159, 0};
 inline constexpr CurveUse kAngleCurve = {"rad", -1000, 1000, 0};
 
 // Problems: more than 10,000 points, as many values as times, times that don't increase, values out of range.

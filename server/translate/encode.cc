@@ -10,13 +10,25 @@ namespace {
 
 // The wire is little-endian and packed; so is memory, and encoding is copying.
 static_assert(std::endian::native == std::endian::little);
-static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Tetrahedron) == 4 * sizeof(std::uint32_t));
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Tetrahedron) == 4 * sizeof(std::uint32_t) &&
+              sizeof(Brick) == 8 * sizeof(std::uint32_t));
 
 template <class T>
 std::string Bytes(const std::vector<T>& values) {
   std::string bytes(values.size() * sizeof(T), '\0');
   if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
   return bytes;
+}
+
+v1::FieldValues::Location LocationOf(FieldLocation location) {
+  switch (location) {
+    case FieldLocation::kTetrahedron:
+      return v1::FieldValues::LOCATION_TETRAHEDRON;
+    case FieldLocation::kBrick:
+      return v1::FieldValues::LOCATION_BRICK;
+    default:
+      return v1::FieldValues::LOCATION_NODE;
+  }
 }
 
 }  // namespace
@@ -26,8 +38,9 @@ v1::Geometry EncodeGeometry(const Scene& scene, const std::vector<SeriesInfo>& s
   for (const Body& body : scene.bodies) {
     v1::BodyGeometry& encoded = *geometry.add_bodies();
     encoded.set_name(body.name);
-    encoded.set_positions(Bytes(body.mesh.nodes));
+    encoded.set_positions(Bytes(body.nodes()));
     encoded.set_tetrahedra(Bytes(body.mesh.tetrahedra));
+    encoded.set_bricks(Bytes(body.bricks.bricks));
     encoded.set_fibres(Bytes(body.fibres));
     for (const std::string& note : body.notes) encoded.add_notes(note);
     for (const Region& region : body.regions) {
@@ -56,8 +69,7 @@ v1::Frame EncodeFrame(const Frame& frame) {
     for (const FieldValues& field : body.fields) {
       v1::FieldValues& values = *target.add_fields();
       values.set_name(field.name);
-      values.set_location(field.location == FieldLocation::kNode ? v1::FieldValues::LOCATION_NODE
-                                                                 : v1::FieldValues::LOCATION_TETRAHEDRON);
+      values.set_location(LocationOf(field.location));
       values.set_components(field.components);
       values.set_unit(field.unit);
       values.set_values(Bytes(field.values));

@@ -4,11 +4,11 @@
 
 namespace fascicle::server {
 
-void TranslateInitialDisplacement(const v1::Body& body, const std::string& body_path, const TetMesh* mesh,
+void TranslateInitialDisplacement(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
                                   const AssetReader& assets, Body& result, Problems& problems) {
   if (!body.has_initial_displacement()) return;
   NumberFile file = {"nodes", std::nullopt, 3};
-  if (mesh != nullptr) file.lines = mesh->nodes.size();
+  if (mesh != nullptr) file.lines = mesh->nodes().size();
   const std::vector<double> values =
       ReadNumberFile(body.initial_displacement(), file, JoinPath(body_path, "initial_displacement"), assets, problems);
   const double metres = MetresIn(body.unit());

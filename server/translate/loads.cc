@@ -1,23 +1,61 @@
+#include "core/muscle/stern_muscle.h"
 #include "server/translate/curves.h"
 #include "server/translate/supports_and_loads.h"
 #include "server/translate/values.h"
 
 namespace fascicle::server {
 
-std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_path, const Names& regions,
-                                 Problems& problems) {
+namespace {
+
+// A unit force, whose scale is the muscle's pull [N].
+void TranslateStern(const v1::SternForce& wire, double duration, const std::string& path, Load& load,
+                    Problems& problems) {
+  Problems own;
+  const Vec3 direction = ToDirection(wire.direction(), JoinPath(path, "direction"), own);
+  Curve angle = Curve::Constant(0), activation = Curve::Constant(1);
+  if (wire.has_angle()) {
+    angle = TranslateCurve(wire.angle(), kJointAngleCurve, JoinPath(path, "angle"), own);
+  } else {
+    own.Add(JoinPath(path, "angle"), "is missing", "give times [s] and values [rad]");
+  }
+  if (wire.has_activation()) {
+    activation = TranslateCurve(wire.activation(), kActivationCurve, JoinPath(path, "activation"), own);
+  }
+  problems.Append("", own);
+  load.kind = NodalForce{direction};
+  load.kept = true;
+  // Durations out of range are reported with the rules.
+  if (!own.empty() || !ObeysRules(wire) || !(duration > 0 && duration <= 1000)) return;
+  const SternMuscle muscle = {wire.origin_distance(), wire.insertion_distance(),   wire.peak_force(),
+                              wire.optimal_angle(),   wire.contractile_fraction(), wire.hill_curvature(),
+                              wire.hill_rate(),       wire.eccentric_force()};
+  Problems of_force;
+  load.scale = ForceOverTime(muscle, angle, activation, duration, of_force);
+  problems.Append(path, of_force);
+}
+
+}  // namespace
+
+std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_path, double duration,
+                                 const Names& regions, Problems& problems) {
   std::vector<Load> result;
   for (int i = 0; i < body.loads_size(); ++i) {
     const v1::Load& load = body.loads(i);
     const std::string path = JoinPath(body_path, IndexPath("loads", static_cast<std::size_t>(i)));
     Load translated;
     const auto region = regions.Find(load.region(), JoinPath(path, "region"), problems);
-    if (load.has_traction()) {
+    if (load.has_stern()) {
+      const std::string stern = JoinPath(path, "stern");
+      TranslateStern(load.stern(), duration, stern, translated, problems);
+      if (load.has_scale()) {
+        problems.Add(JoinPath(path, "scale"), "is given beside a muscle's force", "its activation is what changes it");
+      }
+    } else if (load.has_traction()) {
       translated.kind = Traction{ToVec3(load.traction().vector())};
     } else {
       translated.kind = NodalForce{ToVec3(load.nodal_force().total())};
     }
-    if (load.has_scale())
+    if (load.has_scale() && !load.has_stern())
       translated.scale = TranslateCurve(load.scale(), kFactorCurve, JoinPath(path, "scale"), problems);
     if (!region) continue;
     translated.region = static_cast<std::int32_t>(*region);

@@ -36,9 +36,9 @@ std::optional<std::vector<std::size_t>> ReadColumns(std::string_view line, const
   return columns;
 }
 
-// A material for each tetrahedron, from a file whose first line names the parameters that the others give.
+// A material for each element, from a file whose first line names the parameters that the others give.
 std::vector<Material> ReadMaterials(std::string_view text, const LawInfo& law, std::vector<double> values,
-                                    std::size_t tetrahedra, Problems& problems) {
+                                    std::size_t elements, Problems& problems) {
   TextLines lines(text);
   if (!lines.Next()) {
     problems.Add({}, "is empty", "its first line names parameters of " + std::string(law.name));
@@ -62,20 +62,20 @@ std::vector<Material> ReadMaterials(std::string_view text, const LawInfo& law, s
       problems.Add({}, where + parameter.name + " is " + Text(line[k]) + ", outside the range " + RangeText(parameter),
                    std::string("unit ") + parameter.unit);
     }
-    if (problems.empty() && count < tetrahedra) materials.push_back(law.make(values));
+    if (problems.empty() && count < elements) materials.push_back(law.make(values));
   }
-  CheckLineCount(count, tetrahedra, "tetrahedra", problems);
+  CheckLineCount(count, elements, "elements", problems);
   return materials;
 }
 
-std::vector<Material> TranslateElementParameters(const v1::Body& body, const std::string& path, const TetMesh* mesh,
-                                                 const AssetReader& assets, Problems& problems) {
+std::vector<Material> TranslateElementParameters(const v1::Body& body, const std::string& path,
+                                                 const TranslatedMesh* mesh, const AssetReader& assets,
+                                                 Problems& problems) {
   const auto bytes = ReadFile(body.element_parameters(), path, assets, problems);
   const LawInfo* law = LawOf(body.material());
   if (!bytes || mesh == nullptr || law == nullptr || !ObeysRules(body.material())) return {};
   Problems own;
-  std::vector<Material> materials =
-      ReadMaterials(*bytes, *law, ParametersOf(body.material()), mesh->tetrahedra.size(), own);
+  std::vector<Material> materials = ReadMaterials(*bytes, *law, ParametersOf(body.material()), mesh->elements(), own);
   problems.Append(path, own);
   return own.empty() ? materials : std::vector<Material>();
 }
@@ -87,21 +87,21 @@ void MarkRegion(const std::string& name, const std::string& path, const Translat
   const auto index = regions.names.Find(name, path, problems);
   if (!index) return;
   const Region& region = regions.regions[*index];
-  if (region.tetrahedra.empty() && !region.nodes.empty()) {
-    problems.Add(path, "region `" + name + "` holds no tetrahedron",
+  if (region.elements.empty() && !region.nodes.empty()) {
+    problems.Add(path, "region `" + name + "` holds no element",
                  "select by plane, box or sphere, which take those with their centroid inside, by side with a depth, "
-                 "or by a tag of tetrahedra");
+                 "or by a tag of tetrahedra or voxels");
   }
-  for (const std::int32_t t : region.tetrahedra) parts[static_cast<std::size_t>(t)] = value;
+  for (const std::int32_t t : region.elements) parts[static_cast<std::size_t>(t)] = value;
 }
 
-void TranslateMaterialParts(const v1::Body& body, const std::string& body_path, const TetMesh* mesh,
+void TranslateMaterialParts(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
                             const TranslatedRegions& regions, const AssetReader& assets, Body& result,
                             Problems& problems) {
   if (body.region_materials().empty() && !body.has_element_parameters()) return;
   Problems own;
   std::vector<Material> materials;
-  std::vector<std::int32_t> parts(mesh != nullptr ? mesh->tetrahedra.size() : 0);
+  std::vector<std::int32_t> parts(mesh != nullptr ? mesh->elements() : 0);
   for (int i = 0; i < body.region_materials_size(); ++i) {
     const v1::RegionMaterial& part = body.region_materials(i);
     const std::string path = JoinPath(body_path, IndexPath("region_materials", static_cast<std::size_t>(i)));

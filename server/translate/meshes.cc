@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/geometry/mesh_checks.h"
 #include "core/geometry/mesh_io.h"
 #include "server/translate/built_in_shapes.h"
+#include "server/translate/images.h"
 #include "server/translate/values.h"
 
 namespace fascicle::server {
@@ -52,25 +54,61 @@ bool IsAddressable(const TetMesh& mesh) {
          std::all_of(mesh.nodes.begin(), mesh.nodes.end(), [](const Vec3& x) { return x.allFinite(); });
 }
 
-bool Spend(std::int64_t count, std::int64_t& budget, const std::string& path, const char* hint, Problems& problems) {
+bool Spend(std::int64_t count, const char* what, std::int64_t& budget, const std::string& path, const char* hint,
+           Problems& problems) {
   if (count > budget) {
-    problems.Add(
-        path, std::to_string(count) + " tetrahedra are too many; " + std::to_string(budget) + " are left for it", hint);
+    problems.Add(path,
+                 std::to_string(count) + " " + what + " are too many; " + std::to_string(budget) + " are left for it",
+                 hint);
     return false;
   }
   budget -= count;
   return true;
 }
 
-}  // namespace
+VoxelGrid BoxOfVoxels(const v1::BoxShape& shape, double metres) {
+  const GridIndex size = {shape.divisions(0), shape.divisions(1), shape.divisions(2)};
+  const Vec3 spacing = (ToVec3(shape.size()) * metres).cwiseQuotient(Vec3(size[0], size[1], size[2]));
+  VoxelGrid grid = MakeVoxelGrid(size, spacing);
+  grid.origin = ToVec3(shape.origin()) * metres;
+  std::fill(grid.material.begin(), grid.material.end(), std::uint8_t{1});
+  return grid;
+}
 
-std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, const std::string& body_path,
-                                            const AssetReader& assets, std::int64_t& budget, Problems& problems) {
-  const std::string path = JoinPath(body_path, "mesh");
-  if (!body.has_mesh()) {
-    problems.Add(path, "is missing", "give one of: file, box, fusiform, torus, sphere");
+std::optional<TranslatedMesh> TranslateVoxels(const v1::Body& body, const std::string& path, const AssetReader& assets,
+                                              std::int64_t& budget, std::vector<std::string>& notes,
+                                              Problems& problems) {
+  const v1::Mesh& mesh = body.mesh();
+  const double metres = MetresIn(body.unit());
+  std::optional<VoxelGrid> grid;
+  std::string source_path;
+  if (mesh.has_image()) {
+    source_path = JoinPath(path, "image");
+    grid = TranslateImage(mesh.image(), metres, source_path, assets, notes, problems);
+  } else if (mesh.has_box()) {
+    source_path = JoinPath(path, "box");
+    if (!ObeysRules(mesh.box())) return std::nullopt;
+    std::int64_t count = 1;
+    for (const std::int32_t divisions : mesh.box().divisions()) count *= divisions;
+    if (!Spend(count, "voxels", budget, source_path, "take fewer divisions", problems)) return std::nullopt;
+    grid = BoxOfVoxels(mesh.box(), metres);
+  } else {
+    problems.Add(path, "the voxel method takes an image or a box",
+                 "voxels of an image: image; tetrahedra need the tet method");
+  }
+  if (!grid) return std::nullopt;
+  TranslatedMesh result;
+  result.bricks = MakeBrickMesh(std::move(*grid));
+  if (mesh.has_image() && !Spend(static_cast<std::int64_t>(result.bricks.bricks.size()), "voxels", budget, source_path,
+                                 "take a higher level, or a smaller region", problems)) {
     return std::nullopt;
   }
+  return result;
+}
+
+std::optional<TranslatedMesh> TranslateTetrahedra(const v1::Body& body, const std::string& body_path,
+                                                  const AssetReader& assets, std::int64_t& budget, Problems& problems) {
+  const std::string path = JoinPath(body_path, "mesh");
   TranslatedMesh result;
   std::string source_path;
   const double metres = MetresIn(body.unit());
@@ -81,8 +119,8 @@ std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, const std::str
     }
     auto read = ReadMeshFile(body.mesh(), path, assets, problems);
     if (!read) return std::nullopt;
-    if (!Spend(static_cast<std::int64_t>(read->tetrahedra.size()), budget, source_path, "take a coarser mesh",
-               problems)) {
+    if (!Spend(static_cast<std::int64_t>(read->tetrahedra.size()), "tetrahedra", budget, source_path,
+               "take a coarser mesh", problems)) {
       return std::nullopt;
     }
     result.mesh = std::move(*read);
@@ -94,7 +132,8 @@ std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, const std::str
     const auto shape = CheckShape(body.mesh(), path, problems);
     if (!shape) return std::nullopt;
     source_path = shape->path;
-    if (!Spend(shape->tetrahedra, budget, source_path, "take fewer divisions", problems)) return std::nullopt;
+    if (!Spend(shape->tetrahedra, "tetrahedra", budget, source_path, "take fewer divisions", problems))
+      return std::nullopt;
     result.mesh = MakeShape(body.mesh(), metres);
   }
   Problems own;
@@ -103,6 +142,31 @@ std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, const std::str
   result.sound = own.empty();
   if (!IsAddressable(result.mesh)) return std::nullopt;
   return result;
+}
+
+}  // namespace
+
+std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, Method method, const std::string& body_path,
+                                            const AssetReader& assets, std::int64_t& budget,
+                                            std::vector<std::string>& notes, Problems& problems) {
+  const std::string path = JoinPath(body_path, "mesh");
+  const bool voxels = method == Method::kVoxel;
+  if (!body.has_mesh()) {
+    problems.Add(path, "is missing",
+                 voxels ? "give one of: image, box" : "give one of: file, box, fusiform, torus, sphere");
+    return std::nullopt;
+  }
+  // A mesh without a source is reported with the rules.
+  if (body.mesh().source_case() == v1::Mesh::SOURCE_NOT_SET) return std::nullopt;
+  if (voxels) return TranslateVoxels(body, path, assets, budget, notes, problems);
+  if (body.mesh().has_image()) {
+    problems.Add(
+        JoinPath(path, "image"), "the tet method takes no image",
+        "`fascicle mesh` fills the labels of an image with tetrahedra, `fascicle segment` makes labels; or use "
+        "the voxel method");
+    return std::nullopt;
+  }
+  return TranslateTetrahedra(body, body_path, assets, budget, problems);
 }
 
 }  // namespace fascicle::server

@@ -6,7 +6,9 @@
 #include <string>
 
 #include "core/base/problems.h"
+#include "core/geometry/brick_mesh.h"
 #include "core/geometry/tet_mesh.h"
+#include "core/scene/scene.h"
 #include "fascicle/v1/scene.pb.h"
 #include "server/translate/translate.h"
 
@@ -14,13 +16,19 @@ namespace fascicle::server {
 
 struct TranslatedMesh {
   TetMesh mesh;       // [m]; indices in range and coordinates finite
+  BrickMesh bricks;   // of the voxel method, instead [m]
   bool sound = true;  // CheckMesh found nothing
+
+  std::size_t elements() const { return mesh.tetrahedra.size() + bricks.bricks.size(); }
+  const std::vector<Vec3>& nodes() const { return mesh.nodes.empty() ? bricks.nodes : mesh.nodes; }
 };
 
-// The mesh of a body (defaults filled in) in metres. `budget` is the number of tetrahedra that are left for it, and is
-// reduced by those it has. Nothing when there is no mesh that other checks could look at.
-std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, const std::string& body_path,
-                                            const AssetReader& assets, std::int64_t& budget, Problems& problems);
+// The mesh of a body (defaults filled in) in metres: tetrahedra, or voxels for the voxel method. `budget` is the number
+// of elements that are left for it, and is reduced by those it has. Nothing when there is no mesh that other checks
+// could look at. Adds to `notes` what is noteworthy.
+std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, Method method, const std::string& body_path,
+                                            const AssetReader& assets, std::int64_t& budget,
+                                            std::vector<std::string>& notes, Problems& problems);
 
 // Bytes of the file that `file` names; nothing, with a problem, when its digest is malformed or its asset is not there.
 std::optional<std::string> ReadFile(const v1::FileRef& file, const std::string& path, const AssetReader& assets,

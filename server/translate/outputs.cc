@@ -95,25 +95,25 @@ std::vector<OutputField> TranslateFields(const v1::Scene& scene, Problems& probl
 }
 
 std::int64_t FieldBytes(OutputField field, const Body& body) {
-  const auto nodes = static_cast<std::int64_t>(body.mesh.nodes.size());
-  const auto tetrahedra = static_cast<std::int64_t>(body.mesh.tetrahedra.size());
+  const auto nodes = static_cast<std::int64_t>(body.nodes().size());
+  const auto elements = static_cast<std::int64_t>(body.elements());
   constexpr std::int64_t kDouble = sizeof(double);
   switch (field) {
     case OutputField::kVelocity:
       return 3 * kDouble * nodes;
     case OutputField::kCauchyStress:
-      return 6 * kDouble * tetrahedra;
+      return 6 * kDouble * elements;
     case OutputField::kFibreDirection:
-      return 3 * kDouble * tetrahedra;
+      return 3 * kDouble * elements;
     default:
-      return kDouble * tetrahedra;
+      return kDouble * elements;
   }
 }
 
 void CheckFrameSize(const Output& output, const std::vector<Body>& bodies, std::int64_t max_bytes, Problems& problems) {
   std::int64_t bytes = 0;
   for (const Body& body : bodies) {
-    bytes += static_cast<std::int64_t>(body.mesh.nodes.size() * sizeof(Vec3));
+    bytes += static_cast<std::int64_t>(body.nodes().size() * sizeof(Vec3));
     for (const OutputField field : output.fields) bytes += FieldBytes(field, body);
   }
   if (bytes <= max_bytes) return;
@@ -122,18 +122,19 @@ void CheckFrameSize(const Output& output, const std::vector<Body>& bodies, std::
 }
 
 // The node nearest to `point` [m]. A point further away than the body is large has a wrong unit or a wrong body.
-std::int32_t NearestNode(const TetMesh& mesh, const Vec3& point, const std::string& path, Problems& problems) {
+std::int32_t NearestNode(const std::vector<Vec3>& nodes, const Vec3& point, const std::string& path,
+                         Problems& problems) {
   std::int32_t nearest = 0;
-  Vec3 low = mesh.nodes.front(), high = low;
-  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
-    const Vec3& x = mesh.nodes[i];
+  Vec3 low = nodes.front(), high = low;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Vec3& x = nodes[i];
     low = low.cwiseMin(x);
     high = high.cwiseMax(x);
-    if ((x - point).squaredNorm() < (mesh.nodes[static_cast<std::size_t>(nearest)] - point).squaredNorm()) {
+    if ((x - point).squaredNorm() < (nodes[static_cast<std::size_t>(nearest)] - point).squaredNorm()) {
       nearest = static_cast<std::int32_t>(i);
     }
   }
-  const double distance = (mesh.nodes[static_cast<std::size_t>(nearest)] - point).norm();
+  const double distance = (nodes[static_cast<std::size_t>(nearest)] - point).norm();
   if (!(distance <= (high - low).norm())) {
     problems.Add(path, "is " + Text(distance) + " m away from the body, further than the body is large",
                  "probe points are in the body's own unit");
@@ -150,10 +151,10 @@ std::vector<Probe> TranslateProbes(const v1::Scene& scene, const std::vector<Bod
     const std::string path = IndexPath("output.probes", static_cast<std::size_t>(i));
     names.Add(probe.name(), JoinPath(path, "name"), problems);
     const auto body = body_names.Find(probe.body(), JoinPath(path, "body"), problems);
-    if (!body || bodies[*body].mesh.nodes.empty() || !ObeysRules(probe)) continue;
+    if (!body || bodies[*body].nodes().empty() || !ObeysRules(probe)) continue;
     const Vec3 point = ToVec3(probe.point()) * MetresIn(scene.bodies(static_cast<int>(*body)).unit());
     probes.push_back({probe.name(), static_cast<std::int32_t>(*body),
-                      NearestNode(bodies[*body].mesh, point, JoinPath(path, "point"), problems)});
+                      NearestNode(bodies[*body].nodes(), point, JoinPath(path, "point"), problems)});
   }
   return probes;
 }
@@ -176,7 +177,18 @@ Output TranslateOutput(const v1::Scene& scene, const std::vector<Body>& bodies, 
   return output;
 }
 
-TetMethod TranslateMethod(const v1::Scene& scene) {
+VoxelMethod TranslateVoxelMethod(const v1::Scene& scene) {
+  VoxelMethod method;
+  if (!scene.has_voxel() || !ObeysRules(scene.voxel())) return method;
+  if (scene.voxel().stepping() == v1::VOXEL_STEPPING_DYNAMIC) method.stepping = VoxelStepping::kDynamic;
+  method.mean_dilatation = scene.voxel().dilatation() == v1::DILATATION_MEAN;
+  if (scene.voxel().has_time_step()) method.time_step = scene.voxel().time_step();
+  method.tolerance = scene.voxel().tolerance();
+  method.start_loaded = scene.voxel().start_loaded();
+  return method;
+}
+
+TetMethod TranslateTetMethod(const v1::Scene& scene) {
   TetMethod method;
   if (!scene.has_tet() || !ObeysRules(scene.tet())) return method;
   method.stepping = ToStepping(scene.tet().stepping());

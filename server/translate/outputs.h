@@ -17,7 +17,8 @@ Output TranslateOutput(const v1::Scene& scene, const std::vector<Body>& bodies, 
                        std::int64_t max_frame_bytes, Problems& problems);
 
 // How it is stepped. A neutral method stands for a wrong one.
-TetMethod TranslateMethod(const v1::Scene& scene);
+TetMethod TranslateTetMethod(const v1::Scene& scene);
+VoxelMethod TranslateVoxelMethod(const v1::Scene& scene);
 
 }  // namespace fascicle::server
 

@@ -6,6 +6,7 @@
 #include "core/base/problems.h"
 #include "core/scene/scene.h"
 #include "fascicle/v1/scene.pb.h"
+#include "server/translate/meshes.h"
 #include "server/translate/regions.h"
 #include "server/translate/translate.h"
 
@@ -16,17 +17,17 @@ namespace fascicle::server {
 
 // region_materials and element_parameters. A tetrahedron takes the material of the last region that holds it, else that
 // with its own parameters, else that of the body.
-void TranslateMaterialParts(const v1::Body& body, const std::string& body_path, const TetMesh* mesh,
+void TranslateMaterialParts(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
                             const TranslatedRegions& regions, const AssetReader& assets, Body& result,
                             Problems& problems);
 
 // activation or excitation, until `duration` [s]; region_activations and activation_scale.
-void TranslateActivations(const v1::Body& body, const std::string& body_path, double duration, const TetMesh* mesh,
-                          const TranslatedRegions& regions, const AssetReader& assets, Body& result,
-                          Problems& problems);
+void TranslateActivations(const v1::Body& body, const std::string& body_path, double duration,
+                          const TranslatedMesh* mesh, const TranslatedRegions& regions, const AssetReader& assets,
+                          Body& result, Problems& problems);
 
 // initial_displacement.
-void TranslateInitialDisplacement(const v1::Body& body, const std::string& body_path, const TetMesh* mesh,
+void TranslateInitialDisplacement(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
                                   const AssetReader& assets, Body& result, Problems& problems);
 
 // Gives `value` to the tetrahedra of the region that is called `name`; a problem where there is no such region, or none

@@ -52,14 +52,16 @@ std::optional<Selector> TranslateSelector(const v1::Region& region, double metre
   return selector;
 }
 
-std::string TagHint(const TetMesh& mesh, bool from_file) {
+std::string TagHint(const TranslatedMesh& translated, bool from_file) {
+  const TetMesh& mesh = translated.mesh;
   std::set<std::int32_t> tags(mesh.triangle_tags.begin(), mesh.triangle_tags.end());
   tags.insert(mesh.tetrahedron_tags.begin(), mesh.tetrahedron_tags.end());
   tags.insert(mesh.node_tags.begin(), mesh.node_tags.end());
+  tags.insert(translated.bricks.labels.begin(), translated.bricks.labels.end());
   if (!from_file) return "built-in shapes have no tags; select by plane, box, sphere or side";
   if (tags.empty()) return "the mesh file has no tags; select by plane, box, sphere or side";
   constexpr std::size_t kMaxListed = 20;
-  std::string hint = "tags in the mesh file: ";
+  std::string hint = translated.bricks.labels.empty() ? "tags in the mesh file: " : "labels of the voxels: ";
   std::size_t listed = 0;
   for (const std::int32_t tag : tags) {
     if (listed == kMaxListed) return hint + ", ...";
@@ -69,9 +71,9 @@ std::string TagHint(const TetMesh& mesh, bool from_file) {
 }
 
 // The body's extent in its own unit, for a selector that misses it.
-std::string ExtentHint(const TetMesh& mesh, double metres) {
-  Vec3 low = mesh.nodes.front(), high = low;
-  for (const Vec3& x : mesh.nodes) {
+std::string ExtentHint(const TranslatedMesh& mesh, double metres) {
+  Vec3 low = mesh.nodes().front(), high = low;
+  for (const Vec3& x : mesh.nodes()) {
     low = low.cwiseMin(x);
     high = high.cwiseMax(x);
   }
@@ -83,12 +85,12 @@ std::string ExtentHint(const TetMesh& mesh, double metres) {
   return "in its own unit, the body reaches from " + corner(low) + " to " + corner(high);
 }
 
-void AddEmptyRegion(const v1::Body& body, const v1::Region& region, const TetMesh& mesh, const std::string& path,
+void AddEmptyRegion(const v1::Body& body, const v1::Region& region, const TranslatedMesh& mesh, const std::string& path,
                     Problems& problems) {
   if (region.has_physical_tag()) {
     problems.Add(JoinPath(path, "physical_tag"),
                  "nothing in the mesh has the tag " + std::to_string(region.physical_tag()),
-                 TagHint(mesh, body.mesh().has_file()));
+                 TagHint(mesh, body.mesh().has_file() || body.mesh().has_image()));
   } else if (region.within_size() > 0) {
     problems.Add(JoinPath(path, "within"), "no node of the region lies in all of these regions too",
                  ExtentHint(mesh, MetresIn(body.unit())));
@@ -118,19 +120,25 @@ void Restrict(const v1::Region& region, const std::string& path, TranslatedRegio
 
 }  // namespace
 
-TranslatedRegions TranslateRegions(const v1::Body& body, const std::string& body_path, const TetMesh* mesh,
+TranslatedRegions TranslateRegions(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
                                    Problems& problems) {
   TranslatedRegions result;
-  const std::vector<Triangle> surface =
-      mesh != nullptr && body.regions_size() > 0 ? BoundaryTriangles(*mesh) : std::vector<Triangle>();
+  std::vector<Triangle> triangles;
+  std::vector<Quad> quads;
+  if (mesh != nullptr && body.regions_size() > 0) {
+    triangles = BoundaryTriangles(mesh->mesh);
+    quads = BoundaryQuads(mesh->bricks);
+  }
   for (int i = 0; i < body.regions_size(); ++i) {
     const v1::Region& region = body.regions(i);
     const std::string path = JoinPath(body_path, IndexPath("regions", static_cast<std::size_t>(i)));
     result.names.Add(region.name(), JoinPath(path, "name"), problems);
-    result.regions.push_back({region.name(), {}, {}, {}});
+    result.regions.push_back({region.name(), {}, {}, {}, {}});
     const auto selector = TranslateSelector(region, MetresIn(body.unit()), path, problems);
     if (mesh != nullptr && selector) {
-      result.regions.back() = SelectRegion(*mesh, surface, region.name(), *selector);
+      result.regions.back() = mesh->bricks.bricks.empty()
+                                  ? SelectRegion(mesh->mesh, triangles, region.name(), *selector)
+                                  : SelectRegion(mesh->bricks, quads, region.name(), *selector);
     }
     Problems within;
     Restrict(region, path, result, within);

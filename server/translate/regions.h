@@ -7,6 +7,7 @@
 #include "core/base/problems.h"
 #include "core/geometry/region.h"
 #include "fascicle/v1/scene.pb.h"
+#include "server/translate/meshes.h"
 #include "server/translate/names.h"
 
 namespace fascicle::server {
@@ -17,7 +18,7 @@ struct TranslatedRegions {
 };
 
 // The regions of a body. `mesh` may be nullptr: then only what does not depend on it is checked.
-TranslatedRegions TranslateRegions(const v1::Body& body, const std::string& body_path, const TetMesh* mesh,
+TranslatedRegions TranslateRegions(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
                                    Problems& problems);
 
 }  // namespace fascicle::server

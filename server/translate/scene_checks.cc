@@ -26,6 +26,9 @@ void CheckEachBody(Scene scene, const std::vector<bool>& complete, Problems& pro
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (!complete[i]) continue;
     Scene alone;
+    alone.method = scene.method;
+    alone.tet = scene.tet;
+    alone.voxel = scene.voxel;
     alone.gravity = scene.gravity;
     alone.floors = scene.floors;
     alone.duration = alone.output.frame_interval = 1;  // what is wrong with them has been said

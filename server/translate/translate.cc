@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/voxel/scene_body.h"
 #include "proto/rules/field_rules.h"
 #include "server/translate/fibres.h"
 #include "server/translate/materials.h"
@@ -40,8 +41,8 @@ struct TranslatedBody {
   bool complete = false;
 };
 
-TranslatedBody TranslateBody(const v1::Body& wire, const std::string& path, double duration, const AssetReader& assets,
-                             std::int64_t& budget, Problems& problems, Profile* profile) {
+TranslatedBody TranslateBody(const v1::Body& wire, Method method, const std::string& path, double duration,
+                             const AssetReader& assets, std::int64_t& budget, Problems& problems, Profile* profile) {
   TranslatedBody result;
   Body& body = result.body;
   body.name = wire.name();
@@ -52,27 +53,33 @@ TranslatedBody TranslateBody(const v1::Body& wire, const std::string& path, doub
   Problems structure;
   auto mesh = [&] {
     const StageTimer timer(profile, "meshes");
-    return TranslateMesh(wire, path, assets, budget, structure);
+    return TranslateMesh(wire, method, path, assets, budget, body.notes, structure);
   }();
-  TranslatedRegions regions = TranslateRegions(wire, path, mesh ? &mesh->mesh : nullptr, structure);
+  TranslatedRegions regions = TranslateRegions(wire, path, mesh ? &*mesh : nullptr, structure);
   body.constraints = TranslateConstraints(wire, path, regions.names, structure);
-  body.loads = TranslateLoads(wire, path, regions.names, structure);
+  body.loads = TranslateLoads(wire, path, duration, regions.names, structure);
   result.complete = structure.empty() && mesh.has_value() &&
                     std::all_of(wire.regions().begin(), wire.regions().end(), ObeysRules) &&
                     std::all_of(wire.constraints().begin(), wire.constraints().end(), ObeysRules) &&
                     std::all_of(wire.loads().begin(), wire.loads().end(), ObeysRules);
   problems.Append("", structure);
 
-  const TetMesh* tetrahedra = mesh ? &mesh->mesh : nullptr;
+  const TranslatedMesh* elements = mesh ? &*mesh : nullptr;
   {
     const StageTimer timer(profile, "fibres");
+    if (method == Method::kVoxel && wire.has_fibres()) {
+      problems.Add(JoinPath(path, "fibres"), "voxels have no fibres", "leave them out, or use the tet method");
+    }
     body.fibres = TranslateFibres(wire, path, mesh ? &*mesh : nullptr, regions, assets, body.notes, problems);
   }
-  TranslateMaterialParts(wire, path, tetrahedra, regions, assets, body, problems);
-  TranslateActivations(wire, path, duration, tetrahedra, regions, assets, body, problems);
-  TranslateInitialDisplacement(wire, path, tetrahedra, assets, body, problems);
+  TranslateMaterialParts(wire, path, elements, regions, assets, body, problems);
+  TranslateActivations(wire, path, duration, elements, regions, assets, body, problems);
+  TranslateInitialDisplacement(wire, path, elements, assets, body, problems);
   body.regions = std::move(regions.regions);
-  if (mesh) body.mesh = std::move(mesh->mesh);
+  if (mesh) {
+    body.mesh = std::move(mesh->mesh);
+    body.bricks = std::move(mesh->bricks);
+  }
   return result;
 }
 
@@ -88,6 +95,8 @@ std::vector<std::string> AssetsOf(const v1::Scene& scene) {
   for (const v1::Body& body : scene.bodies()) {
     add(body.mesh().file());
     add(body.mesh().elements());
+    add(body.mesh().image().file());
+    for (const v1::FileRef& file : body.mesh().image().more_files()) add(file);
     add(body.fibres().file());
     add(body.element_parameters());
     add(body.activation_scale());
@@ -108,19 +117,22 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   auto result = std::make_shared<Scene>();
   result->name = filled.name();
   result->duration = filled.duration();
-  result->method = TranslateMethod(filled);
+  result->method = filled.has_voxel() ? Method::kVoxel : Method::kTet;
+  result->tet = TranslateTetMethod(filled);
+  result->voxel = TranslateVoxelMethod(filled);
   result->gravity = TranslateGravity(filled, found);
   result->floors = TranslateFloors(filled, found);
 
   Names names("body");
   std::vector<bool> complete;
-  std::int64_t budget = limits.max_tetrahedra;
+  std::int64_t budget = limits.max_elements;
   for (int i = 0; i < filled.bodies_size(); ++i) {
     const std::string path = IndexPath("bodies", static_cast<std::size_t>(i));
     names.Add(filled.bodies(i).name(), JoinPath(path, "name"), found);
-    TranslatedBody body = TranslateBody(filled.bodies(i), path, filled.duration(), assets, budget, found, profile);
+    TranslatedBody body =
+        TranslateBody(filled.bodies(i), result->method, path, filled.duration(), assets, budget, found, profile);
     complete.push_back(body.complete);
-    if (!body.body.mesh.curved_edges.empty() && result->method.element == ElementOrder::kLinear) {
+    if (!body.body.mesh.curved_edges.empty() && result->tet.element == ElementOrder::kLinear) {
       body.body.notes.push_back(JoinPath(path, "mesh") +
                                 ": linear elements leave out that edges of the mesh are curved");
     }
@@ -131,6 +143,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   if (found.empty()) {
     const StageTimer timer(profile, "checks");
     CheckScene(*result, found);
+    if (found.empty()) CheckVoxelSupports(*result, found);
   }
   if (found.empty()) return result;
   CheckEachBody(std::move(*result), complete, found);

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!scene) return 0;
   // Small enough for thousands of runs a second, large enough for every shape.
   fascicle::server::TranslateLimits limits;
-  limits.max_tetrahedra = 2000;
+  limits.max_elements = 2000;
   limits.max_frame_bytes = 1'000'000;
   const auto no_assets = [](const std::string&) { return std::nullopt; };
   const auto translated = fascicle::server::TranslateScene(*scene, no_assets, problems, limits);

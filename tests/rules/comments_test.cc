@@ -81,6 +81,7 @@ TEST_F(CommentsTest, ScenesUseDoubleAndInt32Only) {
       switch (message->field(i)->cpp_type()) {
         case FieldDescriptor::CPPTYPE_DOUBLE:
         case FieldDescriptor::CPPTYPE_INT32:
+        case FieldDescriptor::CPPTYPE_BOOL:  // no number: needs no rule
         case FieldDescriptor::CPPTYPE_ENUM:
         case FieldDescriptor::CPPTYPE_STRING:
         case FieldDescriptor::CPPTYPE_MESSAGE:

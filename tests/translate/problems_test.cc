@@ -100,7 +100,7 @@ TEST(Problems, TheLimitHoldsForAllBodiesTogether) {
   *scene.add_bodies() = scene.bodies(0);
   scene.mutable_bodies(1)->set_name("second");
   TranslateLimits limits;
-  limits.max_tetrahedra = 2 * 144 - 1;
+  limits.max_elements = 2 * 144 - 1;
   EXPECT_THAT(At(ProblemsOf(scene, {}, limits), "bodies[1].mesh.box"), HasSubstr("143 are left"));
   limits = {};
   limits.max_frame_bytes = 2 * 60 * 24 - 1;

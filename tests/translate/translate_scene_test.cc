@@ -49,10 +49,10 @@ TEST(TranslateScene, TakesDefaultsFromTheRules) {
   const auto scene = Translate(BoxScene());
   ASSERT_NE(scene, nullptr);
   EXPECT_EQ(scene->bodies[0].density, 1060);
-  EXPECT_EQ(scene->method.stepping, Stepping::kExplicit);
-  EXPECT_FALSE(scene->method.time_step.has_value());
-  EXPECT_EQ(scene->method.safety, 0.9);
-  EXPECT_EQ(scene->method.solver_tolerance, 1e-8);
+  EXPECT_EQ(scene->tet.stepping, Stepping::kExplicit);
+  EXPECT_FALSE(scene->tet.time_step.has_value());
+  EXPECT_EQ(scene->tet.safety, 0.9);
+  EXPECT_EQ(scene->tet.solver_tolerance, 1e-8);
   EXPECT_EQ(scene->bodies[0].activation.values, std::vector<double>({0}));
   EXPECT_EQ(scene->gravity.acceleration, Vec3::Zero());
   EXPECT_FALSE(scene->output.settle_speed.has_value());
@@ -79,10 +79,10 @@ TEST(TranslateScene, CarriesEverythingElse) {
   EXPECT_EQ(scene->duration, 1);
   EXPECT_EQ(scene->gravity.acceleration, Vec3(0, 0, -9.81));
   EXPECT_EQ(scene->gravity.scale.values, std::vector<double>({0.5}));
-  EXPECT_EQ(scene->method.stepping, Stepping::kMixed);
-  EXPECT_EQ(scene->method.time_step, 1e-4);
-  EXPECT_EQ(scene->method.safety, 0.5);
-  EXPECT_EQ(scene->method.solver_tolerance, 1e-6);
+  EXPECT_EQ(scene->tet.stepping, Stepping::kMixed);
+  EXPECT_EQ(scene->tet.time_step, 1e-4);
+  EXPECT_EQ(scene->tet.safety, 0.5);
+  EXPECT_EQ(scene->tet.solver_tolerance, 1e-6);
   EXPECT_THAT(scene->output.fields, ElementsAre(OutputField::kVelocity, OutputField::kCauchyStress));
   EXPECT_EQ(scene->output.settle_speed, 1e-3);
   const Body& body = scene->bodies[0];
@@ -103,7 +103,7 @@ TEST(TranslateScene, SteppingChoosesTheElementUnlessTheSceneDoes) {
   const auto method = [&] {
     const auto scene = Translate(wire);
     EXPECT_NE(scene, nullptr);
-    return scene ? scene->method : TetMethod{};
+    return scene ? scene->tet : TetMethod{};
   };
   EXPECT_EQ(method().element, ElementOrder::kLinear);
   EXPECT_EQ(method().volume, VolumeForm::kNodal);
@@ -287,9 +287,9 @@ TEST(TranslateScene, EstimatesShapesExactly) {
     const auto scene = Translate(wire);
     ASSERT_NE(scene, nullptr);
     TranslateLimits limits;
-    limits.max_tetrahedra = static_cast<std::int64_t>(scene->bodies[0].mesh.tetrahedra.size());
+    limits.max_elements = static_cast<std::int64_t>(scene->bodies[0].mesh.tetrahedra.size());
     EXPECT_TRUE(ProblemsOf(wire, {}, limits).empty()) << mesh;
-    limits.max_tetrahedra -= 1;
+    limits.max_elements -= 1;
     EXPECT_FALSE(ProblemsOf(wire, {}, limits).empty()) << mesh;
   }
 }
@@ -370,10 +370,10 @@ TEST(TranslateScene, RegionsWithinOthers) {
   const std::vector<Region>& regions = scene->bodies[0].regions;
   const Region& upper = regions[regions.size() - 2];
   const Region& layer = regions.back();
-  EXPECT_FALSE(layer.tetrahedra.empty());
-  EXPECT_LT(layer.tetrahedra.size(), upper.tetrahedra.size());
-  EXPECT_TRUE(std::includes(upper.tetrahedra.begin(), upper.tetrahedra.end(), layer.tetrahedra.begin(),
-                            layer.tetrahedra.end()));
+  EXPECT_FALSE(layer.elements.empty());
+  EXPECT_LT(layer.elements.size(), upper.elements.size());
+  EXPECT_TRUE(
+      std::includes(upper.elements.begin(), upper.elements.end(), layer.elements.begin(), layer.elements.end()));
 
   wire.mutable_bodies(0)->mutable_regions(wire.bodies(0).regions_size() - 1)->set_within(0, "layer");
   Problems problems;
