@@ -1,8 +1,13 @@
+#include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
@@ -10,6 +15,11 @@
 #include "client/cli/command.h"
 #include "client/cli/follow.h"
 #include "client/cli/outputs.h"
+#include "client/cli/stage_progress.h"
+#include "client/lib/decode.h"
+#include "client/render/body_labels.h"
+#include "client/render/slices.h"
+#include "core/imaging/volume_reader.h"
 
 namespace fascicle::client {
 namespace {
@@ -20,6 +30,14 @@ constexpr const char* kExamples =
   fascicle render 3f2a --out fibres.png --fibres --view front --size 900x1200
   fascicle render 3f2a --out a.png --colour volume_ratio --range 0.98 1.02 --azimuth 30 --elevation 15
 
+  fascicle render 3f2a --out all.png --frames all                 panels side by side, with one scale of colours
+  fascicle render 3f2a --out series.png --frames 0,2,4 --style volume
+  fascicle render 3f2a --out release.gif --frames all --fps 12    one after the other, as an animated GIF
+  fascicle render 3f2a --out cut.png --style slices --scan arm.mha
+  fascicle render 3f2a --out round.gif --turntable 48 --smooth    the eye goes round the last frame
+
+Styles: surface (shaded; --wireframe adds the edges, --smooth takes the steps of voxels away), wireframe (edges alone),
+volume (rays cast through the body), slices (the outline of the deformed bodies on slices of the scan).
 Needs no display: without one it draws on a virtual one (Xvfb).
 )";
 
@@ -27,6 +45,12 @@ struct Options {
   std::string job;
   std::string out;
   std::string frame = "last";
+  std::string frames;
+  std::string style = "surface";
+  std::vector<std::string> scan;
+  int turntable = 0;
+  double fps = 12;
+  bool smooth = false;
   std::optional<std::string> colour;
   std::vector<double> range;
   bool wireframe = false;
@@ -39,6 +63,8 @@ struct Options {
   std::string size = "1200x900";
   std::optional<std::string> title;
 };
+
+bool IsGif(const Options& options) { return std::filesystem::path(options.out).extension() == ".gif"; }
 
 struct Angles {
   double azimuth, elevation;
@@ -74,13 +100,33 @@ std::int64_t FrameIndex(const std::string& text, const v1::Job& job) {
   return index;
 }
 
+// "all", or numbers with commas between; a GIF takes any number of them.
+std::vector<std::int64_t> FrameIndices(const Options& options, const v1::Job& job) {
+  if (options.frames.empty()) return {FrameIndex(options.frame, job)};
+  std::vector<std::int64_t> indices;
+  if (options.frames == "all") {
+    for (std::int64_t i = 0; i < job.frame_count(); ++i) indices.push_back(i);
+  } else {
+    std::istringstream list(options.frames);
+    for (std::string item; std::getline(list, item, ',');) indices.push_back(FrameIndex(item, job));
+  }
+  constexpr std::size_t kMostPanels = 24;
+  if (!IsGif(options) && indices.size() > kMostPanels) {
+    throw CommandError::Invalid("--frames: " + std::to_string(indices.size()) +
+                                " panels are too many for one picture; at most 24, or write a .gif");
+  }
+  return indices;
+}
+
 PictureOptions PictureOf(const Options& options, const v1::Job& job, const v1::Frame& frame) {
   PictureOptions picture = DefaultPicture(job, frame);
   picture.size = ParseSize(options.size);
   if (options.colour) picture.colour = *options.colour == "none" ? "" : *options.colour;
   if (!options.range.empty()) picture.range = {options.range[0], options.range[1]};
-  picture.surface = !options.no_surface;
-  picture.wireframe = options.wireframe;
+  picture.surface = !options.no_surface && options.style == "surface";
+  picture.wireframe = options.wireframe || options.style == "wireframe";
+  picture.volume = options.style == "volume";
+  picture.smooth = options.smooth;
   picture.rest_outline = !options.no_rest;
   picture.fibres = options.fibres;
   picture.zoom = options.zoom;
@@ -94,22 +140,81 @@ PictureOptions PictureOf(const Options& options, const v1::Job& job, const v1::F
   return picture;
 }
 
+// The scan with what the bodies of a frame fill of it.
+void DrawOnScan(const Options& options, const v1::Geometry& geometry, const v1::Frame& frame,
+                const PictureOptions& picture) {
+  Problems problems;
+  const std::vector<std::filesystem::path> paths(options.scan.begin(), options.scan.end());
+  const auto scan = ReadVolumeFiles(paths, {}, problems);
+  if (!scan) {
+    Error error{Error::Kind::kInvalid, "the scan can't be read", "INVALID_IMAGE", {}};
+    for (const Problem& problem : problems.kept()) error.problems.Add("--scan", problem.message, problem.hint);
+    throw CommandError(std::move(error));
+  }
+  const ImagePlace place = {scan->size, scan->spacing, scan->origin, scan->direction};
+  std::vector<std::uint8_t> labels(scan->voxels());
+  SlicesInput input;
+  const std::vector<BodyShape> shapes = DecodeGeometry(geometry);
+  for (std::size_t b = 0; b < shapes.size() && b < 255; ++b) {
+    const auto positions = DecodePositions(frame.bodies(static_cast<int>(b)), shapes[b].positions.size());
+    AddLabels(shapes[b], positions, place, static_cast<std::uint8_t>(b + 1), labels);
+    input.names.push_back(shapes[b].name);
+  }
+  if (std::all_of(labels.begin(), labels.end(), [](std::uint8_t label) { return label == 0; })) {
+    throw CommandError::Invalid("--scan: no body lies in the image; it must be the one that the scene was made of");
+  }
+  input.size = scan->size;
+  input.spacing = scan->spacing;
+  input.values = scan->values;
+  input.labels = labels;
+  input.title = picture.title;
+  DrawSlices(input, picture.size, options.out);
+}
+
 int Render(const Options& options, const Context& context) {
+  if ((options.style == "slices") != !options.scan.empty()) {
+    throw CommandError::Invalid("--style slices and --scan go together: the outline is drawn on the scan");
+  }
   (void)ParseSize(options.size);
+  if (options.turntable > 0 && !IsGif(options)) {
+    throw CommandError::Invalid("--turntable: turns in an animated GIF; let --out end in .gif");
+  }
   Client client = Connect(context);
   const std::string name = JobName(options.job);
   const v1::Job job = Take(client.GetJob(name));
   if (job.frame_count() == 0) throw CommandError::Invalid(name + " has no frames yet");
-  const std::int64_t index = FrameIndex(options.frame, job);
-  const Followed followed =
-      ReadStored(client, name, index, [](const v1::Geometry&, const v1::Frame&) { return false; });
-  if (!followed.last_frame) throw std::runtime_error("the server did not send frame " + std::to_string(index));
-  const v1::Frame& frame = *followed.last_frame;
-  DrawPicture(followed.geometry, frame, PictureOf(options, job, frame), options.out);
-  if (context.json) {
-    PrintJson({{"job", name}, {"frame", frame.index()}, {"time", frame.time()}, {"out", options.out}});
+  const std::vector<std::int64_t> indices = FrameIndices(options, job);
+  std::vector<v1::Frame> frames;
+  v1::Geometry geometry;
+  for (const std::int64_t index : indices) {
+    const Followed followed =
+        ReadStored(client, name, index, [](const v1::Geometry&, const v1::Frame&) { return false; });
+    if (!followed.last_frame) throw std::runtime_error("the server did not send frame " + std::to_string(index));
+    geometry = followed.geometry;
+    frames.push_back(*followed.last_frame);
+  }
+  const PictureOptions picture = PictureOf(options, job, frames.back());
+  if (options.style == "slices") {
+    DrawOnScan(options, geometry, frames.back(), picture);
+  } else if (IsGif(options)) {
+    StageProgress bar;
+    DrawAnimation(geometry, frames, picture, {options.fps, options.turntable}, options.out,
+                  [&](double part) { bar.Show(part, "drawing"); });
   } else {
-    std::cout << "frame " << frame.index() << " is in " << options.out << '\n';
+    DrawPanels(geometry, frames, picture, options.out);
+  }
+  if (context.json) {
+    nlohmann::json drawn = nlohmann::json::array();
+    for (const v1::Frame& frame : frames) drawn.push_back({{"frame", frame.index()}, {"time", frame.time()}});
+    PrintJson({{"job", name},
+               {"frame", frames.back().index()},
+               {"time", frames.back().time()},
+               {"frames", std::move(drawn)},
+               {"out", options.out}});
+  } else if (frames.size() == 1) {
+    std::cout << "frame " << frames[0].index() << " is in " << options.out << '\n';
+  } else {
+    std::cout << frames.size() << " frames are in " << options.out << '\n';
   }
   return kDone;
 }
@@ -117,11 +222,22 @@ int Render(const Options& options, const Context& context) {
 }  // namespace
 
 void AddRender(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "render", "Draw a frame of a job as PNG", kExamples);
+  CLI::App* command = AddCommand(app, "render", "Draw frames of a job as PNG, or animate them as GIF", kExamples);
   const auto options = std::make_shared<Options>();
   command->add_option("JOB", options->job, "The job")->required();
-  command->add_option("--out", options->out, "The picture")->required()->type_name("FILE.png");
-  command->add_option("--frame", options->frame, "Index of the frame, or `last`");
+  command->add_option("--out", options->out, "The picture, or animation")->required()->type_name("FILE.png|FILE.gif");
+  const auto frame = command->add_option("--frame", options->frame, "Index of the frame, or `last`");
+  command->add_option("--frames", options->frames, "Several: indices with commas between, or `all`")
+      ->excludes(frame)
+      ->type_name("I,J,...");
+  command->add_option("--style", options->style, "How bodies are drawn")
+      ->check(CLI::IsMember({"surface", "wireframe", "volume", "slices"}));
+  command->add_flag("--smooth", options->smooth, "Draw the surface without the steps between voxels");
+  command->add_option("--scan", options->scan, "The image under the outlines of --style slices, in the place it has")
+      ->type_name("FILE...");
+  command->add_option("--turntable", options->turntable, "Go round the body in so many pictures (GIF)")
+      ->check(CLI::Range(2, 360));
+  command->add_option("--fps", options->fps, "Pictures a second of a GIF")->check(CLI::Range(0.1, 50.0));
   command->add_option("--colour,--color", options->colour,
                       "What to colour by: displacement, a field of the frame, NAME/COMPONENT, or none");
   command->add_option("--range", options->range, "Values at the ends of the colour scale, in the field's unit")

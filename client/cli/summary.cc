@@ -93,7 +93,7 @@ void PrintFailure(const v1::Failure& failure) {
               static_cast<long long>(failure.step()), failure.message().c_str());
   if (!failure.body().empty()) std::printf("  body: %s\n", failure.body().c_str());
   if (failure.element_ids_size() > 0) {
-    std::printf("  tetrahedra:");
+    std::printf("  elements:");
     for (const std::int64_t id : failure.element_ids()) std::printf(" %lld", static_cast<long long>(id));
     std::printf("\n");
   }

@@ -13,6 +13,7 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdio>
 #include <pugixml.hpp>
@@ -49,11 +50,16 @@ void SetMesh(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnst
   points->SetData(coordinates);
   grid.SetPoints(points);
   vtkNew<vtkCellArray> cells;
-  cells->AllocateExact(static_cast<vtkIdType>(shape.tetrahedra.size()),
-                       static_cast<vtkIdType>(4 * shape.tetrahedra.size()));
+  cells->AllocateExact(static_cast<vtkIdType>(shape.elements()),
+                       static_cast<vtkIdType>(4 * shape.tetrahedra.size() + 8 * shape.bricks.size()));
   for (const auto& t : shape.tetrahedra)
     cells->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}, vtkIdType{t[3]}});
-  grid.SetCells(VTK_TETRA, cells);
+  for (const auto& brick : shape.bricks) {
+    std::array<vtkIdType, 8> nodes;
+    for (std::size_t c = 0; c < 8; ++c) nodes[c] = brick[kHexahedronCorners[c]];
+    cells->InsertNextCell(8, nodes.data());
+  }
+  grid.SetCells(shape.bricks.empty() ? VTK_TETRA : VTK_HEXAHEDRON, cells);
 }
 
 void AddDisplacement(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnstructuredGrid& grid) {

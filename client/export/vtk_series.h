@@ -12,7 +12,7 @@ namespace fascicle::client {
 
 // Writes frames as a VTK series that ParaView and others open: one .vtu for each body and frame (binary, appended,
 // zlib), and frames.pvd with their times [s]. Nodes carry `displacement` [m], the frame's node fields and a flag for
-// each region; tetrahedra carry the frame's tetrahedron fields and `rest_fibre`. Each file appears whole or not at all.
+// each region; elements carry the frame's element fields and `rest_fibre`. Each file appears whole or not at all.
 // Not thread-safe. Functions throw std::runtime_error with a message for people.
 class VtkSeriesWriter {
  public:

@@ -19,18 +19,24 @@ std::vector<T> DecodeArray(const std::string& bytes, const std::string& what) {
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
+template <class Cell>
+void CheckNodes(const std::vector<Cell>& cells, std::size_t nodes, const std::string& what) {
+  for (const Cell& cell : cells) {
+    for (const std::uint32_t node : cell) {
+      if (node >= nodes) throw std::runtime_error("the server sent " + what + " with an unknown node");
+    }
+  }
+}
+
 BodyShape DecodeBody(const v1::BodyGeometry& body) {
   BodyShape shape;
   shape.name = body.name();
   shape.positions = DecodeArray<Vec3>(body.positions(), "rest positions");
   shape.tetrahedra = DecodeArray<std::array<std::uint32_t, 4>>(body.tetrahedra(), "tetrahedra");
   shape.fibres = DecodeArray<Vec3>(body.fibres(), "fibres");
-  for (const auto& tetrahedron : shape.tetrahedra) {
-    for (const std::uint32_t node : tetrahedron) {
-      if (node >= shape.positions.size())
-        throw std::runtime_error("the server sent a tetrahedron with an unknown node");
-    }
-  }
+  shape.bricks = DecodeArray<std::array<std::uint32_t, 8>>(body.bricks(), "voxels");
+  CheckNodes(shape.tetrahedra, shape.positions.size(), "a tetrahedron");
+  CheckNodes(shape.bricks, shape.positions.size(), "a voxel");
   if (!shape.fibres.empty() && shape.fibres.size() != shape.tetrahedra.size()) {
     throw std::runtime_error("the server sent fibres that don't fit the tetrahedra");
   }
@@ -59,8 +65,9 @@ std::vector<Vec3> DecodePositions(const v1::BodyFrame& frame, std::size_t nodes)
 
 std::vector<double> DecodeField(const v1::FieldValues& field, const BodyShape& shape) {
   std::vector<double> values = DecodeArray<double>(field.values(), "field " + field.name());
-  const bool at_nodes = field.location() == v1::FieldValues::LOCATION_NODE;
-  const std::size_t tuples = at_nodes ? shape.positions.size() : shape.tetrahedra.size();
+  const std::size_t tuples = field.location() == v1::FieldValues::LOCATION_NODE    ? shape.positions.size()
+                             : field.location() == v1::FieldValues::LOCATION_BRICK ? shape.bricks.size()
+                                                                                   : shape.tetrahedra.size();
   if (field.components() < 1 || values.size() != tuples * static_cast<std::size_t>(field.components())) {
     throw std::runtime_error("the server sent field " + field.name() + " that doesn't fit the mesh");
   }

@@ -19,20 +19,26 @@ struct BodyShape {
   std::string name;
   std::vector<Vec3> positions;                           // [m]
   std::vector<std::array<std::uint32_t, 4>> tetrahedra;  // node indices, all in range
+  std::vector<std::array<std::uint32_t, 8>> bricks;      // in place of tetrahedra: voxels, as BodyGeometry has them
   std::vector<Vec3> fibres;                              // unit, one for each tetrahedron, or empty
   struct Region {
     std::string name;
     std::vector<std::uint32_t> nodes;  // all in range
   };
   std::vector<Region> regions;
+
+  std::size_t elements() const { return tetrahedra.size() + bricks.size(); }
 };
+
+// The corners of a brick in the order of a hexahedron: around the lower side, then around the upper.
+inline constexpr std::array<std::size_t, 8> kHexahedronCorners = {0, 1, 3, 2, 4, 5, 7, 6};
 
 std::vector<BodyShape> DecodeGeometry(const v1::Geometry& geometry);
 
 // Positions [m] of a body that has `nodes` nodes.
 std::vector<Vec3> DecodePositions(const v1::BodyFrame& frame, std::size_t nodes);
 
-// Values of a field, component fastest: `components` for each node or tetrahedron of `shape`.
+// Values of a field, component fastest: `components` for each node or element of `shape`.
 std::vector<double> DecodeField(const v1::FieldValues& field, const BodyShape& shape);
 
 // Throws unless `frame` has as many bodies and series as `geometry`.

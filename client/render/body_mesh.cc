@@ -9,8 +9,10 @@
 #include <vtkPoints.h>
 #include <vtkPolyDataNormals.h>
 #include <vtkStreamTracer.h>
+#include <vtkWindowedSincPolyDataFilter.h>
 
 #include <algorithm>
+#include <array>
 
 #include "client/render/field_values.h"
 
@@ -49,7 +51,12 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std:
   for (const auto& t : shape.tetrahedra) {
     cells->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}, vtkIdType{t[3]}});
   }
-  grid->SetCells(VTK_TETRA, cells);
+  for (const auto& brick : shape.bricks) {
+    std::array<vtkIdType, 8> nodes;
+    for (std::size_t c = 0; c < 8; ++c) nodes[c] = brick[kHexahedronCorners[c]];
+    cells->InsertNextCell(8, nodes.data());
+  }
+  grid->SetCells(shape.bricks.empty() ? VTK_TETRA : VTK_HEXAHEDRON, cells);
   if (!values.empty()) {
     vtkNew<vtkDoubleArray> colour;
     colour->SetName("colour");
@@ -60,12 +67,20 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std:
   return grid;
 }
 
-vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid) {
+vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid, bool smooth) {
   vtkNew<vtkDataSetSurfaceFilter> surface;
   surface->SetInputData(&grid);
+  // Taubin's filter without shrinking.
+  vtkNew<vtkWindowedSincPolyDataFilter> sinc;
+  sinc->SetInputConnection(surface->GetOutputPort());
+  sinc->SetNumberOfIterations(20);
+  sinc->SetPassBand(0.05);
+  sinc->BoundarySmoothingOff();
+  sinc->FeatureEdgeSmoothingOff();
+  sinc->NormalizeCoordinatesOn();
   vtkNew<vtkPolyDataNormals> normals;
-  normals->SetInputConnection(surface->GetOutputPort());
-  normals->SetFeatureAngle(40);
+  normals->SetInputConnection(smooth ? sinc->GetOutputPort() : surface->GetOutputPort());
+  normals->SetFeatureAngle(smooth ? 60 : 40);
   normals->SplittingOn();
   normals->Update();
   return normals->GetOutput();

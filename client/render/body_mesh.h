@@ -11,12 +11,13 @@
 
 namespace fascicle::client {
 
-// The tetrahedra at given positions, with one value (`colour`) for each node when `values` is not empty.
+// The elements at given positions, with one value (`colour`) for each node when `values` is not empty.
 vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std::vector<Vec3>& positions,
                                               const std::vector<double>& values);
 
-// Outer triangles with normals for smooth shading; edges sharper than 40 degrees stay sharp.
-vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid);
+// Outer faces with normals for smooth shading; edges sharper than 40 degrees stay sharp. `smooth`: with
+// corners moved, by less than a voxel, so that steps between voxels are not seen.
+vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid, bool smooth = false);
 
 // Lines along the fibres in the deformed body, through about `seeds` points; empty without fibres.
 vtkSmartPointer<vtkPolyData> MakeFibreLines(const BodyShape& shape, const std::vector<Vec3>& positions, int seeds);

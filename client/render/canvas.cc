@@ -2,6 +2,8 @@
 
 #include <vtkImageShrink3D.h>
 #include <vtkPNGWriter.h>
+#include <vtkRenderer.h>
+#include <vtkRendererCollection.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkWindowToImageFilter.h>
 
@@ -33,7 +35,12 @@ Canvas::Canvas(PictureSize size) : size_(Checked(size)), display_(Display::Open(
   window_->SetSize(width(), height());
 }
 
-void Canvas::Save(const std::filesystem::path& path) {
+void Canvas::Clear() {
+  vtkRendererCollection& renderers = *window_->GetRenderers();
+  while (vtkRenderer* renderer = renderers.GetFirstRenderer()) window_->RemoveRenderer(renderer);
+}
+
+vtkSmartPointer<vtkImageData> Canvas::Grab() {
   window_->Render();
   vtkNew<vtkWindowToImageFilter> grab;
   grab->SetInput(window_);
@@ -44,8 +51,13 @@ void Canvas::Save(const std::filesystem::path& path) {
   average->SetInputConnection(grab->GetOutputPort());
   average->SetShrinkFactors(kSampling, kSampling, 1);
   average->AveragingOn();
+  average->Update();
+  return average->GetOutput();
+}
+
+void Canvas::Save(const std::filesystem::path& path) {
   vtkNew<vtkPNGWriter> writer;
-  writer->SetInputConnection(average->GetOutputPort());
+  writer->SetInputData(Grab());
   writer->WriteToMemoryOn();
   writer->Write();
   vtkUnsignedCharArray* bytes = writer->GetResult();

@@ -1,8 +1,10 @@
 #ifndef FASCICLE_CLIENT_RENDER_CANVAS_H_
 #define FASCICLE_CLIENT_RENDER_CANVAS_H_
 
+#include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkRenderWindow.h>
+#include <vtkSmartPointer.h>
 
 #include <filesystem>
 #include <memory>
@@ -33,6 +35,10 @@ class Canvas {
 
   // Draws and writes the file, whole or not at all. Throws std::runtime_error with a message for people.
   void Save(const std::filesystem::path& path);
+  // Draws, and gives the picture: red, green and blue of each pixel, the lowest row first.
+  vtkSmartPointer<vtkImageData> Grab();
+  // Takes everything off, for the next picture.
+  void Clear();
 
  private:
   PictureSize size_;

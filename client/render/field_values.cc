@@ -13,7 +13,7 @@ Mat3 Edges(const std::vector<Vec3>& x, const std::array<std::uint32_t, 4>& t) {
   return edges;
 }
 
-// Mean of the values of the tetrahedra around each node, weighted by rest volume.
+// Mean of the values of the elements around each node, weighted by rest volume, which all voxels share.
 std::vector<double> AverageAtNodes(const BodyShape& shape, const std::vector<double>& values) {
   std::vector<double> sums(shape.positions.size(), 0.0), weights(shape.positions.size(), 0.0);
   for (std::size_t e = 0; e < shape.tetrahedra.size(); ++e) {
@@ -21,6 +21,12 @@ std::vector<double> AverageAtNodes(const BodyShape& shape, const std::vector<dou
     for (const std::uint32_t node : shape.tetrahedra[e]) {
       sums[node] += volume * values[e];
       weights[node] += volume;
+    }
+  }
+  for (std::size_t e = 0; e < shape.bricks.size(); ++e) {
+    for (const std::uint32_t node : shape.bricks[e]) {
+      sums[node] += values[e];
+      weights[node] += 1;
     }
   }
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = weights[i] > 0 ? sums[i] / weights[i] : 0.0;

@@ -17,7 +17,7 @@ struct NodeValues {
 };
 
 // Values of `field` for colouring: `displacement`, the name of a field of the frame, or NAME/COMPONENT such as
-// `displacement/z`, `cauchy_stress/xx`. A vector without component gives its magnitude; values of tetrahedra are
+// `displacement/z`, `cauchy_stress/xx`. A vector without component gives its magnitude; values of elements are
 // averaged to nodes by rest volume. Throws std::runtime_error that lists what there is.
 NodeValues ValuesAtNodes(const BodyShape& shape, const v1::BodyFrame& frame, const std::string& field);
 

@@ -8,18 +8,24 @@
 #include <vtkPolyDataSilhouette.h>
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
+#include <vtkRendererCollection.h>
 #include <vtkScalarBarActor.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "client/lib/decode.h"
+#include "client/render/body_cloud.h"
 #include "client/render/body_mesh.h"
 #include "client/render/colour_scale.h"
 #include "client/render/field_values.h"
+#include "client/render/gif_writer.h"
 #include "client/render/view.h"
 
 namespace fascicle::client {
@@ -27,6 +33,7 @@ namespace {
 
 constexpr double kInk[3] = {0.2, 0.2, 0.2};
 constexpr int kFibreSeeds = 70;
+constexpr int kScaleWidth = 230;  // [pixel]
 
 struct Colouring {
   std::vector<std::vector<double>> values;  // for each body: one for each node; empty without colour
@@ -34,31 +41,39 @@ struct Colouring {
   ColourScale scale;
 };
 
-Colouring ColourBodies(const std::vector<BodyShape>& shapes, const v1::Frame& frame, const PictureOptions& options) {
-  Colouring colouring;
-  colouring.values.resize(shapes.size());
-  if (options.colour.empty()) return colouring;
+// The colours of each frame, on one scale.
+std::vector<Colouring> ColourFrames(const std::vector<BodyShape>& shapes, std::span<const v1::Frame> frames,
+                                    const PictureOptions& options) {
+  std::vector<Colouring> colourings(frames.size());
+  for (Colouring& colouring : colourings) colouring.values.resize(shapes.size());
+  if (options.colour.empty()) return colourings;
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   std::string title, unit;
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    NodeValues nodes = ValuesAtNodes(shapes[i], frame.bodies(static_cast<int>(i)), options.colour);
-    for (const double value : nodes.values) {
-      lowest = std::min(lowest, value);
-      highest = std::max(highest, value);
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      NodeValues nodes = ValuesAtNodes(shapes[i], frames[f].bodies(static_cast<int>(i)), options.colour);
+      for (const double value : nodes.values) {
+        lowest = std::min(lowest, value);
+        highest = std::max(highest, value);
+      }
+      colourings[f].values[i] = std::move(nodes.values);
+      title = nodes.title;
+      unit = nodes.unit;
     }
-    colouring.values[i] = std::move(nodes.values);
-    title = nodes.title;
-    unit = nodes.unit;
   }
   if (options.range) std::tie(lowest, highest) = *options.range;
   const ReadableUnit readable = MakeReadable(std::max(std::abs(lowest), std::abs(highest)), unit);
-  for (auto& values : colouring.values) {
-    for (double& value : values) value *= readable.factor;
-  }
-  colouring.scale = MakeColourScale(lowest * readable.factor, highest * readable.factor, options.range.has_value());
   std::replace(title.begin(), title.end(), '_', ' ');
-  colouring.title = title + (readable.name.empty() ? "" : " [" + readable.name + "]");
-  return colouring;
+  const ColourScale scale =
+      MakeColourScale(lowest * readable.factor, highest * readable.factor, options.range.has_value());
+  for (Colouring& colouring : colourings) {
+    for (auto& values : colouring.values) {
+      for (double& value : values) value *= readable.factor;
+    }
+    colouring.scale = scale;
+    colouring.title = title + (readable.name.empty() ? "" : " [" + readable.name + "]");
+  }
+  return colourings;
 }
 
 vtkSmartPointer<vtkActor> MakeActor(vtkPolyData* data, const Colouring& colouring) {
@@ -88,8 +103,10 @@ vtkSmartPointer<vtkActor> MakeLines(vtkPolyData* data, const double colour[3], d
 void AddBody(const BodyShape& shape, const v1::BodyFrame& frame, const Colouring& colouring, std::size_t index,
              const PictureOptions& options, vtkRenderer& renderer) {
   const std::vector<Vec3> positions = DecodePositions(frame, shape.positions.size());
-  const auto surface = MakeSurface(*MakeGrid(shape, positions, colouring.values[index]));
-  if (options.surface) {
+  const auto grid = MakeGrid(shape, positions, colouring.values[index]);
+  if (options.volume) AddCloud(*grid, colouring.scale, renderer);
+  const auto surface = MakeSurface(*grid, options.smooth);
+  if (options.surface && !options.volume) {
     const auto actor = MakeActor(surface, colouring);
     vtkProperty& property = *actor->GetProperty();
     property.SetColor(0.78, 0.36, 0.32);
@@ -124,9 +141,11 @@ void AddBody(const BodyShape& shape, const v1::BodyFrame& frame, const Colouring
 void AddRestOutlines(const std::vector<BodyShape>& shapes, vtkRenderer& renderer, vtkRenderer& overlay) {
   for (const BodyShape& shape : shapes) {
     vtkNew<vtkPolyDataSilhouette> silhouette;
-    silhouette->SetInputData(MakeSurface(*MakeGrid(shape, shape.positions, {})));
+    // Of voxels the contour alone: their edges are everywhere.
+    const bool voxels = !shape.bricks.empty();
+    silhouette->SetInputData(MakeSurface(*MakeGrid(shape, shape.positions, {}), voxels));
     silhouette->SetCamera(renderer.GetActiveCamera());
-    silhouette->SetEnableFeatureAngle(60);
+    silhouette->SetEnableFeatureAngle(voxels ? 0 : 60);
     silhouette->Update();
     overlay.AddActor(MakeLines(silhouette->GetOutput(), kInk, 1.3, 0.45));
   }
@@ -144,7 +163,8 @@ void AddText(const std::string& text, double x, double y, int size, bool bold, v
   renderer.AddActor2D(actor);
 }
 
-void AddScale(const Colouring& colouring, vtkRenderer& renderer) {
+// `width` is that of the renderer [pixel drawn].
+void AddScale(const Colouring& colouring, double width, vtkRenderer& renderer) {
   if (colouring.scale.table == nullptr) return;
   vtkNew<vtkScalarBarActor> bar;
   bar->SetLookupTable(colouring.scale.table);
@@ -159,8 +179,9 @@ void AddScale(const Colouring& colouring, vtkRenderer& renderer) {
   bar->GetLabelTextProperty()->ShadowOff();
   bar->SetBarRatio(0.22);
   bar->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  bar->SetPosition(0.86, 0.16);
-  bar->SetWidth(0.12);
+  const double pixel = Canvas::kSampling / width;
+  bar->SetPosition(1 - 168 * pixel, 0.16);
+  bar->SetWidth(144 * pixel);
   bar->SetHeight(0.62);
   bar->DrawFrameOff();
   renderer.AddActor2D(bar);
@@ -171,7 +192,7 @@ void AddScale(const Colouring& colouring, vtkRenderer& renderer) {
   title->GetTextProperty()->SetJustificationToRight();
   title->GetTextProperty()->SetVerticalJustificationToBottom();
   title->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  title->SetPosition(0.98, 0.81);
+  title->SetPosition(1 - 24 * pixel, 0.81);
   renderer.AddActor2D(title);
 }
 
@@ -181,50 +202,164 @@ std::string TimeText(const v1::Frame& frame) {
   return text;
 }
 
-}  // namespace
+// What all panels of a picture share.
+struct Setting {
+  std::vector<BodyShape> shapes;
+  std::vector<Colouring> colourings;  // of each frame
+  std::array<double, 6> bounds;       // of all bodies in all frames, as VTK has them [m]
+};
 
-void DrawPicture(const v1::Geometry& geometry, const v1::Frame& frame, const PictureOptions& options,
-                 const std::filesystem::path& path) {
-  CheckFits(frame, geometry);
-  const std::vector<BodyShape> shapes = DecodeGeometry(geometry);
-  const Colouring colouring = ColourBodies(shapes, frame, options);
-  Canvas canvas(options.size);
-  vtkNew<vtkRenderer> renderer;
-  renderer->SetBackground(0.90, 0.92, 0.95);
-  renderer->SetBackground2(1, 1, 1);
-  renderer->GradientBackgroundOn();
-  renderer->SetUseDepthPeeling(true);
-  renderer->SetMaximumNumberOfPeels(12);
-  renderer->SetOcclusionRatio(0);
-  canvas.window().AddRenderer(renderer);
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    AddBody(shapes[i], frame.bodies(static_cast<int>(i)), colouring, i, options, *renderer);
+Setting MakeSetting(const v1::Geometry& geometry, std::span<const v1::Frame> frames, const PictureOptions& options) {
+  Setting setting;
+  for (const v1::Frame& frame : frames) CheckFits(frame, geometry);
+  setting.shapes = DecodeGeometry(geometry);
+  setting.colourings = ColourFrames(setting.shapes, frames, options);
+  vtkBoundingBox box;
+  for (const v1::Frame& frame : frames) {
+    for (std::size_t i = 0; i < setting.shapes.size(); ++i) {
+      const std::size_t nodes = setting.shapes[i].positions.size();
+      for (const Vec3& x : DecodePositions(frame.bodies(static_cast<int>(i)), nodes)) box.AddPoint(x[0], x[1], x[2]);
+    }
   }
+  box.GetBounds(setting.bounds.data());
+  return setting;
+}
+
+// A part of a picture: [left, right] x [bottom, top] of it, each from 0 to 1.
+struct Part {
+  double left = 0, bottom = 0, right = 1, top = 1;
+};
+
+void AddLights(vtkRenderer& renderer) {
   // From above the eye, so that faces that look up are not black.
   vtkNew<vtkLight> above;
   above->SetLightTypeToCameraLight();
   above->SetPosition(0.3, 1, 0.4);
   above->SetIntensity(0.45);
-  renderer->AddLight(above);
+  renderer.AddLight(above);
   vtkNew<vtkLight> eye;
   eye->SetLightTypeToHeadlight();
   eye->SetIntensity(0.75);
-  renderer->AddLight(eye);
-  double bounds[6];
-  renderer->ComputeVisiblePropBounds(bounds);
-  AimCamera(options, bounds, *renderer);
+  renderer.AddLight(eye);
+}
+
+vtkSmartPointer<vtkRenderer> AddBackground(const Part& part, Canvas& canvas) {
+  auto renderer = vtkSmartPointer<vtkRenderer>::New();
+  renderer->SetViewport(part.left, part.bottom, part.right, part.top);
+  renderer->SetBackground(0.90, 0.92, 0.95);
+  renderer->SetBackground2(1, 1, 1);
+  renderer->GradientBackgroundOn();
+  canvas.window().AddRenderer(renderer);
+  return renderer;
+}
+
+// Draws one frame into a part of the canvas. The length bar is in the last.
+vtkSmartPointer<vtkRenderer> AddPanel(const Setting& setting, const v1::Frame& frame, std::size_t index,
+                                      const PictureOptions& options, const Part& part, bool last, Canvas& canvas) {
+  const double width = canvas.width() * (part.right - part.left), height = canvas.height() * (part.top - part.bottom);
+  const auto renderer = AddBackground(part, canvas);
+  renderer->SetUseDepthPeeling(!options.volume);  // rays are cast over what is drawn before
+  renderer->SetMaximumNumberOfPeels(12);
+  renderer->SetOcclusionRatio(0);
+  for (std::size_t i = 0; i < setting.shapes.size(); ++i) {
+    AddBody(setting.shapes[i], frame.bodies(static_cast<int>(i)), setting.colourings[index], i, options, *renderer);
+  }
+  AddLights(*renderer);
+  AimCamera(options, setting.bounds.data(), width / height, *renderer);
   vtkNew<vtkRenderer> overlay;
   overlay->SetLayer(1);
+  overlay->SetViewport(renderer->GetViewport());
   overlay->SetActiveCamera(renderer->GetActiveCamera());
-  canvas.window().SetNumberOfLayers(3);
   canvas.window().AddRenderer(overlay);
-  if (options.rest_outline) AddRestOutlines(shapes, *renderer, *overlay);
-  AddText(options.title, 0.025, 0.965, 22, true, *renderer);
-  if (options.time) AddText(TimeText(frame), 0.025, 0.915, 17, false, *renderer);
-  AddScale(colouring, *renderer);
-  AddLengthBar(canvas, *renderer);
-  AddDirections(canvas.window(), *renderer);
+  if (options.rest_outline) AddRestOutlines(setting.shapes, *renderer, *overlay);
+  if (options.time) AddText(TimeText(frame), 0.025, 0.965 - 45.0 * Canvas::kSampling / height, 17, false, *renderer);
+  if (last) AddLengthBar(width, height, *renderer);
+  return renderer;
+}
+
+// Rows and columns for so many panels of a picture of that shape, all as near to square as can be.
+std::pair<int, int> LayOut(std::size_t count, const PictureSize& size) {
+  int columns = 1;
+  const auto shape = [&](int c) {
+    const int rows = (static_cast<int>(count) + c - 1) / c;
+    return std::abs(std::log(static_cast<double>(size.width) / c * rows / size.height));
+  };
+  for (int c = 2; c <= static_cast<int>(count); ++c) {
+    if (shape(c) < shape(columns)) columns = c;
+  }
+  return {(static_cast<int>(count) + columns - 1) / columns, columns};
+}
+
+void AddPanels(const Setting& setting, std::span<const v1::Frame> frames, std::size_t first_index,
+               const PictureOptions& options, Canvas& canvas) {
+  canvas.window().SetNumberOfLayers(3);
+  // The scale stands beside panels; a single frame keeps clear of it.
+  const Colouring& colouring = setting.colourings[first_index];
+  const bool beside = frames.size() > 1 && colouring.scale.table != nullptr;
+  const double right = beside ? 1 - static_cast<double>(kScaleWidth) / options.size.width : 1;
+  const auto [rows, columns] =
+      LayOut(frames.size(), {static_cast<int>(right * options.size.width), options.size.height});
+  vtkSmartPointer<vtkRenderer> of_scale;
+  for (int cell = 0; cell < rows * columns; ++cell) {
+    const int row = cell / columns, column = cell % columns;
+    const Part part = {right * column / columns, 1 - static_cast<double>(row + 1) / rows,
+                       right * (column + 1) / columns, 1 - static_cast<double>(row) / rows};
+    const auto f = static_cast<std::size_t>(cell);
+    if (f < frames.size()) {
+      of_scale = AddPanel(setting, frames[f], first_index + f, options, part, f + 1 == frames.size(), canvas);
+    } else {
+      AddBackground(part, canvas);
+    }
+  }
+  if (beside) of_scale = AddBackground({right, 0, 1, 1}, canvas);
+  AddScale(colouring, canvas.width() * (beside ? 1 - right : 1), *of_scale);
+  // The title may be wider than a panel.
+  vtkNew<vtkRenderer> over_all;
+  over_all->SetLayer(1);
+  canvas.window().AddRenderer(over_all);
+  AddText(options.title, 0.025, 0.965, 22, true, *over_all);
+  AddDirections(canvas.window(), *canvas.window().GetRenderers()->GetFirstRenderer());
+}
+
+}  // namespace
+
+void DrawPicture(const v1::Geometry& geometry, const v1::Frame& frame, const PictureOptions& options,
+                 const std::filesystem::path& path) {
+  DrawPanels(geometry, {&frame, 1}, options, path);
+}
+
+void DrawPanels(const v1::Geometry& geometry, std::span<const v1::Frame> frames, const PictureOptions& options,
+                const std::filesystem::path& path) {
+  constexpr std::size_t kMostPanels = 24;
+  if (frames.empty() || frames.size() > kMostPanels) throw std::runtime_error("a picture has 1 to 24 panels");
+  const Setting setting = MakeSetting(geometry, frames, options);
+  Canvas canvas(options.size);
+  AddPanels(setting, frames, 0, options, canvas);
   canvas.Save(path);
+}
+
+void DrawAnimation(const v1::Geometry& geometry, std::span<const v1::Frame> frames, const PictureOptions& options,
+                   const AnimationOptions& animation, const std::filesystem::path& path,
+                   const std::function<void(double)>& progress) {
+  if (frames.empty()) throw std::runtime_error("an animation needs at least one frame");
+  const std::span<const v1::Frame> shown = animation.turntable > 0 ? frames.last(1) : frames;
+  const Setting setting = MakeSetting(geometry, shown, options);
+  const std::size_t count = animation.turntable > 0 ? static_cast<std::size_t>(animation.turntable) : shown.size();
+  Canvas canvas(options.size);
+  GifWriter gif(options.size, animation.frames_per_second);
+  for (std::size_t f = 0; f < count; ++f) {
+    PictureOptions turned = options;
+    if (animation.turntable > 0) {
+      turned.azimuth = options.azimuth.value_or(-60) + 360.0 * static_cast<double>(f) / static_cast<double>(count);
+      turned.elevation = options.elevation.value_or(20);
+    }
+    canvas.Clear();
+    const std::size_t at = animation.turntable > 0 ? 0 : f;
+    AddPanels(setting, shown.subspan(at, 1), at, turned, canvas);
+    gif.Add(*canvas.Grab());
+    if (progress) progress(static_cast<double>(f + 1) / static_cast<double>(count));
+  }
+  gif.Save(path);
 }
 
 }  // namespace fascicle::client

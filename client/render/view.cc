@@ -71,7 +71,7 @@ std::string LengthText(double metres) {
 
 }  // namespace
 
-void AimCamera(const PictureOptions& options, const double bounds[6], vtkRenderer& renderer) {
+void AimCamera(const PictureOptions& options, const double bounds[6], double aspect, vtkRenderer& renderer) {
   const Vec3 low(bounds[0], bounds[2], bounds[4]), high(bounds[1], bounds[3], bounds[5]);
   const Vec3 middle = (low + high) / 2, half = (high - low) / 2;
   const Aim aim = ChooseAim(options, 2 * half);
@@ -82,7 +82,6 @@ void AimCamera(const PictureOptions& options, const double bounds[6], vtkRendere
   const Vec3 right = up.cross(aim.eye);
   // What the box covers of the picture, and the part of the picture that is free of texts and scale.
   const double half_width = half.dot(right.cwiseAbs()), half_height = half.dot(up.cwiseAbs());
-  const double aspect = static_cast<double>(options.size.width) / options.size.height;
   constexpr double kFreeWidth = 0.74, kFreeHeight = 0.70;
   const double scale = std::max({half_height / kFreeHeight, half_width / (kFreeWidth * aspect), 1e-9}) / options.zoom;
   // Moves the body left of the colour scale.
@@ -95,11 +94,11 @@ void AimCamera(const PictureOptions& options, const double bounds[6], vtkRendere
   renderer.ResetCameraClippingRange();
 }
 
-void AddLengthBar(const Canvas& canvas, vtkRenderer& renderer) {
-  const double metres_per_pixel = 2 * renderer.GetActiveCamera()->GetParallelScale() / canvas.height();
-  const double length = RoundLength(metres_per_pixel * canvas.width() / 5);
+void AddLengthBar(double width, double height, vtkRenderer& renderer) {
+  const double metres_per_pixel = 2 * renderer.GetActiveCamera()->GetParallelScale() / height;
+  const double length = RoundLength(metres_per_pixel * width / 5);
   const double pixels = length / metres_per_pixel;
-  const double right = 0.80 * canvas.width(), y = 0.06 * canvas.height(), tick = 0.008 * canvas.height();
+  const double right = 0.80 * width, y = 0.06 * height, tick = 0.008 * height;
   vtkNew<vtkPoints> points;
   points->InsertNextPoint(right - pixels, y + tick, 0);
   points->InsertNextPoint(right - pixels, y, 0);

@@ -9,11 +9,13 @@ namespace fascicle::client {
 
 // Where the eye stands and what fits into the picture. Parallel projection, so that lengths can be measured.
 
-// Points the camera of `renderer` at its props; `bounds` [m] as VTK has them (xmin, xmax, ...), of the bodies.
-void AimCamera(const PictureOptions& options, const double bounds[6], vtkRenderer& renderer);
+// Points the camera of `renderer` at what lies in `bounds` [m] (as VTK has them: xmin, xmax, ...); `aspect` is the
+// width of its part of the picture over the height.
+void AimCamera(const PictureOptions& options, const double bounds[6], double aspect, vtkRenderer& renderer);
 
-// Draws a bar of a round length with its name into the lower right corner. The camera must have been aimed.
-void AddLengthBar(const Canvas& canvas, vtkRenderer& renderer);
+// Draws a bar of a round length with its name into the lower right corner of a renderer of that size [pixel drawn]. The
+// camera must have been aimed.
+void AddLengthBar(double width, double height, vtkRenderer& renderer);
 
 // Draws the directions of x, y and z into the lower left corner, in layer 2 of the window.
 void AddDirections(vtkRenderWindow& window, vtkRenderer& renderer);

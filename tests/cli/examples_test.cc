@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -68,7 +69,82 @@ TEST_F(ExampleTest, NoneIsForgotten) {
                   "fusiform_bspline", "fusiform_quasi_static", "rubber_bending", "graded_bar", "let_go", "mesh_file",
                   "muscle_lifts", "partial_recruitment", "rubber_stretch", "sphere_hanging", "tendon_pull",
                   "torus_bounce", "torus_ringing", "twitch", "two_compartments", "fusiform_isometric",
-                  "biceps_isometric", "biceps_femoris_isometric", "biceps_tendon", "triceps_tendon"));
+                  "biceps_isometric", "biceps_femoris_isometric", "biceps_tendon", "triceps_tendon", "voxel_cantilever",
+                  "anconeus_loads", "anconeus_release", "anconeus_stern", "biceps_voxels"));
+}
+
+// All values of a series, frame by frame.
+std::vector<double> SeriesOf(const std::filesystem::path& csv, const std::string& name) {
+  std::ifstream in(csv);
+  std::string line;
+  std::size_t column = 0;
+  bool found = false;
+  std::getline(in, line);
+  std::istringstream header(line);
+  for (std::string cell; std::getline(header, cell, ',') && !found;) {
+    found = cell.find(name) != std::string::npos;
+    if (!found) ++column;
+  }
+  EXPECT_TRUE(found) << name << " in " << line;
+  std::vector<double> values;
+  while (std::getline(in, line)) {
+    std::istringstream row(line);
+    std::string cell;
+    for (std::size_t c = 0; c <= column; ++c) std::getline(row, cell, ',');
+    values.push_back(std::stod(cell));
+  }
+  return values;
+}
+
+TEST_F(ExampleTest, VoxelCantilever) {
+  const json summary = RunExample("voxel_cantilever");
+  // F L^3 / (3 E I) + F L / (5/6 G A), less about 1 % for the clamped end and 16 bricks across.
+  const double beam =
+      10 * std::pow(0.08, 3) / (3 * 1e9 * std::pow(0.01, 4) / 12) + 10 * 0.08 / (5.0 / 6 * 1e9 / 2.6 * 1e-4);
+  EXPECT_NEAR(Final(summary, "probe/tip/z"), -beam, 0.015 * beam);
+  EXPECT_NEAR(Final(summary, "beam/reaction/wall/z"), 10, 1e-5);
+}
+
+TEST_F(ExampleTest, AnconeusLoads) {
+  const std::string out = folder_ / "out";
+  const json summary = RunExample("anconeus_loads", {"--out", out});
+  const std::vector<double> x = SeriesOf(folder_ / "out/series.csv", "probe/upper/y");
+  ASSERT_EQ(x.size(), 5u);
+  EXPECT_EQ(x[0], 0);
+  for (std::size_t f = 2; f < 5; ++f) EXPECT_NEAR(x[f] / x[1], static_cast<double>(f), 1e-5);
+  EXPECT_GT(x[4], 0.001);
+  EXPECT_NEAR(Final(summary, "anconeus/reaction/lower/y"), -1000, 0.01);
+  EXPECT_NEAR(Final(summary, "anconeus/reaction/lower/x"), 0, 0.01);
+}
+
+TEST_F(ExampleTest, AnconeusRelease) {
+  const std::string out = folder_ / "out";
+  RunExample("anconeus_release", {"--out", out});
+  const std::vector<double> x = SeriesOf(folder_ / "out/series.csv", "probe/upper/x");
+  ASSERT_EQ(x.size(), 23u);
+  // Turning points and passages through rest.
+  std::vector<double> peaks = {x[0]};
+  for (std::size_t f = 1; f + 1 < x.size(); ++f) {
+    if ((x[f] - x[f - 1]) * (x[f + 1] - x[f]) < 0) peaks.push_back(x[f]);
+  }
+  ASSERT_GE(peaks.size(), 3u);
+  for (std::size_t k = 1; k < peaks.size(); ++k) {
+    EXPECT_LT(peaks[k] * peaks[k - 1], 0);
+    EXPECT_LT(std::abs(peaks[k]), std::abs(peaks[k - 1]));
+  }
+}
+
+TEST_F(ExampleTest, AnconeusStern) {
+  const std::string out = folder_ / "out";
+  RunExample("anconeus_stern", {"--out", out});
+  const std::vector<double> pull = SeriesOf(folder_ / "out/series.csv", "anconeus/load/0/upper");
+  const std::vector<double> held = SeriesOf(folder_ / "out/series.csv", "anconeus/reaction/lower/y");
+  ASSERT_EQ(pull.size(), 21u);
+  EXPECT_EQ(pull[0], 0);
+  EXPECT_GT(pull[4], 100);      // isometric at 0.08 s
+  EXPECT_LT(pull[8], pull[4]);  // shortening at 0.16 s
+  EXPECT_GT(pull[8], 0);
+  for (std::size_t f = 0; f < pull.size(); ++f) EXPECT_NEAR(held[f], -pull[f] / std::hypot(0.2, 1), 0.01);
 }
 
 TEST_F(ExampleTest, BarTension) {

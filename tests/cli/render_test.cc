@@ -1,3 +1,4 @@
+#include <gif_lib.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <vtkImageData.h>
@@ -21,6 +22,7 @@
 namespace fascicle::client {
 namespace {
 
+using ::fascicle::testing::Bytes;
 using ::fascicle::testing::SampleJob;
 using ::fascicle::testing::ScratchFolder;
 using ::testing::HasSubstr;
@@ -123,6 +125,129 @@ TEST_F(RenderTest, NamesTheFieldsThatThereAre) {
   options.colour = "velocity/q";
   EXPECT_THROW(Draw(options), std::runtime_error);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "picture.png"));
+}
+
+// A row of bricks along x, the last of them twice as long as the others in frame 1.
+struct Bricks {
+  v1::Geometry geometry;
+  std::vector<v1::Frame> frames;
+
+  explicit Bricks(int count) {
+    std::vector<double> positions;
+    std::vector<std::uint32_t> bricks;
+    const auto node = [count](int i, int j, int k) {
+      return static_cast<std::uint32_t>(i + (count + 1) * (j + 2 * k));
+    };
+    for (int k = 0; k < 2; ++k) {
+      for (int j = 0; j < 2; ++j) {
+        for (int i = 0; i <= count; ++i) positions.insert(positions.end(), {0.01 * i, 0.01 * j, 0.01 * k});
+      }
+    }
+    for (int i = 0; i < count; ++i) {
+      for (int c = 0; c < 8; ++c) bricks.push_back(node(i + (c & 1), c >> 1 & 1, c >> 2));
+    }
+    v1::BodyGeometry& body = *geometry.add_bodies();
+    body.set_name("row");
+    body.set_positions(Bytes(positions));
+    body.set_bricks(Bytes(bricks));
+    for (int f = 0; f < 2; ++f) {
+      v1::Frame& frame = frames.emplace_back();
+      frame.set_index(f);
+      std::vector<double> moved = positions, values;
+      for (int n = 0; n < 4; ++n) moved[3 * node(count, n & 1, n >> 1)] += 0.01 * f;
+      for (int i = 0; i < count; ++i) values.push_back(f * i);
+      v1::BodyFrame& of_body = *frame.add_bodies();
+      of_body.set_positions(Bytes(moved));
+      v1::FieldValues& field = *of_body.add_fields();
+      field.set_name("volume_ratio");
+      field.set_location(v1::FieldValues::LOCATION_BRICK);
+      field.set_components(1);
+      field.set_values(Bytes(values));
+    }
+  }
+};
+
+TEST_F(RenderTest, BricksAreDrawnInTheColoursOfTheirField) {
+  const Bricks row(6);
+  PictureOptions options = Small();
+  options.colour = "volume_ratio";
+  options.range = {0, 5};
+  const std::string path = folder_ / "bricks.png";
+  DrawPicture(row.geometry, row.frames[1], options, path);
+  const Image image = ReadPng(path);
+  EXPECT_GT(image.Count(IsYellow), 300u);
+  EXPECT_GT(image.Count(IsViolet), 300u);
+  options.smooth = true;
+  DrawPicture(row.geometry, row.frames[1], options, path);
+  EXPECT_NE(ReadPng(path).pixels, image.pixels);
+}
+
+TEST_F(RenderTest, PanelsShareEyeAndScale) {
+  PictureOptions options = Small();
+  options.size = {800, 300};
+  const std::vector<v1::Frame> frames = {job_.frame(0), job_.frame(10)};
+  const std::string path = folder_ / "panels.png";
+  DrawPanels(job_.geometry(), frames, options, path);
+  const Image image = ReadPng(path);
+  // On the left nothing has moved: all of it has the colour of zero.
+  std::size_t left = 0, right = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < 565; ++x) {  // the scale is beside
+      if (IsYellow(image.pixels[static_cast<std::size_t>(y * image.width + x)])) ++(x < 285 ? left : right);
+    }
+  }
+  EXPECT_EQ(left, 0u);
+  EXPECT_GT(right, 200u);
+  EXPECT_THROW(DrawPanels(job_.geometry(), std::vector<v1::Frame>(25, job_.frame(0)), options, path),
+               std::runtime_error);
+}
+
+// A cloud shows what is behind: the middle of a thick body is denser than its rim.
+TEST_F(RenderTest, ACloudIsDenserWhereItIsThicker) {
+  PictureOptions options = Small();
+  options.colour = "";
+  options.rest_outline = false;
+  options.volume = true;
+  options.azimuth = 0;
+  options.elevation = 0;
+  const Image cloud = Draw(options, 0);
+  // The belly, 32 mm through, takes more light than the ends of 12 mm.
+  const auto red = [](int least) { return [least](const Pixel& p) { return p[0] > p[2] + least; }; };
+  EXPECT_GT(cloud.Count(red(10)), 2 * cloud.Count(red(90)));
+  EXPECT_GT(cloud.Count(red(90)), 300u);
+}
+
+TEST_F(RenderTest, AnimationsAreGifsThatRepeat) {
+  PictureOptions options = Small();
+  options.size = {120, 90};
+  const std::vector<v1::Frame> frames = {job_.frame(0), job_.frame(5), job_.frame(10)};
+  const std::string path = folder_ / "run.gif";
+  double done = 0;
+  DrawAnimation(job_.geometry(), frames, options, {.frames_per_second = 20, .turntable = 0}, path,
+                [&](double part) { done = part; });
+  EXPECT_EQ(done, 1);
+  int error = 0;
+  GifFileType* gif = DGifOpenFileName(path.c_str(), &error);
+  ASSERT_NE(gif, nullptr);
+  ASSERT_EQ(DGifSlurp(gif), GIF_OK);
+  EXPECT_EQ(gif->ImageCount, 3);
+  EXPECT_EQ(gif->SWidth, 120);
+  EXPECT_EQ(gif->SHeight, 90);
+  GraphicsControlBlock control;
+  ASSERT_EQ(DGifSavedExtensionToGCB(gif, 1, &control), GIF_OK);
+  EXPECT_EQ(control.DelayTime, 5);  // 0.01 s
+  const auto pixels = [&](int i) {
+    return std::vector<GifByteType>(gif->SavedImages[i].RasterBits, gif->SavedImages[i].RasterBits + 120 * 90);
+  };
+  EXPECT_NE(pixels(0), pixels(2));
+  DGifCloseFile(gif, &error);
+
+  DrawAnimation(job_.geometry(), frames, options, {.frames_per_second = 20, .turntable = 4}, path);
+  gif = DGifOpenFileName(path.c_str(), &error);
+  ASSERT_NE(gif, nullptr);
+  ASSERT_EQ(DGifSlurp(gif), GIF_OK);
+  EXPECT_EQ(gif->ImageCount, 4);
+  DGifCloseFile(gif, &error);
 }
 
 TEST_F(RenderTest, RefusesSizesThatNoOneWants) {
