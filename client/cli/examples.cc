@@ -68,7 +68,7 @@ std::vector<Example> AllExamples() {
         if (path.ends_with(".node")) AddFile(path.substr(0, path.size() - 5) + ".ele", example);
       }
       if (body.mesh().image().has_file()) AddFile(body.mesh().image().file().path(), example);
-      for (const v1::FileRef& file : body.mesh().image().more_files()) AddFile(file.path(), example);
+      for (const v1::FileRef& more : body.mesh().image().more_files()) AddFile(more.path(), example);
       if (body.fibres().has_file()) AddFile(body.fibres().file().path(), example);
       if (body.has_element_parameters()) AddFile(body.element_parameters().path(), example);
       if (body.has_activation_scale()) AddFile(body.activation_scale().path(), example);
