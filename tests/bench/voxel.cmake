@@ -6,7 +6,7 @@ fascicle_bench(voxel_dynamic_bench SOURCES voxel_dynamic_bench.cc DEPS ${voxel_r
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
 find_library(CHOLMOD_LIBRARY cholmod)
 if(CHOLMOD_INCLUDE_DIR AND CHOLMOD_LIBRARY)
-  fascicle_bench(voxel_static_bench SOURCES voxel_static_bench.cc DEPS ${voxel_rooms} ZLIB::ZLIB)
+  fascicle_bench(voxel_static_bench SOURCES voxel_static_bench.cc DEPS core/imaging ${voxel_rooms})
   # CHOLMOD's supernodal module is GPL: nothing but benchmarks links it.
   target_include_directories(voxel_static_bench SYSTEM PRIVATE ${CHOLMOD_INCLUDE_DIR})
   target_link_libraries(voxel_static_bench PRIVATE ${CHOLMOD_LIBRARY})
