@@ -23,6 +23,18 @@ StepProblem ProblemOf(const EquilibriumResult& result, const std::stop_token& st
   return stop.stop_requested() ? StepProblem::kStopped : StepProblem::kNotSolved;
 }
 
+// What acts on a body at a time: forces [N], and displacements of what supports prescribe [m].
+struct Acting {
+  VoxelField<double> force, prescribed;
+};
+Acting ActingAt(const VoxelSceneBody& body, double time) {
+  const std::int32_t nodes = body.model().mesh().nodes();
+  Acting acting = {VoxelField<double>(nodes), VoxelField<double>(nodes)};
+  body.ForceAt(time, acting.force);
+  body.PrescribeAt(time, acting.prescribed);
+  return acting;
+}
+
 std::string IndexName(const char* what, std::size_t body) { return what + std::to_string(body); }
 
 }  // namespace
@@ -114,9 +126,7 @@ VoxelSolveReport VoxelSolver::SolveStatic(VoxelSceneState& state, double time, c
   VoxelSceneState next = state;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const VoxelSceneBody& body = *bodies_[b];
-    VoxelField<double> force(body.model().mesh().nodes()), prescribed(body.model().mesh().nodes());
-    body.ForceAt(time, force);
-    body.PrescribeAt(time, prescribed);
+    const auto [force, prescribed] = ActingAt(body, time);
     VoxelStaticSolver& solver = StaticSolverOf(b);
     const StageTimer timer(profile_, "static solve");
     StaticSolution solution = solver.Solve(force, prescribed, {.tolerance = scene_.voxel.tolerance, .stop = stop},
@@ -138,9 +148,7 @@ VoxelSolveReport VoxelSolver::StepDynamic(VoxelSceneState& state, double time, c
   VoxelSceneState next = state;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const VoxelSceneBody& body = *bodies_[b];
-    VoxelField<double> force(body.model().mesh().nodes()), prescribed(body.model().mesh().nodes());
-    body.ForceAt(time, force);
-    body.PrescribeAt(time, prescribed);
+    const auto [force, prescribed] = ActingAt(body, time);
     const StageTimer timer(profile_, "dynamic solve");
     const VoxelStepReport report = dynamic_solvers_[b]->Step(force, prescribed, next.bodies[b], stop);
     if (const StepProblem problem = ProblemOf(report.iterations, stop); problem != StepProblem::kNone) {
