@@ -109,7 +109,7 @@ TEST_F(SegmentTest, BrightMusclesOfAThigh) {
   const char* data = std::getenv("FASCICLE_DATA");
   const fs::path thigh = (data != nullptr ? fs::path(data) : fs::path(FASCICLE_ROOT) / "../shared/data") /
                          "qmritools_leg_mri/thigh_one_leg_i16.mha";
-  if (!fs::exists(thigh)) GTEST_SKIP() << "not at hand: " << thigh;
+  if (!fs::exists(thigh)) GTEST_SKIP() << thigh << " is not there; set FASCICLE_DATA";
   const Finished found = Fascicle({"segment", thigh, "--filter", "wavelet", "--class", "2", "--opening", "2",
                                    "--picture", File("thigh.png"), "--json"});
   ASSERT_EQ(found.exit_code, 0) << found.err << found.out;

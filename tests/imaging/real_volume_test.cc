@@ -23,7 +23,7 @@ std::optional<VolumeImage> Read(const std::string& name) {
 bool Missing(const std::string& name) { return !std::filesystem::exists(DataFolder() / name); }
 
 #define SKIP_WITHOUT(name) \
-  if (Missing(name)) GTEST_SKIP() << "not at hand: " << name
+  if (Missing(name)) GTEST_SKIP() << name << " is not there; set FASCICLE_DATA"
 
 TEST(RealVolume, LabelsOfAnUpperArm) {
   const std::string name = "voxel_labels/upper_arm_biceps1_triceps2_1mm.mha";
