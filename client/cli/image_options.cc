@@ -86,6 +86,12 @@ std::optional<ImageFilter> ParseFilter(const std::string& text) {
     if (given > 1) filter.threshold = numbers[1];
     return filter;
   }
+  if (parts[0] == "bias-field" && whole) {
+    BiasFieldFilter filter;
+    if (given > 0) filter.refinements = static_cast<int>(numbers[0]);
+    if (given > 1) filter.iterations = static_cast<int>(numbers[1]);
+    return filter;
+  }
   return std::nullopt;
 }
 
@@ -201,9 +207,11 @@ void AddImageOptions(CLI::App& command, ImageOptions& options) {
       ->type_name("MM")
       ->group("Image");
   command
-      .add_option("--filter", options.filters,
-                  "Takes noise out; may be repeated, in order: wavelet[:SCALES[:THRESHOLD]] (3 scales, 3 deviations of "
-                  "the noise), gaussian[:MM] (1 mm), curvature[:ITERATIONS[:CONDUCTANCE]] (5, 1)")
+      .add_option(
+          "--filter", options.filters,
+          "Prepares the image; may be repeated, in order. Against noise: wavelet[:SCALES[:THRESHOLD]] (3 scales, 3 "
+          "deviations of the noise), gaussian[:MM] (1 mm), curvature[:ITERATIONS[:CONDUCTANCE]] (5, 1). Against a "
+          "coil's uneven sensitivity: bias-field[:REFINEMENTS[:ITERATIONS]] (3, 50)")
       ->type_name("FILTER")
       ->allow_extra_args(false)
       ->group("Image");
@@ -262,7 +270,8 @@ GivenImage ReadGivenImage(const ImageOptions& options, Problems problems) {
       stage.filters.push_back(*filter);
     } else {
       problems.Add("--filter", "`" + text + "` is no filter",
-                   "wavelet[:SCALES[:THRESHOLD]], gaussian[:MM] or curvature[:ITERATIONS[:CONDUCTANCE]]");
+                   "wavelet[:SCALES[:THRESHOLD]], gaussian[:MM], curvature[:ITERATIONS[:CONDUCTANCE]] or "
+                   "bias-field[:REFINEMENTS[:ITERATIONS]]");
     }
   }
   stage.choice = ReadChoice(options, problems);

@@ -19,6 +19,9 @@ void CheckFilter(const ImageFilter& filter, const std::string& path, Problems& p
     if (!(curvature->conductance > 0) || !std::isfinite(curvature->conductance)) {
       problems.Add(path + ".conductance", "must be above 0", "1 is usual; larger blurs more");
     }
+  } else if (const auto* bias = std::get_if<BiasFieldFilter>(&filter)) {
+    if (!InRange(bias->refinements, 0, 5)) problems.Add(path + ".refinements", "must be 0 to 5", "3 is usual");
+    if (!InRange(bias->iterations, 1, 500)) problems.Add(path + ".iterations", "must be 1 to 500", "50 is usual");
   } else {
     const auto& wavelet = std::get<WaveletFilter>(filter);
     if (!InRange(wavelet.scales, 1, 8)) problems.Add(path + ".scales", "must be 1 to 8", "3 is usual");

@@ -1,5 +1,6 @@
 #include "core/imaging/filters.h"
 
+#include "core/imaging/bias_field.h"
 #include "core/imaging/itk_filters.h"
 #include "core/imaging/wavelet.h"
 
@@ -8,6 +9,7 @@ namespace fascicle {
 VolumeImage ApplyFilter(const VolumeImage& image, const ImageFilter& filter, ThreadTeam& team) {
   if (const auto* gaussian = std::get_if<GaussianFilter>(&filter)) return GaussianOf(image, *gaussian, team.size());
   if (const auto* curvature = std::get_if<CurvatureFilter>(&filter)) return DiffusedOf(image, *curvature, team.size());
+  if (const auto* bias = std::get_if<BiasFieldFilter>(&filter)) return WithoutBiasField(image, *bias);
   return WaveletFiltered(image, std::get<WaveletFilter>(filter), team);
 }
 

@@ -35,7 +35,18 @@ struct WaveletFilter {
   bool operator==(const WaveletFilter&) const = default;
 };
 
-using ImageFilter = std::variant<GaussianFilter, CurvatureFilter, WaveletFilter>;
+// Divides by the smooth field by which the receiving coil's sensitivity varies over the image: N4 [Tustison 2010,
+// N4ITK: improved N3 bias correction]. The field is a cubic B-spline whose grid is one cell at first; its logarithm is
+// 0 in the mean over what is brighter than the darker of two classes of Otsu, from which it is found. For values above
+// 0; others stay as they are.
+struct BiasFieldFilter {
+  int refinements = 3;  // 0 to 5: times that the grid is halved
+  int iterations = 50;  // 1 to 500: on each grid, fewer where the field no longer changes
+
+  bool operator==(const BiasFieldFilter&) const = default;
+};
+
+using ImageFilter = std::variant<GaussianFilter, CurvatureFilter, WaveletFilter, BiasFieldFilter>;
 
 // The filtered image: the same bits for any number of threads. Settings must be in their ranges (CheckImageStage).
 VolumeImage ApplyFilter(const VolumeImage& image, const ImageFilter& filter, ThreadTeam& team);

@@ -3,28 +3,16 @@
 #include <itkCurvatureAnisotropicDiffusionImageFilter.h>
 #include <itkDiscreteGaussianImageFilter.h>
 #include <itkImage.h>
-#include <itkImportImageFilter.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "core/imaging/itk_import.h"
 
 namespace fascicle {
 namespace {
 
 using FloatImage = itk::Image<float, 3>;
-
-// An image of ITK over numbers that stay ours. Axes and origin don't matter to filters.
-template <class T>
-typename itk::ImportImageFilter<T, 3>::Pointer Import(const std::vector<T>& values, const GridIndex& size,
-                                                      const Vec3& spacing) {
-  auto import = itk::ImportImageFilter<T, 3>::New();
-  typename itk::ImportImageFilter<T, 3>::SizeType lengths;
-  for (unsigned axis = 0; axis < 3; ++axis) lengths[axis] = size[axis];
-  import->SetRegion(itk::ImageRegion<3>(lengths));
-  import->SetSpacing(spacing.data());
-  import->SetImportPointer(const_cast<T*>(values.data()), values.size(), false);
-  return import;
-}
 
 template <class Filter>
 std::vector<float> ValuesOf(Filter& filter, std::size_t count) {

@@ -31,6 +31,10 @@ VoxelStiffness ForMultigrid(VoxelStiffness stiffness) {
   return stiffness;
 }
 
+// Bodies of up to that many nodes that step in time are factored once, which every step then uses: a solution by the
+// factors costs less than a cycle (measured: up to here).
+constexpr std::int32_t kMostFactoredInTime = 5000;
+
 double Norm(ThreadTeam& team, const VoxelField<double>& v) { return std::sqrt(Dot(team, v, v)); }
 
 // y += D x.
@@ -47,9 +51,11 @@ void AddShifted(ThreadTeam& team, const std::vector<double>& shift, const VoxelF
 VoxelEquilibrium::VoxelEquilibrium(const VoxelModel& model, const std::vector<VoxelSupport>& supports,
                                    std::vector<double> shift, ThreadTeam& team)
     : model_(&model), team_(&team), prescribed_(model.mesh(), supports), shift_(std::move(shift)) {
-  multigrid_ = std::make_unique<VoxelMultigrid>(model.mesh(), ForMultigrid(model.stiffness()), prescribed_.of_nodes(),
-                                                team, shift_);
   if (model.rotation() == VoxelRotation::kLarge) rotated_.emplace(model.K());
+  const bool factored = !rotated_ && !shift_.empty() && model.mesh().nodes() <= kMostFactoredInTime;
+  multigrid_ = std::make_unique<VoxelMultigrid>(
+      model.mesh(), factored ? model.stiffness() : ForMultigrid(model.stiffness()), prescribed_.of_nodes(), team,
+      shift_, std::nullopt, factored ? kMostFactoredInTime : VoxelMultigrid::kMostFactored);
 }
 
 double VoxelEquilibrium::InternalForces(const VoxelField<double>& u, VoxelField<double>& f_int) {

@@ -1,16 +1,12 @@
 #include "core/voxel/multigrid.h"
 
 #include <cmath>
-#include <map>
 
-#include "core/base/check.h"
 #include "core/linalg/lanczos.h"
 
 namespace fascicle {
 namespace {
 
-// Levels up to that many nodes are factored.
-constexpr std::int32_t kCoarsest = 250;
 // Where bricks of the next level would be solid by less than that part, and there are not too many nodes to factor what
 // comes of them, rigid pieces take their place.
 constexpr double kLeastFilling = 0.85;
@@ -20,8 +16,6 @@ constexpr int kSmoothing = 5;  // degree of the polynomials
 constexpr float kDamped = 1.0f / 20;
 constexpr int kPowerIterations = 12;
 constexpr double kEigenvalueMargin = 1.1;
-// Added to the coarsest diagonal, for motions of coarse nodes that move no free node.
-constexpr double kRegularization = 1e-9;
 
 double VolumeOf(const VoxelMesh& mesh) { return mesh.voxels() * mesh.spacing().prod(); }
 
@@ -138,7 +132,7 @@ struct VoxelMultigrid::Level {
 
 VoxelMultigrid::VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stiffness, const FixedComponents& fixed,
                                ThreadTeam& team, const std::vector<double>& shift,
-                               std::optional<BrickRotations<float>> rotations)
+                               std::optional<BrickRotations<float>> rotations, std::int32_t most_factored)
     : fixed_(fixed) {
   levels_.push_back(std::make_unique<Level>(mesh, stiffness, std::move(rotations)));
   Level* level = levels_.back().get();
@@ -153,7 +147,7 @@ VoxelMultigrid::VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stif
     for (int d = 0; d < 3; ++d) diagonal.component(d)[n] = static_cast<float>(shift[n]);
   }
   level->SetUp(fixed_numbers_, std::move(diagonal), team);
-  while (level->mesh->nodes() > kCoarsest) {
+  while (level->mesh->nodes() > most_factored) {
     VoxelMesh coarser = LevelStiffness::CoarserMesh(*level->mesh);
     if (coarser.nodes() >= level->mesh->nodes()) break;
     const double filling = VolumeOf(mesh) / VolumeOf(coarser);
@@ -175,7 +169,7 @@ VoxelMultigrid::VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stif
     next->SetUp({}, std::move(coarser_diagonal), team);
     level = next;
   }
-  ok_ = FactorCoarsest();
+  ok_ = FactorCoarsest(team);
 }
 
 VoxelMultigrid::~VoxelMultigrid() = default;
@@ -246,54 +240,29 @@ void VoxelMultigrid::Apply(const VoxelField<double>& r, ThreadTeam& team, VoxelF
   ForNumbers(team, r.size(), [&](std::size_t k) { z.data()[k] = size * static_cast<double>(from.data()[k]); });
 }
 
-bool VoxelMultigrid::FactorCoarsest() {
+bool VoxelMultigrid::FactorCoarsest(ThreadTeam& team) {
   const Level& level = *levels_.back();
-  const std::size_t stride = level.r.stride();
-  std::vector<std::int32_t> unknown(level.r.size(), -1);
+  BlockMatrix matrix = AssembleLevel(level.K, level.shift);
+  FreeComponents free(level.mesh->nodes());
   for (std::int32_t n = 0; n < level.mesh->nodes(); ++n) {
-    for (int d = 0; d < 3; ++d) {
-      if (level.inverse_diagonal(n, d) == 0) continue;
-      unknown[d * stride + n] = static_cast<std::int32_t>(unknown_numbers_.size());
-      unknown_numbers_.push_back(static_cast<std::int32_t>(d * stride + n));
-    }
+    for (int d = 0; d < 3; ++d) free[n][d] = level.inverse_diagonal(n, d) > 0;
   }
-  const auto size = static_cast<std::int32_t>(unknown_numbers_.size());
-  coarsest_side_.resize(size);
-  if (size == 0) return true;
-  std::map<std::array<std::int32_t, 2>, double> entries;  // of the lower triangle
-  for (const VoxelRun& run : level.mesh->runs()) {
-    ForVoxelsOfRun(run, [&](std::int32_t voxel, const GridIndex&, const std::array<std::int32_t, 8>& nodes) {
-      const BrickMatrix K = level.K.MatrixOf(voxel, run.material);
-      for (int a = 0; a < 24; ++a) {
-        const std::int32_t row = unknown[(a % 3) * stride + nodes[a / 3]];
-        for (int b = 0; b < 24; ++b) {
-          const std::int32_t column = unknown[(b % 3) * stride + nodes[b / 3]];
-          if (row >= 0 && column >= 0 && column <= row) entries[{row, column}] += K(a, b);
-        }
-      }
-    });
-  }
-  std::vector<std::int32_t> rows, columns;
-  std::vector<double> values;
-  for (std::int32_t k = 0; k < size && level.shift.size() > 0; ++k) {
-    entries[{k, k}] += static_cast<double>(level.shift.data()[unknown_numbers_[k]]);
-  }
-  for (const auto& [place, value] : entries) {
-    rows.push_back(place[0]);
-    columns.push_back(place[1]);
-    values.push_back(place[0] == place[1] ? (1 + kRegularization) * value : value);
-  }
-  return coarsest_.Analyze(size, rows, columns) && coarsest_.Factor(values).ok;
+  IsolatePrescribed(matrix.pattern, free, team, matrix.values);
+  return coarsest_.Factor(matrix.pattern, matrix.values);
 }
 
 void VoxelMultigrid::SolveCoarsest() {
   Level& level = *levels_.back();
-  for (std::size_t k = 0; k < unknown_numbers_.size(); ++k) {
-    coarsest_side_[k] = static_cast<double>(level.r.data()[unknown_numbers_[k]]);
+  const std::span<double> side = coarsest_.side();
+  for (std::int32_t n = 0; n < level.mesh->nodes(); ++n) {
+    for (int d = 0; d < 3; ++d) side[3 * n + d] = static_cast<double>(level.r(n, d));
   }
-  if (!coarsest_side_.empty()) coarsest_.Solve(coarsest_side_);
-  for (std::size_t k = 0; k < unknown_numbers_.size(); ++k) {
-    level.x.data()[unknown_numbers_[k]] = static_cast<float>(coarsest_side_[k]);
+  coarsest_.Solve();
+  for (std::int32_t n = 0; n < level.mesh->nodes(); ++n) {
+    // Motions of coarse nodes that move no free node are left alone.
+    for (int d = 0; d < 3; ++d) {
+      level.x(n, d) = level.inverse_diagonal(n, d) > 0 ? static_cast<float>(side[3 * n + d]) : 0;
+    }
   }
 }
 

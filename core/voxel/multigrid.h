@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "core/linalg/direct_solver.h"
-#include "core/voxel/galerkin.h"
 #include "core/voxel/rigid_pieces.h"
 #include "core/voxel/transfer.h"
 
@@ -24,9 +22,12 @@ namespace fascicle {
 class VoxelMultigrid {
  public:
   // `fixed` of the mesh's nodes, empty for none; `shift`: D of each node, >= 0, empty for none, lumped on coarser
-  // levels; `rotations`: how bricks have turned, if they have. The mesh must outlive the multigrid.
+  // levels; `rotations`: how bricks have turned, if they have; levels of up to `most_factored` nodes are factored. The
+  // mesh must outlive the multigrid.
+  static constexpr std::int32_t kMostFactored = 250;
   VoxelMultigrid(const VoxelMesh& mesh, const VoxelStiffness& stiffness, const FixedComponents& fixed, ThreadTeam& team,
-                 const std::vector<double>& shift = {}, std::optional<BrickRotations<float>> rotations = std::nullopt);
+                 const std::vector<double>& shift = {}, std::optional<BrickRotations<float>> rotations = std::nullopt,
+                 std::int32_t most_factored = kMostFactored);
   ~VoxelMultigrid();
 
   // Whether the coarsest level could be factored: not where nothing holds the mesh and memory is short.
@@ -56,17 +57,15 @@ class VoxelMultigrid {
   // What makes a W-cycle of a V-cycle: the level below goes on from its result. It costs an eighth of this level's
   // work.
   void ImproveBySecondCycle(std::size_t level, ThreadTeam& team);
-  bool FactorCoarsest();
+  bool FactorCoarsest(ThreadTeam& team);
   void SolveCoarsest();
 
   std::vector<std::unique_ptr<Level>> levels_;
   FixedComponents fixed_;
   std::vector<std::size_t> fixed_numbers_;  // of the finest fields
   bool ok_ = false;
-  std::unique_ptr<RigidPieces> pieces_;        // below the coarsest level, or null
-  DirectSolver coarsest_;                      // of the coarsest level, where there are no pieces
-  std::vector<std::int32_t> unknown_numbers_;  // of the coarsest fields, for each unknown
-  std::vector<double> coarsest_side_;
+  std::unique_ptr<RigidPieces> pieces_;  // below the coarsest level, or null
+  FactoredBlocks coarsest_;              // of the coarsest level, where there are no pieces
 };
 
 }  // namespace fascicle

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "core/linalg/aggregation.h"
-#include "core/linalg/direct_solver.h"
-#include "core/voxel/galerkin.h"
+#include "core/voxel/factored_blocks.h"
 
 namespace fascicle {
 
@@ -24,17 +23,14 @@ class RigidPieces {
   // x = P (P^T (K + D) P)^-1 P^T r.
   void Correct(const VoxelField<float>& r, ThreadTeam& team, VoxelField<float>& x);
 
-  std::size_t unknowns() const { return side_.size(); }
+  std::size_t unknowns() const { return factors_.unknowns(); }
   std::size_t bytes() const;
 
  private:
-  bool Factor(const BlockPattern& pattern, BlockValues& values);
-
   BlockPattern rows_;  // of P
   TransposedPattern columns_;
   std::vector<Eigen::Matrix3f> values_;
-  DirectSolver solver_;
-  std::vector<double> side_;
+  FactoredBlocks factors_;
   bool ok_ = false;
 };
 

@@ -73,6 +73,9 @@ std::optional<VolumeImage> ReadImage(const v1::ImageShape& shape, double metres,
 ImageFilter TranslateFilter(const v1::ImageFilter& filter, double metres) {
   if (filter.has_curvature()) return CurvatureFilter{filter.curvature().iterations(), filter.curvature().conductance()};
   if (filter.has_wavelet()) return WaveletFilter{filter.wavelet().scales(), filter.wavelet().threshold()};
+  if (filter.has_bias_field()) {
+    return BiasFieldFilter{filter.bias_field().refinements(), filter.bias_field().iterations()};
+  }
   return GaussianFilter{filter.gaussian().deviation() * metres};
 }
 
@@ -127,7 +130,7 @@ std::string WirePath(const std::string& path, const v1::ImageShape& shape) {
   const std::size_t end = path.find(']');
   if (!path.starts_with("filters[") || end == std::string::npos) return path;
   const v1::ImageFilter& filter = shape.filters(std::stoi(path.substr(8, end - 8)));
-  const char* kind = filter.has_curvature() ? "curvature" : filter.has_wavelet() ? "wavelet" : "gaussian";
+  const std::string& kind = v1::ImageFilter::descriptor()->FindFieldByNumber(filter.kind_case())->name();
   return path.substr(0, end + 1) + "." + kind + path.substr(end + 1);
 }
 

@@ -36,8 +36,8 @@ TEST(Filters, TheSameBitsForAnyNumberOfThreads) {
   VolumeImage image = Noise({33, 20, 9}, 40);
   image.spacing = {1e-3, 1.5e-3, 4e-3};
   ThreadTeam one(1), three(3);
-  for (const ImageFilter& filter :
-       {ImageFilter(GaussianFilter{2e-3}), ImageFilter(CurvatureFilter{}), ImageFilter(WaveletFilter{})}) {
+  for (const ImageFilter& filter : {ImageFilter(GaussianFilter{2e-3}), ImageFilter(CurvatureFilter{}),
+                                    ImageFilter(WaveletFilter{}), ImageFilter(BiasFieldFilter{})}) {
     const VolumeImage filtered = ApplyFilter(image, filter, one);
     EXPECT_EQ(filtered.values, ApplyFilter(image, filter, three).values) << filter.index();
     EXPECT_EQ(filtered.spacing, image.spacing);
@@ -49,8 +49,8 @@ TEST(Filters, AnythingGoesWithImagesOfOneVoxelAcross) {
   ThreadTeam team(1);
   for (const GridIndex& size : {GridIndex{1, 1, 1}, GridIndex{5, 1, 1}, GridIndex{2, 3, 1}, GridIndex{1, 2, 9}}) {
     const VolumeImage image = Noise(size, 10);
-    for (const ImageFilter& filter :
-         {ImageFilter(GaussianFilter{}), ImageFilter(CurvatureFilter{}), ImageFilter(WaveletFilter{8, 3})}) {
+    for (const ImageFilter& filter : {ImageFilter(GaussianFilter{}), ImageFilter(CurvatureFilter{}),
+                                      ImageFilter(WaveletFilter{8, 3}), ImageFilter(BiasFieldFilter{})}) {
       const VolumeImage filtered = ApplyFilter(image, filter, team);
       ASSERT_EQ(filtered.values.size(), image.values.size());
       for (const float value : filtered.values) EXPECT_TRUE(std::isfinite(value));

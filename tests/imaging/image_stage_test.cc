@@ -165,7 +165,7 @@ TEST(ImageStage, TellsAllMistakesAtOnce) {
   ImageStage stage;
   stage.region = VoxelBox{{-1, 0, 0}, {0, 1, 1}};
   stage.resample = nan;
-  stage.filters = {GaussianFilter{0}, CurvatureFilter{0, nan}, WaveletFilter{9, -1}};
+  stage.filters = {GaussianFilter{0}, CurvatureFilter{0, nan}, WaveletFilter{9, -1}, BiasFieldFilter{6, 0}};
   Classification choice;
   choice.classes = 1;
   choice.fuzziness = 1;
@@ -177,12 +177,12 @@ TEST(ImageStage, TellsAllMistakesAtOnce) {
   stage.fraction = 0;
   Problems problems;
   CheckImageStage(stage, problems);
-  EXPECT_THAT(
-      PathsOf(problems),
-      ElementsAre("region.first", "region.size", "resample", "filters[0].deviation", "filters[1].iterations",
-                  "filters[1].conductance", "filters[2].scales", "filters[2].threshold", "classification.classes",
-                  "classification.fuzziness", "classification.least_membership", "classification.thresholds",
-                  "classification.wanted_class", "cleaning.keep", "cleaning.opening", "level", "fraction"));
+  EXPECT_THAT(PathsOf(problems),
+              ElementsAre("region.first", "region.size", "resample", "filters[0].deviation", "filters[1].iterations",
+                          "filters[1].conductance", "filters[2].scales", "filters[2].threshold",
+                          "filters[3].refinements", "filters[3].iterations", "classification.classes",
+                          "classification.fuzziness", "classification.least_membership", "classification.thresholds",
+                          "classification.wanted_class", "cleaning.keep", "cleaning.opening", "level", "fraction"));
   choice = {};
   choice.method = ClassMethod::kGivenThresholds;
   choice.thresholds = {1, 1, nan};

@@ -17,6 +17,12 @@ using google::protobuf::Descriptor;
 using google::protobuf::EnumDescriptor;
 using google::protobuf::FieldDescriptor;
 
+// Whether a message is part of scenes.
+bool IsOfScenes(const Descriptor& message) {
+  return message.file() == v1::Scene::descriptor()->file() || message.file() == v1::ImageShape::descriptor()->file() ||
+         message.file() == v1::FileRef::descriptor()->file();
+}
+
 void CollectEnum(const EnumDescriptor* type, std::vector<const EnumDescriptor*>& enums) { enums.push_back(type); }
 
 void CollectMessage(const Descriptor* message, std::vector<const Descriptor*>& messages,
@@ -29,8 +35,9 @@ void CollectMessage(const Descriptor* message, std::vector<const Descriptor*>& m
 class CommentsTest : public testing::Test {
  protected:
   CommentsTest() {
-    for (const auto* file : {v1::Scene::descriptor()->file(), v1::Frame::descriptor()->file(),
-                             v1::Job::descriptor()->file(), v1::CreateJobRequest::descriptor()->file()}) {
+    for (const auto* file :
+         {v1::Scene::descriptor()->file(), v1::FileRef::descriptor()->file(), v1::ImageShape::descriptor()->file(),
+          v1::Frame::descriptor()->file(), v1::Job::descriptor()->file(), v1::CreateJobRequest::descriptor()->file()}) {
       for (int i = 0; i < file->message_type_count(); ++i) CollectMessage(file->message_type(i), messages_, enums_);
       for (int i = 0; i < file->enum_type_count(); ++i) CollectEnum(file->enum_type(i), enums_);
     }
@@ -61,7 +68,7 @@ TEST_F(CommentsTest, EveryNumberOfASceneHasARule) {
   const std::set<std::string> exempt = {"fascicle.v1.Curve.values", "fascicle.v1.Region.physical_tag"};
   int with_rule = 0;
   for (const Descriptor* message : messages_) {
-    if (message->file() != v1::Scene::descriptor()->file()) continue;
+    if (!IsOfScenes(*message)) continue;
     for (int i = 0; i < message->field_count(); ++i) {
       const FieldDescriptor& field = *message->field(i);
       const bool number =
@@ -76,7 +83,7 @@ TEST_F(CommentsTest, EveryNumberOfASceneHasARule) {
 // A scene may hold no kind of number that the rules don't know.
 TEST_F(CommentsTest, ScenesUseDoubleAndInt32Only) {
   for (const Descriptor* message : messages_) {
-    if (message->file() != v1::Scene::descriptor()->file()) continue;
+    if (!IsOfScenes(*message)) continue;
     for (int i = 0; i < message->field_count(); ++i) {
       switch (message->field(i)->cpp_type()) {
         case FieldDescriptor::CPPTYPE_DOUBLE:

@@ -1,0 +1,41 @@
+#ifndef FASCICLE_CORE_VOXEL_FACTORED_BLOCKS_H_
+#define FASCICLE_CORE_VOXEL_FACTORED_BLOCKS_H_
+
+#include <span>
+#include <vector>
+
+#include "core/linalg/block_matrix.h"
+#include "core/linalg/direct_solver.h"
+#include "core/voxel/galerkin.h"
+
+namespace fascicle {
+
+// A matrix of 3x3 blocks with its pattern.
+struct BlockMatrix {
+  BlockPattern pattern;
+  BlockValues values;
+};
+
+// K + D of a level in blocks, one for each pair of nodes that a voxel joins. shift: D, or empty.
+BlockMatrix AssembleLevel(const LevelStiffness& K, const VoxelField<float>& shift);
+
+// The factors of a positive semidefinite matrix of 3x3 blocks, by which systems are solved. Motions that nothing
+// resists are held by a little of their diagonal; components without any stand by themselves. One thread at a time.
+class FactoredBlocks {
+ public:
+  // Reads the lower triangle. False when memory runs out.
+  bool Factor(const BlockPattern& pattern, const BlockValues& values);
+
+  // Three numbers for each block: the right side, and after Solve() the solution in its place.
+  std::span<double> side() { return side_; }
+  void Solve() { solver_.Solve(side_); }
+  std::size_t unknowns() const { return side_.size(); }
+
+ private:
+  DirectSolver solver_;
+  std::vector<double> side_;
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_VOXEL_FACTORED_BLOCKS_H_
