@@ -15,7 +15,7 @@ namespace fascicle {
 inline constexpr int kBlock = 16;
 // A chunk ends before it has more. Its nodes' values then lie in the cache.
 inline constexpr int kChunkElements = 4096;
-inline constexpr int kChunkNodes = 1024;
+inline constexpr int kChunkNodes = 1536;
 
 // A point of the elements of a block at rest. The elements that the last block of a chunk lacks are those of the one
 // before, without volume.

@@ -334,7 +334,8 @@ struct ChunkKernels {
     return sum;
   }
 
-  // Asks for the next block while this one is worked on: the memory of a busy machine is far away.
+  // Asks for a block that comes later while this one is worked on: the memory of a busy machine is far away.
+  static constexpr int kBlocksAhead = 3;
   static void Prefetch(const ChunkTask<S>& task, std::size_t b) {
     if (b * kBlock >= task.elements) return;
     const auto fetch = [](const void* begin, std::size_t bytes) {
@@ -425,7 +426,7 @@ struct ChunkKernels {
     for (std::size_t next = 0; next <= blocks; ++next) {
       if (next < blocks) {
         const int at = next % 2;
-        Prefetch(task, next + 1);
+        Prefetch(task, next + kBlocksAhead);
         const std::uint16_t* local = task.local + next * kNodes * kBlock;
         Gather(x, local, positions[at]);
         if (needs_previous) Gather(before, local, previous[at]);
@@ -600,7 +601,7 @@ struct ChunkKernels {
     BlockMatrix<S> dF, dP;
     const LawKernels<S>& law = LawList<L, Material>::kKernels[task.law_kind];
     for (std::size_t b = 0; b * kBlock < task.elements; ++b) {
-      Prefetch(task, b + 1);
+      Prefetch(task, b + kBlocksAhead);
       const std::uint16_t* local = task.local + b * kNodes * kBlock;
       Gather(x, local, positions);
       Gather(p, local, changes);
@@ -798,7 +799,7 @@ struct ChunkKernels {
     PointBlock<S> point;
     alignas(64) S H[TangentMatrix<L>::kEntries][kBlock];
     for (std::size_t b = 0; b * kBlock < task.elements; ++b) {
-      Prefetch(task, b + 1);
+      Prefetch(task, b + kBlocksAhead);
       const std::uint16_t* local = task.local + b * kNodes * kBlock;
       Gather(x, local, positions);
       if (needs_previous) Gather(before, local, previous);
