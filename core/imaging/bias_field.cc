@@ -25,6 +25,7 @@ constexpr double kBlock = 4;
 constexpr int kLeastBlocks = 12;
 constexpr int kBins = 1024;
 constexpr unsigned kSplineOrder = 3;
+constexpr std::int32_t kLeastVoxels = 4;  // along each axis, for a spline
 
 // The sums by which N4 fits its splines depend on how many threads ITK takes by default: always as many.
 void FixDefaultThreads() {
@@ -108,10 +109,30 @@ double MeanInMask(const FloatImage& field, const MaskImage& mask) {
   return sum / count;
 }
 
+// Copies of the last layer behind those of an image that is thinner than `size`; or the first layers of a thicker one.
+VolumeImage WithSize(const VolumeImage& image, const GridIndex& size) {
+  VolumeImage result = image;
+  result.size = size;
+  result.values.clear();
+  for (std::int32_t k = 0; k < size[2]; ++k) {
+    for (std::int32_t j = 0; j < size[1]; ++j) {
+      for (std::int32_t i = 0; i < size[0]; ++i) {
+        const GridIndex from = {std::min(i, image.size[0] - 1), std::min(j, image.size[1] - 1),
+                                std::min(k, image.size[2] - 1)};
+        result.values.push_back(image.values[image.IndexOf(from)]);
+      }
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 VolumeImage WithoutBiasField(const VolumeImage& image, const BiasFieldFilter& filter) {
   FixDefaultThreads();
+  GridIndex thick = image.size;
+  for (std::int32_t& length : thick) length = std::max(length, kLeastVoxels);
+  if (thick != image.size) return WithSize(WithoutBiasField(WithSize(image, thick), filter), image.size);
   const auto import = Import(image.values, image.size, image.spacing);
   import->Update();
   FloatImage* const whole = import->GetOutput();

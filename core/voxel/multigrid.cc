@@ -11,9 +11,10 @@ namespace {
 // comes of them, rigid pieces take their place.
 constexpr double kLeastFilling = 0.85;
 constexpr std::int32_t kMostNodesOfPieces = 15000;
-constexpr int kSmoothing = 5;  // degree of the polynomials
+// Degree of the polynomials: of the finest level, and of the coarser ones, where it costs little.
+constexpr int kSmoothing = 5, kSmoothingBelow = 8;
 // Part of the spectrum that they damp: from the largest eigenvalue down to that part of it.
-constexpr float kDamped = 1.0f / 20;
+constexpr float kDamped = 1.0f / 40;
 constexpr int kPowerIterations = 12;
 constexpr double kEigenvalueMargin = 1.1;
 
@@ -80,8 +81,9 @@ struct VoxelMultigrid::Level {
     const float centre = 0.5f * (1 + kDamped) * largest_eigenvalue, half = 0.5f * (1 - kDamped) * largest_eigenvalue;
     const float sigma = centre / half;
     float rho = 1 / sigma;
+    const int degree = mesh == &own_mesh ? kSmoothingBelow : kSmoothing;
     First(start, 1 / centre, team);
-    for (int k = 1; k < kSmoothing; ++k) {
+    for (int k = 1; k < degree; ++k) {
       const float next = 1 / (2 * sigma - rho);
       Multiply(d, team, q);
       Next(next * rho, 2 * next / half, team);

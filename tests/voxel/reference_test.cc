@@ -181,8 +181,8 @@ TEST(Multigrid, IterationsHardlyGrowWithTheLevelsOfTheBiceps) {
   KeepLargestIsland(grid);
   const std::vector<int> iterations = IterationsOfLevels(grid, 0.45);
   ASSERT_GE(iterations.size(), 4u);
-  EXPECT_LE(iterations.front(), iterations.back() + 5);
-  EXPECT_LE(*std::max_element(iterations.begin(), iterations.end()), 28);
+  EXPECT_LE(iterations.front(), iterations.back() + 3);
+  EXPECT_LE(*std::max_element(iterations.begin(), iterations.end()), 25);
 }
 
 }  // namespace
