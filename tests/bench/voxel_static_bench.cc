@@ -126,7 +126,8 @@ class Direct {
   double scale_, entries_ = 0, most_bytes_ = 0;
 };
 
-bool Compare(const std::string& name, const Body& body, int rounds) {
+// tolerance: of the residual, at which both displacements agree to 1e-6; thin tendons need more of it than a cube.
+bool Compare(const std::string& name, const Body& body, double tolerance, int rounds) {
   Direct direct(body);
   StaticSolution solution;
   std::size_t bytes = 0;
@@ -134,7 +135,7 @@ bool Compare(const std::string& name, const Body& body, int rounds) {
   const auto ours = [&] {
     ThreadTeam team(1);
     VoxelStaticSolver solver(body.model, body.supports, team);
-    solution = solver.Solve({}, {.tolerance = 1e-8});
+    solution = solver.Solve({}, {.tolerance = tolerance});
     bytes = solver.bytes();
   };
   const std::int32_t voxels = body.model.mesh().voxels();
@@ -149,7 +150,7 @@ bool Compare(const std::string& name, const Body& body, int rounds) {
 }
 
 int Main(std::int32_t side, int rounds) {
-  bool good = Compare("voxel_static_vs_cholmod", Body(FullGrid(side), {1, 0.3}, 0, Vec3(0, 0, 0.64)), rounds);
+  bool good = Compare("voxel_static_vs_cholmod", Body(FullGrid(side), {1, 0.3}, 0, Vec3(0, 0, 0.64)), 1e-8, rounds);
   // Of the levels of the biceps of 1 mm, the finest whose L fits into some GB.
   std::optional<VoxelGrid> label = testing::ReadLabel(testing::LabelVolumePath(), 1);
   if (!label) {
@@ -158,7 +159,8 @@ int Main(std::int32_t side, int rounds) {
   } else {
     VoxelGrid grid = Coarsen(CropToSolid(*label), 0.5);
     KeepLargestIsland(grid);
-    good &= Compare("voxel_static_vs_cholmod_biceps", Body(std::move(grid), {3e4, 0.45}, 5, Vec3(0, 0, 3e-3)), rounds);
+    good &= Compare("voxel_static_vs_cholmod_biceps", Body(std::move(grid), {3e4, 0.45}, 5, Vec3(0, 0, 3e-3)), 1e-9,
+                    rounds);
   }
   return good ? EXIT_SUCCESS : EXIT_FAILURE;
 }
