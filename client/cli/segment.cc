@@ -20,7 +20,7 @@ constexpr const char* kExamples =
     R"(  fascicle phantom arm.mha --truth truth.mha                  an arm to try it on
   fascicle segment arm.mha --filter wavelet --seed 98,119,35 --opening 0.6 --out anconeus.mha --picture anconeus.png
   fascicle segment arm.mha --seed 98,119,35 --truth truth.mha --truth-label 4     how well it is found
-  fascicle segment thigh.nii.gz --classes 3 --class 2 --region 10,10,0:100,90,31 --picture muscles.png
+  fascicle segment thigh.nii.gz --filter bias-field --filter wavelet --classes 4 --class 3 --opening 2 --picture muscles.png
   fascicle segment ct/ --thresholds 200 --class 1 --out bone.mha          a DICOM series in a folder
   fascicle segment scan.raw --raw-size 140,220,71 --raw-spacing 0.5,0.5,1 --class 1
   fascicle segment labels.mha --label 1 --label 2 --picture both.png      what is labelled already
