@@ -51,7 +51,7 @@ TEST_F(JobsTest, AJobsProfileSaysWhereItsTimeWent) {
   const auto micros = [](const google::protobuf::Timestamp& t) {
     return 1e6 * static_cast<double>(t.seconds()) + 1e-3 * t.nanos();
   };
-  EXPECT_GT(profile.wall_seconds(), 0.1);
+  EXPECT_GT(profile.wall_seconds(), 0);
   EXPECT_LE(profile.wall_seconds(), 1e-6 * (micros(job.end_time()) - micros(job.start_time())) + 0.01);
   EXPECT_GT(whole, 0.97 * profile.wall_seconds()) << profile.DebugString();
   EXPECT_LE(whole, profile.wall_seconds());
@@ -60,7 +60,7 @@ TEST_F(JobsTest, AJobsProfileSaysWhereItsTimeWent) {
   EXPECT_EQ(stages["step"].calls(), job.progress().step());
   EXPECT_EQ(stages["commit"].calls(), 100);
   EXPECT_TRUE(stages["commit"].concurrent());
-  EXPECT_GT(profile.cpu_seconds(), 0.01);
+  EXPECT_GT(profile.cpu_seconds(), 0.3 * step);
   EXPECT_EQ(profile.runs(), 1);
   // It comes with the end of a stream, and not with a list.
   EXPECT_EQ(ReadStream(*stubs_, AllFramesOf(name)).end->job().profile().SerializeAsString(),

@@ -131,7 +131,7 @@ class SameBitsTest : public ::testing::TestWithParam<std::tuple<int, ElementOrde
 
 TEST_P(SameBitsTest, AnySetAnyThreads) {
   const auto [law, element] = GetParam();
-  const Setting s(LawsOfKernels()[law], element, VolumeForm::kNodal, element == ElementOrder::kLinear ? 9 : 6);
+  const Setting s(LawsOfKernels()[law], element, VolumeForm::kNodal, element == ElementOrder::kLinear ? 9 : 8);
   ASSERT_GT(s.model.chunks().chunks.size(), 5u);
   NodalVector first, first_product;
   double power = 0;
