@@ -32,6 +32,23 @@ function(fascicle_room room)
   fascicle_link(${target} ${private} ${ARG_PRIVATE_DEPS})
 endfunction()
 
+# The loops over elements of a room, once for each instruction set; which one runs is decided at run time. Sets `sources` to
+# kernels_baseline.cc, kernels_avx2.cc and so on. No fused operations: all sets give the same bits. Eigen is not used in these
+# files, and must not lay out its types for the set.
+function(fascicle_kernels sources)
+  set(files kernels_baseline.cc)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    list(APPEND files kernels_avx2.cc kernels_avx512.cc)
+    set_source_files_properties(kernels_avx2.cc PROPERTIES COMPILE_OPTIONS "-mavx2")
+    set_source_files_properties(kernels_avx512.cc PROPERTIES
+      COMPILE_OPTIONS "-mavx512f;-mavx512dq;-mavx512vl;-mavx512bw;-mprefer-vector-width=512;-Wno-uninitialized")
+  endif()
+  set_property(SOURCE ${files} APPEND PROPERTY COMPILE_OPTIONS "-Wno-psabi")
+  set_source_files_properties(${files} PROPERTIES
+    COMPILE_DEFINITIONS EIGEN_DONT_VECTORIZE SKIP_PRECOMPILE_HEADERS ON)
+  set(${sources} ${files} PARENT_SCOPE)
+endfunction()
+
 # Links rooms (given as folders) and other libraries to a target.
 function(fascicle_link target visibility)
   foreach(dep ${ARGN})
