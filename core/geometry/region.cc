@@ -9,6 +9,7 @@
 
 #include "core/geometry/faces.h"
 #include "core/geometry/triangle_distance.h"
+#include "core/geometry/triangle_mesh.h"
 
 namespace fascicle {
 namespace {
@@ -53,16 +54,6 @@ struct Bricks {
     return sides;
   }
 };
-
-double Diagonal(const std::vector<Vec3>& nodes) {
-  if (nodes.empty()) return 0;
-  Vec3 lowest = nodes[0], highest = nodes[0];
-  for (const Vec3& node : nodes) {
-    lowest = lowest.cwiseMin(node);
-    highest = highest.cwiseMax(node);
-  }
-  return (highest - lowest).norm();
-}
 
 template <class Cell>
 Vec3 CentroidOf(const std::vector<Vec3>& nodes, const Cell& cell) {
