@@ -1,5 +1,7 @@
 #include "core/imaging/volume_reader.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstdio>
@@ -10,6 +12,7 @@
 
 #include "core/imaging/dicom_series.h"
 #include "core/imaging/itk_image_io.h"
+#include "core/imaging/nifti_check.h"
 #include "core/imaging/volume_files.h"
 
 namespace fascicle {
@@ -20,7 +23,6 @@ namespace fs = std::filesystem;
 constexpr const char* kTypeNames[] = {"uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"};
 // The header of a MetaImage or NRRD file is shorter.
 constexpr std::size_t kLongestHeader = 1 << 20;
-constexpr std::size_t kNiftiHeader = 352;
 
 std::string BaseName(std::string_view name) { return fs::path(name).filename().string(); }
 
@@ -44,6 +46,17 @@ std::string StartOf(const fs::path& path, std::size_t bytes) {
   std::string start(bytes, '\0');
   in.read(start.data(), static_cast<std::streamsize>(bytes));
   start.resize(static_cast<std::size_t>(in.gcount()));
+  return start;
+}
+
+// The same of what is in a file that may be deflated by gzip.
+std::string InflatedStartOf(const fs::path& path, unsigned bytes) {
+  const gzFile file = gzopen(path.c_str(), "rb");
+  if (file == nullptr) return {};
+  std::string start(bytes, '\0');
+  const int count = gzread(file, start.data(), bytes);
+  gzclose(file);
+  start.resize(static_cast<std::size_t>(std::max(count, 0)));
   return start;
 }
 
@@ -118,9 +131,11 @@ std::optional<VolumeImage> ReadFile(const fs::path& path, const VolumeReaderOpti
   std::size_t offset = 0;
   if (*format == VolumeFormat::kNifti) {
     file.compressed = path.extension() != ".nii";
+    const std::string header = InflatedStartOf(path, kNiftiHeader);
+    if (!CheckNiftiPlace(header, problems)) return std::nullopt;
     if (!file.compressed) {
       file.bytes -= std::min<std::uint64_t>(file.bytes, kNiftiHeader);
-      file.bytes_per_voxel = NiftiVoxelBytes(StartOf(path, kNiftiHeader));
+      file.bytes_per_voxel = NiftiVoxelBytes(header);
     }
   }
   if (*format == VolumeFormat::kMetaImage || *format == VolumeFormat::kNrrd) {

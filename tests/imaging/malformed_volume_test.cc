@@ -49,6 +49,28 @@ TEST(MalformedVolume, TheSamplesAreRightWithoutTheirMistakes) {
   }
 }
 
+// ITK's matrix library ends the program on these.
+TEST(MalformedVolume, PlacesThatAreNoNumbers) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+  constexpr std::size_t kSpacing = 80, kQuaternion = 256, kOffset = 268, kMatrix = 280;
+  for (const bool big_endian : {false, true}) {
+    const auto with = [&](std::size_t at, const std::vector<float>& values) {
+      std::string bytes = NiftiBytes({4, 3, 2}, kVoxels, big_endian);
+      for (const float value : values) {
+        bytes.replace(at, sizeof(float), Number<float>(value, big_endian));
+        at += sizeof(float);
+      }
+      return bytes;
+    };
+    for (const std::string& bytes :
+         {with(kSpacing, {-kInfinity}), with(kSpacing + 8, {kNan}), with(kSpacing, {1e30F}), with(kSpacing, {1e-30F}),
+          with(kQuaternion, {kNan}), with(kOffset + 8, {kInfinity}), with(kMatrix, {kNan}), with(kMatrix + 16, {1e38F}),
+          with(kMatrix, std::vector<float>(12, 0)), with(kMatrix, std::vector<float>(12, 1e-30F))}) {
+      EXPECT_THAT(Refusal("a.nii", bytes), HasSubstr("where the image lies"));
+    }
+  }
+}
+
 TEST(MalformedVolume, Huge) {
   EXPECT_THAT(Refusal("a.mha", Meta("10000 10000 10000") + kVoxels), HasSubstr("10000 x 10000 x 10000 voxels"));
   EXPECT_THAT(Refusal("a.nrrd", Nrrd("10000 10000 10000") + kVoxels), HasSubstr("10000 x 10000 x 10000 voxels"));
