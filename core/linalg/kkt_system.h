@@ -1,0 +1,53 @@
+#ifndef FASCICLE_CORE_LINALG_KKT_SYSTEM_H_
+#define FASCICLE_CORE_LINALG_KKT_SYSTEM_H_
+
+#include "core/linalg/active_set_qp.h"
+#include "core/linalg/direct_solver.h"
+
+namespace fascicle {
+
+// The equations of a quadratic program whose active inequalities are equalities,
+//   [ M   G^T ] [ v]   [p]
+//   [ G   -C  ] [-y] = [b],    rows of volumes, equalities and active inequalities, C = E for volumes,
+// C zero else, which are solved as one symmetric system [Fan 2013, 3.5]. Factors are of a system with a hair of the
+// diagonal of G (diag M)^-1 G^T for that zero, so that rows that depend on others do no harm. For this room alone.
+class KktSystem {
+ public:
+  KktSystem(const QuadraticProgram& problem, const std::vector<bool>& active);
+
+  // Solutions v, and multipliers y of the rows in their order.
+  struct Result {
+    bool ok = false;
+    int iterations = 0;  // of MINRES
+    Eigen::VectorXd v, y;
+  };
+  // With the hair for C: then multipliers are unique, and their signs tell which inequalities are to be active.
+  Result SolveDirect();
+  // What the hair took from the constraints comes back, by the same factors. After SolveDirect.
+  void TakeOutHair(Result& result);
+  Result SolveMinres(double tolerance, int max_iterations) const;
+
+  Eigen::Index size() const { return problem_->p.size() + b_.size(); }
+  Eigen::Index volumes() const { return volumes_; }
+  const Eigen::SparseMatrix<double, Eigen::RowMajor>& G() const { return G_; }
+
+ private:
+  Eigen::VectorXd Side() const;
+  // hair_part: 1 with the hair, 0 without.
+  void Apply(const Eigen::VectorXd& x, double hair_part, Eigen::VectorXd& y) const;
+  // Refines a solution by the factors.
+  void Improve(double hair_part, Result& result);
+
+  const QuadraticProgram* problem_;
+  Eigen::Index volumes_;                            // the first rows
+  Eigen::SparseMatrix<double, Eigen::RowMajor> G_;  // m x n
+  Eigen::VectorXd b_;
+  Eigen::VectorXd inverse_mass_;  // of diag M
+  Eigen::VectorXd schur_;         // diagonal of G (diag M)^-1 G^T
+  Eigen::VectorXd hair_;
+  DirectSolver factors_;
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_LINALG_KKT_SYSTEM_H_
