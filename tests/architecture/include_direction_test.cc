@@ -57,6 +57,7 @@ const std::map<std::string, std::set<std::string>>& AllowedRooms() {
       {"core/muscle", {"core/base", "core/geometry", "core/linalg", "core/materials"}},
       {"core/scene", {"core/base", "core/geometry", "core/materials", "core/muscle"}},
       {"core/tet", {"core/base", "core/geometry", "core/linalg", "core/materials", "core/muscle", "core/scene"}},
+      {"core/eulerian", {"core/base", "core/geometry", "core/linalg", "core/materials"}},
       {"core/voxel", {"core/base", "core/geometry", "core/linalg", "core/materials", "core/muscle", "core/scene"}},
       {"core/sim",
        {"core/base", "core/geometry", "core/materials", "core/muscle", "core/scene", "core/tet", "core/voxel"}},

@@ -1,0 +1,155 @@
+#include "core/eulerian/forces.h"
+
+#include <Eigen/LU>
+
+namespace fascicle {
+namespace {
+
+Vec3 MaterialPoint(const EulerianGrid& grid, const EulerianState& state, const GridIndex& cell) {
+  Vec3 X = Vec3::Zero();
+  for (int c = 0; c < 8; ++c) X += state.X[grid.Corner(cell, c)] / 8;
+  return X;
+}
+
+FibreState FibreOf(const EulerianBody& body, const EulerianState& state, const GridIndex& cell) {
+  if (!body.fibre) return {};
+  return body.fibre(MaterialPoint(body.grid, state, cell), state.time);
+}
+
+// The four patterns of corners that the gradient at the centre does not see: yz, zx, xy and xyz.
+constexpr int kPatterns = 4;
+int Pattern(int a, int c) {
+  const int x = (c & 1) != 0 ? 1 : -1, y = (c & 2) != 0 ? 1 : -1, z = (c & 4) != 0 ? 1 : -1;
+  return a == 0 ? y * z : a == 1 ? z * x : a == 2 ? x * y : x * y * z;
+}
+// Their stiffness: of a shear modulus, for a pattern as steep as a strain.
+constexpr double kPatternStiffness = 0.1;
+
+// V sigma of a cell [J], its mass [kg], the force on it that is given [N], and what its patterns of the map push with
+// at each corner [N].
+struct CellForce {
+  std::array<Vec3, kPatterns> pattern = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  Mat3 stress = Mat3::Zero();
+  double mass = 0;
+  Vec3 given = Vec3::Zero();
+};
+
+// Patterns g = 1/8 sum of +-X have an energy of 1/2 k V |2 g/h|^2 each [Flanagan & Belytschko 1981, of the reference
+// map in place of displacements]; X moves by -F^-1 v dt, so v is pushed by the F^-T of that energy's gradient.
+void SetPatterns(const EulerianBody& body, const EulerianState& state, const GridIndex& cell, const Mat3& F,
+                 double volume, CellForce& force) {
+  const double h = body.grid.spacing;
+  const double shear = std::visit([](const auto& law) { return law.ShearModulus(); }, body.material);
+  const Mat3 inverse_transpose = F.inverse().transpose();
+  for (int a = 0; a < kPatterns; ++a) {
+    Vec3 g = Vec3::Zero();
+    for (int c = 0; c < 8; ++c) g += Pattern(a, c) / 8.0 * state.X[body.grid.Corner(cell, c)];
+    force.pattern[a] = kPatternStiffness * shear * volume * 4 / (h * h) / 8 * inverse_transpose * g;
+  }
+}
+
+CellForce ForceOf(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, std::size_t cell) {
+  CellForce result;
+  if (cells.inside[cell] == 0) return result;
+  const double volume = cells.inside[cell] * std::pow(body.grid.spacing, 3);
+  const GridIndex at = body.grid.CellAt(cell);
+  const FibreState fibre = FibreOf(body, state, at);
+  const Mat3 P = std::visit([&](const auto& law) { return law.Stress(cells.F[cell], fibre); }, body.material);
+  result.stress = volume / cells.J[cell] * P * cells.F[cell].transpose();
+  SetPatterns(body, state, at, cells.F[cell], volume, result);
+  result.mass = volume * body.density / cells.J[cell];
+  if (body.force) result.given = volume * body.force(body.grid.CellCentre(at), state.time);
+  return result;
+}
+
+// A node has at least that part of the mass of a whole cell, whatever the extrapolation takes away.
+constexpr double kLeastMass = 0.05;
+
+void HandToInside(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, ThreadTeam& team,
+                  NodalForces& nodes) {
+  const std::size_t count = nodes.mass.size();
+  nodes.held.assign(count, 0);
+  nodes.inside.assign(count, 0);
+  for (std::size_t n = 0; n < count; ++n) nodes.inside[n] = nodes.mass[n] > 0 && cells.distance[n] < 0 ? 1 : 0;
+  nodes.leaders.assign(count, {});
+  team.For(count, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      nodes.held[n] = nodes.mass[n] > 0 && body.is_held && body.is_held(state.X[n]) ? 1 : 0;
+      if (nodes.mass[n] == 0 || nodes.inside[n] != 0 || nodes.held[n] != 0) continue;
+      nodes.leaders[n] = ExtrapolationWeights(body.grid, body.grid.NodeAt(n), nodes.inside);
+    }
+  });
+  for (std::size_t n = 0; n < count; ++n) {
+    if (nodes.inside[n] != 0) continue;
+    for (const NodeWeight& part : nodes.leaders[n]) {
+      nodes.mass[part.node] += part.weight * nodes.mass[n];
+      nodes.force[part.node] += part.weight * nodes.force[n];
+    }
+    nodes.mass[n] = 0;
+    nodes.force[n].setZero();
+  }
+  const double least = kLeastMass * body.density * std::pow(body.grid.spacing, 3);
+  for (std::size_t n = 0; n < count; ++n) {
+    if (nodes.inside[n] != 0) nodes.mass[n] = std::max(nodes.mass[n], least);
+  }
+}
+
+}  // namespace
+
+void SetForces(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, ThreadTeam& team,
+               NodalForces& nodes) {
+  const EulerianGrid& grid = body.grid;
+  std::vector<CellForce> of_cell(grid.cell_count());
+  team.For(of_cell.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) of_cell[c] = ForceOf(body, state, cells, c);
+  });
+  nodes.mass.assign(grid.node_count(), 0);
+  nodes.force.assign(grid.node_count(), Vec3::Zero());
+  team.For(grid.node_count(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const GridIndex at = grid.NodeAt(n);
+      for (int c = 0; c < 8; ++c) {
+        const GridIndex cell = {at[0] - (c & 1), at[1] - (c >> 1 & 1), at[2] - (c >> 2)};
+        bool exists = true;
+        for (int axis = 0; axis < 3; ++axis) exists &= cell[axis] >= 0 && cell[axis] < grid.cells[axis];
+        if (!exists) continue;
+        const CellForce& f = of_cell[grid.CellNumber(cell)];
+        nodes.mass[n] += f.mass / 8;
+        nodes.force[n] += f.given / 8 - f.stress * CornerGradient(c, grid.spacing);
+        for (int a = 0; a < kPatterns; ++a) nodes.force[n] += Pattern(a, c) * f.pattern[a];
+      }
+    }
+  });
+  HandToInside(body, state, cells, team, nodes);
+  for (std::size_t n = 0; n < nodes.mass.size(); ++n) {
+    nodes.force[n] += nodes.mass[n] * (body.gravity - body.mass_damping * state.v[n]);
+  }
+}
+
+double ElasticEnergy(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells) {
+  double sum = 0;
+  for (const std::size_t c : cells.solid) {
+    const FibreState fibre = FibreOf(body, state, body.grid.CellAt(c));
+    const double density = std::visit([&](const auto& law) { return law.Energy(cells.F[c], fibre); }, body.material);
+    sum += density * cells.inside[c] / cells.J[c];
+  }
+  return sum * std::pow(body.grid.spacing, 3);
+}
+
+double KineticEnergy(const EulerianState& state, const NodalForces& nodes) {
+  double sum = 0;
+  for (std::size_t n = 0; n < nodes.mass.size(); ++n) {
+    if (nodes.mass[n] > 0) sum += 0.5 * nodes.mass[n] * state.v[n].squaredNorm();
+  }
+  return sum;
+}
+
+Vec3 Momentum(const EulerianState& state, const NodalForces& nodes) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t n = 0; n < nodes.mass.size(); ++n) {
+    if (nodes.mass[n] > 0) sum += nodes.mass[n] * state.v[n];
+  }
+  return sum;
+}
+
+}  // namespace fascicle

@@ -1,0 +1,18 @@
+#ifndef FASCICLE_CORE_EULERIAN_PROJECTION_H_
+#define FASCICLE_CORE_EULERIAN_PROJECTION_H_
+
+#include "core/eulerian/forces.h"
+#include "core/linalg/active_set_qp.h"
+
+namespace fascicle {
+
+// v = argmin 1/2 (v - v*) . M (v - v*) where the volume of every solid cell changes as body.volume says and held nodes
+// rest [Fan 2013, 3.2, 3.11]:
+//   sum over nodes of V grad N . v + (eps L p) = V (1 - J)/(dt J), or 0.
+// velocity: v* of nodes with mass, and the result. Others are not read.
+QpReport ProjectVelocity(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes, double dt,
+                         std::vector<Vec3>& velocity);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_EULERIAN_PROJECTION_H_

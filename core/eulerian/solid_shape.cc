@@ -1,0 +1,97 @@
+#include "core/eulerian/solid_shape.h"
+
+#include <map>
+#include <string>
+
+#include "core/geometry/triangle_tree.h"
+
+namespace fascicle {
+namespace {
+
+constexpr double kMargin = 2;      // samples around the surface's box
+constexpr double kLeastCells = 4;  // across
+
+struct Box {
+  explicit Box(const std::vector<Vec3>& nodes) : lowest(nodes[0]), highest(nodes[0]) {
+    for (const Vec3& node : nodes) {
+      lowest = lowest.cwiseMin(node);
+      highest = highest.cwiseMax(node);
+    }
+  }
+  Vec3 lowest, highest;
+};
+
+// Edges that do not have one triangle on either side.
+std::size_t OpenEdges(const TriangleMesh& surface) {
+  std::map<std::array<std::int32_t, 2>, int> sides;
+  for (const auto& triangle : surface.triangles) {
+    for (int e = 0; e < 3; ++e) {
+      const std::int32_t a = triangle[e], b = triangle[(e + 1) % 3];
+      a < b ? ++sides[{a, b}] : --sides[{b, a}];
+    }
+  }
+  return static_cast<std::size_t>(
+      std::count_if(sides.begin(), sides.end(), [](const auto& s) { return s.second != 0; }));
+}
+
+}  // namespace
+
+SolidShape::SolidShape(TriangleMesh surface, double spacing, ThreadTeam& team)
+    : surface_(std::move(surface)), volume_(EnclosedVolume(surface_)) {
+  const Box box(surface_.nodes);
+  samples_.spacing = spacing;
+  samples_.origin = box.lowest - Vec3::Constant(kMargin * spacing);
+  for (int axis = 0; axis < 3; ++axis) {
+    samples_.cells[axis] =
+        static_cast<std::int32_t>(std::ceil((box.highest[axis] - box.lowest[axis]) / spacing + 2 * kMargin));
+  }
+  const TriangleTree tree(surface_);
+  distance_.resize(samples_.node_count());
+  team.For(distance_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n)
+      distance_[n] = tree.SignedDistance(samples_.NodePosition(samples_.NodeAt(n)));
+  });
+}
+
+double SolidShape::Distance(const Vec3& X) const {
+  const EulerianGrid::Place place = samples_.PlaceOf(X);
+  double sum = 0;
+  for (int c = 0; c < 8; ++c) {
+    double weight = 1;
+    for (int axis = 0; axis < 3; ++axis) weight *= (c >> axis & 1) != 0 ? place.within[axis] : 1 - place.within[axis];
+    sum += weight * distance_[samples_.Corner(place.cell, c)];
+  }
+  const Vec3 nearest = samples_.NodePosition(place.cell) + samples_.spacing * place.within;
+  return sum + (X - nearest).norm();
+}
+
+void CheckSolidSurface(const TriangleMesh& surface, double spacing, Problems& problems) {
+  if (surface.triangles.empty()) {
+    problems.Add("", "the surface has no triangles", "give a closed one");
+    return;
+  }
+  const std::size_t open = OpenEdges(surface);
+  if (open > 0) {
+    problems.Add("",
+                 std::to_string(open) + " edges of the surface lack a triangle on one side, or have one that is turned",
+                 "close it; `fascicle mesh` repairs small holes");
+    return;
+  }
+  if (EnclosedVolume(surface) <= 0) {
+    problems.Add("", "the surface is turned inside out", "triangles are counter-clockwise seen from outside");
+    return;
+  }
+  const std::size_t cuts = TriangleTree(surface).CuttingPairs().size();
+  if (cuts > 0) {
+    problems.Add("", "the surface cuts through itself at " + std::to_string(cuts) + " pairs of triangles",
+                 "repair it first");
+  }
+  const Box box(surface.nodes);
+  const double across = (box.highest - box.lowest).minCoeff() / spacing;
+  if (across < kLeastCells) {
+    problems.Add("", "the solid is " + std::to_string(across) + " cells across; 4 are needed at least",
+                 "take smaller cells");
+  }
+}
+
+}  // namespace fascicle

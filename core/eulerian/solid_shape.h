@@ -1,0 +1,39 @@
+#ifndef FASCICLE_CORE_EULERIAN_SOLID_SHAPE_H_
+#define FASCICLE_CORE_EULERIAN_SOLID_SHAPE_H_
+
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/base/problems.h"
+#include "core/eulerian/grid.h"
+#include "core/geometry/triangle_mesh.h"
+
+namespace fascicle {
+
+// A solid in material space: its surface, and the signed distance phi0 from it, sampled on a grid. Const; may be asked
+// from several threads at once.
+class SolidShape {
+ public:
+  // surface [m]: one that CheckSolidSurface passed. spacing of the samples [m], about half a cell of the grid that it
+  // will move through.
+  SolidShape(TriangleMesh surface, double spacing, ThreadTeam& team);
+
+  const TriangleMesh& surface() const { return surface_; }
+  double volume() const { return volume_; }  // [m^3]
+  // phi0 [m]: negative inside; trilinear between samples, and no less than the distance from them outside of these.
+  double Distance(const Vec3& X) const;
+
+ private:
+  TriangleMesh surface_;
+  EulerianGrid samples_;
+  std::vector<double> distance_;  // at the nodes of samples_
+  double volume_ = 0;
+};
+
+// Whether a surface bounds a solid that a grid of that spacing [m] can hold: closed, turned outwards, free of cuts
+// through itself, and four cells across at least. Adds what is wrong to `problems`, with paths left empty.
+void CheckSolidSurface(const TriangleMesh& surface, double spacing, Problems& problems);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_EULERIAN_SOLID_SHAPE_H_

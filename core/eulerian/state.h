@@ -1,0 +1,28 @@
+#ifndef FASCICLE_CORE_EULERIAN_STATE_H_
+#define FASCICLE_CORE_EULERIAN_STATE_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/archive.h"
+#include "core/eulerian/grid.h"
+
+namespace fascicle {
+
+// What changes from step to step, and all that a checkpoint saves.
+struct EulerianState {
+  double time = 0;  // [s]
+  std::int64_t step = 0;
+  // At the nodes of the grid, in the solid and in a band around it; elsewhere they mean nothing.
+  std::vector<Vec3> X;              // reference map: which point of the material is there [m]
+  std::vector<Vec3> v;              // velocity [m/s]
+  std::vector<std::uint8_t> known;  // of each node: whether X and v mean something
+
+  void Save(ArchiveWriter& archive) const;
+  // Sets failed() of the archive when sizes differ from the present ones.
+  void Load(ArchiveReader& archive);
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_EULERIAN_STATE_H_

@@ -1,0 +1,50 @@
+// Steps of a ball on its grid, its volume preserved: cells a second [a public reference map code, RMT3D: 142 to 160
+// thousand a core], and two threads over one.
+#include <cstdlib>
+
+#include "ratio.h"
+#include "solids.h"
+
+namespace fascicle::bench {
+namespace {
+
+using testing::MakeSolid;
+
+constexpr int kSteps = 3;
+
+class Ball {
+ public:
+  Ball(int cells, int threads) : team_(threads), body_(MakeSolid(cells, true, 2e4, 0.3, team_)), solver_(body_, team_) {
+    body_.volume = VolumeTreatment::kPreserved;
+    const Vec3 stretch(1.1, 1 / std::sqrt(1.1), 1 / std::sqrt(1.1));
+    start_ = solver_.InitialState([&](const Vec3& x) { return Vec3(x.cwiseQuotient(stretch)); });
+  }
+  void Run() {
+    EulerianState state = start_;
+    for (int k = 0; k < kSteps; ++k) {
+      if (solver_.Step(1, state).problem != StepProblem::kNone) std::abort();
+    }
+  }
+  double Kilocells() const { return 1e-3 * kSteps * static_cast<double>(body_.grid.cell_count()); }
+
+ private:
+  ThreadTeam team_;
+  EulerianBody body_;
+  EulerianSolver solver_;
+  EulerianState start_;
+};
+
+int Main() {
+  for (const int cells : {32, 64}) {
+    Ball two(cells, 2), one(cells, 1);
+    const std::string name = cells == 64 ? "eulerian_threads_2" : "eulerian_threads_2_32";
+    MedianRatio(
+        name, cells == 64 ? 3 : kRounds, [&] { two.Run(); }, [&] { one.Run(); }, {two.Kilocells(), "kcells"});
+  }
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+}  // namespace fascicle::bench
+
+int main() { return fascicle::bench::Main(); }
