@@ -35,7 +35,7 @@ TEST_F(JobsTest, AJobIsCreatedRunsAndCanBeLookedAt) {
 }
 
 TEST_F(JobsTest, AJobsProfileSaysWhereItsTimeWent) {
-  const std::string name = stubs_->Submit(LargeSteps(100));
+  const std::string name = stubs_->Submit(LargeSteps(400));
   ASSERT_TRUE(stubs_->AwaitState(name, v1::Job::STATE_SUCCEEDED, 60s));
   const v1::Job job = stubs_->Get(name);
   ASSERT_TRUE(job.has_profile());
@@ -53,12 +53,14 @@ TEST_F(JobsTest, AJobsProfileSaysWhereItsTimeWent) {
   };
   EXPECT_GT(profile.wall_seconds(), 0);
   EXPECT_LE(profile.wall_seconds(), 1e-6 * (micros(job.end_time()) - micros(job.start_time())) + 0.01);
-  EXPECT_GT(whole, 0.97 * profile.wall_seconds()) << profile.DebugString();
+  // All but what goes by between stages; a busy machine may stop the worker there for some milliseconds.
+  constexpr double kBetween = 0.03;
+  EXPECT_GT(whole, 0.97 * profile.wall_seconds() - kBetween) << profile.DebugString();
   EXPECT_LE(whole, profile.wall_seconds());
-  EXPECT_GT(step, 0.97 * stages["step"].seconds()) << profile.DebugString();
+  EXPECT_GT(step, 0.97 * stages["step"].seconds() - kBetween) << profile.DebugString();
   EXPECT_GT(stages["step/elastic force"].seconds(), 0.3 * stages["step"].seconds());
   EXPECT_EQ(stages["step"].calls(), job.progress().step());
-  EXPECT_EQ(stages["commit"].calls(), 100);
+  EXPECT_EQ(stages["commit"].calls(), 400);
   EXPECT_TRUE(stages["commit"].concurrent());
   EXPECT_GT(profile.cpu_seconds(), 0.3 * step);
   EXPECT_EQ(profile.runs(), 1);
