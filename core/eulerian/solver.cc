@@ -1,5 +1,7 @@
 #include "core/eulerian/solver.h"
 
+#include <limits>
+
 #include "core/eulerian/advection.h"
 #include "core/eulerian/extrapolation.h"
 

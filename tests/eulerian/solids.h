@@ -66,6 +66,13 @@ inline EulerianBody MakeSolid(int n, bool round, double young, double poisson, T
   return body;
 }
 
+// The volume on the surface, relative to that at rest.
+inline double VolumeRatio(const EulerianBody& body, const std::vector<Vec3>& vertices) {
+  TriangleMesh surface = body.shape.surface();
+  surface.nodes = vertices;
+  return EnclosedVolume(surface) / body.shape.volume();
+}
+
 }  // namespace fascicle::testing
 
 #endif  // FASCICLE_TESTS_EULERIAN_SOLIDS_H_
