@@ -16,10 +16,11 @@ namespace fascicle {
 
 // What acts in the fibres beside their stretch.
 struct FibreDrive {
-  // Held fibres, from any array of activations.
+  // Held fibres, from any array of activations: that is what it is for. NOLINTBEGIN(google-explicit-constructor)
   template <class Activations>
   requires std::convertible_to<const Activations&, std::span<const double>> FibreDrive(const Activations& of_curves)
       : activation(of_curves) {}
+  // NOLINTEND(google-explicit-constructor)
   FibreDrive(std::span<const double> of_curves, const NodalVector* positions_before, double one_over_step)
       : activation(of_curves), previous(positions_before), inverse_step(one_over_step) {}
   FibreDrive() = default;
