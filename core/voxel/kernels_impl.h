@@ -274,7 +274,7 @@ struct Transfer {
       const std::int32_t coarse_count = fine_count / 2 + 1;
       const float* const from = fine + run.first - run.odd + 2 * piece;
       float row[kPiece + 1], line[2 * kPiece + 4];  // line[n + 1]: node n
-      for (std::int32_t n = 0; n < fine_count; ++n) line[n + 1] = from[n];
+      for (std::int32_t n = piece == 0 ? run.odd : 0; n < fine_count; ++n) line[n + 1] = from[n];
       line[0] = line[fine_count + 1] = line[fine_count + 2] = 0;
       if (piece == 0 && run.odd == 1) line[1] = 0;
       for (std::int32_t n = 0; n < coarse_count; ++n) {

@@ -96,8 +96,9 @@ void AssetUpload::FinishOnce(const grpc::Status& status) {
 
 void AssetUpload::OnDone() {
   context_.streams.Remove(this);
-  // A broken upload leaves nothing: removing its file is work for the executor.
-  context_.slow.Post([upload = std::move(self_)] { upload->upload_.reset(); });
+  // A broken upload leaves nothing: removing its file is work for the executor, and for whoever holds the upload last:
+  // a message may still be at work.
+  context_.slow.Post([upload = std::move(self_)] {});
 }
 
 }  // namespace fascicle::server
