@@ -18,6 +18,7 @@ enum class StepProblem {
   kStepTooSmall,
   kNoEquilibrium,  // Newton's method of implicit and quasi-static steps
   kNotSolved,      // the linear solve of voxels
+  kLeftGrid,       // a body has come to the side of its grid
   kStopped         // as asked
 };
 

@@ -1,18 +1,58 @@
 #include "core/eulerian/advection.h"
 
 namespace fascicle {
+namespace {
 
-void Advect(const EulerianGrid& grid, const std::vector<std::uint8_t>& known, const std::vector<Vec3>& v, double dt,
-            const std::vector<Vec3>& field, ThreadTeam& team, std::vector<Vec3>& result) {
+constexpr std::size_t kGrain = 256;
+
+// From where the flow comes to a node.
+Vec3 Origin(const Flow& flow, std::size_t n) {
+  const Vec3 x = flow.grid->NodePosition(flow.grid->NodeAt(n)), v = (*flow.v)[n];
+  const KnownField velocity = {flow.v, flow.known};
+  return x - flow.dt * Interpolate(*flow.grid, velocity, x - 0.5 * flow.dt * v).value_or(v);
+}
+
+// Keeps a value within those at the corners of the cell that a place is in; takes another where one is not known.
+Vec3 Limited(const Vec3& value, const Flow& flow, const std::vector<Vec3>& field, const Vec3& place,
+             const Vec3& otherwise) {
+  const GridIndex cell = flow.grid->PlaceOf(place).cell;
+  Vec3 lowest = field[flow.grid->Corner(cell, 0)], highest = lowest;
+  for (int c = 0; c < 8; ++c) {
+    const std::size_t corner = flow.grid->Corner(cell, c);
+    if ((*flow.known)[corner] == 0) return otherwise;
+    lowest = lowest.cwiseMin(field[corner]);
+    highest = highest.cwiseMax(field[corner]);
+  }
+  return value.cwiseMax(lowest).cwiseMin(highest);
+}
+
+}  // namespace
+
+void Advect(const Flow& flow, const std::vector<Vec3>& field, ThreadTeam& team, std::vector<Vec3>& result) {
   result.resize(field.size());
-  const KnownField velocity = {&v, &known}, values = {&field, &known};
-  team.For(field.size(), 256, [&](std::size_t begin, std::size_t end) {
+  const KnownField values = {&field, flow.known};
+  team.For(field.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       result[n] = field[n];
-      if (known[n] == 0) continue;
-      const Vec3 x = grid.NodePosition(grid.NodeAt(n));
-      const Vec3 middle = Interpolate(grid, velocity, x - 0.5 * dt * v[n]).value_or(v[n]);
-      if (const std::optional<Vec3> value = Interpolate(grid, values, x - dt * middle)) result[n] = *value;
+      if ((*flow.known)[n] == 0) continue;
+      if (const std::optional<Vec3> value = Interpolate(*flow.grid, values, Origin(flow, n))) result[n] = *value;
+    }
+  });
+}
+
+void AdvectMacCormack(const Flow& flow, const std::vector<Vec3>& field, ThreadTeam& team, std::vector<Vec3>& result) {
+  std::vector<Vec3> there, back;
+  Advect(flow, field, team, there);
+  Flow reverse = flow;
+  reverse.dt = -flow.dt;
+  Advect(reverse, there, team, back);
+  result.resize(field.size());
+  team.For(field.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      result[n] = there[n];
+      if ((*flow.known)[n] == 0) continue;
+      const Vec3 corrected = there[n] + 0.5 * (field[n] - back[n]);
+      result[n] = Limited(corrected, flow, field, Origin(flow, n), there[n]);
     }
   });
 }

@@ -2,7 +2,10 @@
 #define FASCICLE_CORE_EULERIAN_BODY_H_
 
 #include <functional>
+#include <optional>
+#include <vector>
 
+#include "core/base/curve.h"
 #include "core/eulerian/solid_shape.h"
 #include "core/materials/material.h"
 
@@ -14,6 +17,13 @@ enum class VolumeTreatment {
   kPreserved,       // div v = (1 - J)/(dt J), which does not [Fan 2013, 3.2]
 };
 
+// Plastic flow at constant volume [Fan 2013, 3.5; Bargteil et al. 2007].
+struct Plasticity {
+  double yield_stress = 0;  // von Mises Cauchy stress from which it flows [Pa]
+  // Time in which what is beyond it flows away but for 1/e [s]; 0: at once, whatever the step.
+  double relaxation_time = 0;
+};
+
 // A solid that moves through a grid of its own. Const while it is stepped; functions may be called from several
 // threads.
 struct EulerianBody {
@@ -23,12 +33,21 @@ struct EulerianBody {
   double density = 1060;        // rho0, at rest [kg/m^3]
   double mass_damping = 0;      // a of the force -a M v [1/s]
   Vec3 gravity = Vec3::Zero();  // [m/s^2]
+  Curve gravity_scale = Curve::Constant(1);
   VolumeTreatment volume = VolumeTreatment::kPreserved;
   double stabilization = 0.05;  // eps of eps L, over the volume's own matrix [1]
   // The fibre at a point of the material, and its activation at a time [s]; null: none.
   std::function<FibreState(const Vec3& X, double time)> fibre = nullptr;
-  // Points of the material that stay where they are; null: none.
-  std::function<bool(const Vec3& X)> is_held = nullptr;
+  std::optional<Plasticity> plasticity = std::nullopt;
+  // The elastic force is taken where the step ends, linearized, which costs a larger system and allows long steps.
+  bool implicit_elasticity = false;
+  bool maccormack = false;          // advection of second order in time, limited, in place of semi-Lagrangian
+  std::optional<double> time_step = std::nullopt;  // the longest step [s]
+  // The velocity that a point X of the material is given at x, which then does not move by itself; nothing: it is free.
+  // Null: all are.
+  std::function<std::optional<Vec3>(const Vec3& X, const Vec3& x, double time)> held_velocity = nullptr;
+  // Forces on the vertices of the surface at a time, to be set [N]; null: none.
+  std::function<void(double time, std::vector<Vec3>& forces)> vertex_forces = nullptr;
   // Force per volume of the deformed body at a point of space and a time [N/m^3]; null: none.
   std::function<Vec3(const Vec3& x, double time)> force = nullptr;
 };

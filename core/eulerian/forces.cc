@@ -2,19 +2,10 @@
 
 #include <Eigen/LU>
 
+#include "core/eulerian/plasticity.h"
+
 namespace fascicle {
 namespace {
-
-Vec3 MaterialPoint(const EulerianGrid& grid, const EulerianState& state, const GridIndex& cell) {
-  Vec3 X = Vec3::Zero();
-  for (int c = 0; c < 8; ++c) X += state.X[grid.Corner(cell, c)] / 8;
-  return X;
-}
-
-FibreState FibreOf(const EulerianBody& body, const EulerianState& state, const GridIndex& cell) {
-  if (!body.fibre) return {};
-  return body.fibre(MaterialPoint(body.grid, state, cell), state.time);
-}
 
 // The four patterns of corners that the gradient at the centre does not see: yz, zx, xy and xyz.
 constexpr int kPatterns = 4;
@@ -54,8 +45,8 @@ CellForce ForceOf(const EulerianBody& body, const EulerianState& state, const Eu
   const double volume = cells.inside[cell] * std::pow(body.grid.spacing, 3);
   const GridIndex at = body.grid.CellAt(cell);
   const FibreState fibre = FibreOf(body, state, at);
-  const Mat3 P = std::visit([&](const auto& law) { return law.Stress(cells.F[cell], fibre); }, body.material);
-  result.stress = volume / cells.J[cell] * P * cells.F[cell].transpose();
+  const Mat3 Fe = ElasticGradient(body, state, cells, cell);
+  result.stress = volume * CauchyStress(body, Fe, fibre);
   SetPatterns(body, state, at, cells.F[cell], volume, result);
   result.mass = volume * body.density / cells.J[cell];
   if (body.force) result.given = volume * body.force(body.grid.CellCentre(at), state.time);
@@ -65,22 +56,35 @@ CellForce ForceOf(const EulerianBody& body, const EulerianState& state, const Eu
 // A node has at least that part of the mass of a whole cell, whatever the extrapolation takes away.
 constexpr double kLeastMass = 0.05;
 
-void HandToInside(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, ThreadTeam& team,
-                  NodalForces& nodes) {
+// Which nodes are inside, which are held, and whom the others follow.
+void SetLeaders(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, ThreadTeam& team,
+                NodalForces& nodes) {
   const std::size_t count = nodes.mass.size();
   nodes.held.assign(count, 0);
+  nodes.held_velocity.assign(count, Vec3::Zero());
   nodes.inside.assign(count, 0);
   for (std::size_t n = 0; n < count; ++n) nodes.inside[n] = nodes.mass[n] > 0 && cells.distance[n] < 0 ? 1 : 0;
   nodes.leaders.assign(count, {});
   team.For(count, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      nodes.held[n] = nodes.mass[n] > 0 && body.is_held && body.is_held(state.X[n]) ? 1 : 0;
-      if (nodes.mass[n] == 0 || nodes.inside[n] != 0 || nodes.held[n] != 0) continue;
-      nodes.leaders[n] = ExtrapolationWeights(body.grid, body.grid.NodeAt(n), nodes.inside);
+      if (nodes.mass[n] == 0) continue;
+      const GridIndex at = body.grid.NodeAt(n);
+      if (body.held_velocity) {
+        if (const auto velocity = body.held_velocity(state.X[n], body.grid.NodePosition(at), state.time)) {
+          nodes.held[n] = 1;
+          nodes.held_velocity[n] = *velocity;
+          continue;
+        }
+      }
+      if (nodes.inside[n] == 0) nodes.leaders[n] = ExtrapolationWeights(body.grid, at, nodes.inside);
     }
   });
+}
+
+void HandToInside(const EulerianBody& body, NodalForces& nodes) {
+  const std::size_t count = nodes.mass.size();
   for (std::size_t n = 0; n < count; ++n) {
-    if (nodes.inside[n] != 0) continue;
+    if (nodes.inside[n] != 0 || nodes.held[n] != 0) continue;
     for (const NodeWeight& part : nodes.leaders[n]) {
       nodes.mass[part.node] += part.weight * nodes.mass[n];
       nodes.force[part.node] += part.weight * nodes.force[n];
@@ -94,7 +98,59 @@ void HandToInside(const EulerianBody& body, const EulerianState& state, const Eu
   }
 }
 
+// What a force at a point acts on: the nodes with mass at the corners of its cell, by its place in there; where there
+// are none, those within two cells, nearer ones more.
+std::vector<NodeWeight> NodesUnder(const EulerianGrid& grid, const std::vector<double>& mass, const Vec3& point) {
+  const EulerianGrid::Place place = grid.PlaceOf(point);
+  std::vector<NodeWeight> parts;
+  double total = 0;
+  const auto add = [&](const GridIndex& at, double weight) {
+    if (!grid.HasNode(at) || weight <= 0 || mass[grid.NodeNumber(at)] == 0) return;
+    parts.push_back({grid.NodeNumber(at), weight});
+    total += weight;
+  };
+  const auto [i, j, k] = place.cell;
+  for (int c = 0; c < 8; ++c) {
+    add({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)}, CornerWeight(c, place.within));
+  }
+  const bool none_at_corners = parts.empty();
+  for (int n = 0; n < 216 && none_at_corners; ++n) {
+    const GridIndex at = {i - 2 + n % 6, j - 2 + n / 6 % 6, k - 2 + n / 36};
+    add(at, grid.spacing * grid.spacing / (grid.NodePosition(at) - point).squaredNorm());
+  }
+  for (NodeWeight& part : parts) part.weight /= total;
+  return parts;
+}
+
+void AddVertexForces(const EulerianBody& body, const EulerianState& state, NodalForces& nodes) {
+  std::vector<Vec3> forces(state.surface.size(), Vec3::Zero());
+  body.vertex_forces(state.time, forces);
+  for (std::size_t v = 0; v < forces.size(); ++v) {
+    if (forces[v].isZero(0)) continue;
+    for (const NodeWeight& part : NodesUnder(body.grid, nodes.mass, state.surface[v])) {
+      nodes.force[part.node] += part.weight * forces[v];
+    }
+  }
+}
+
 }  // namespace
+
+FibreState FibreOf(const EulerianBody& body, const EulerianState& state, const GridIndex& cell) {
+  if (!body.fibre) return {};
+  return body.fibre(CentreValue(body.grid, state.X, cell), state.time);
+}
+
+Mat3 ElasticGradient(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
+                     std::size_t cell) {
+  if (!body.plasticity) return cells.F[cell];
+  const Vec3 X = CentreValue(body.grid, state.X, body.grid.CellAt(cell));
+  return cells.F[cell] * PlasticInverse(PlasticGrid(body), state.plastic, X);
+}
+
+Mat3 CauchyStress(const EulerianBody& body, const Mat3& Fe, const FibreState& fibre) {
+  const Mat3 P = std::visit([&](const auto& law) { return law.Stress(Fe, fibre); }, body.material);
+  return P * Fe.transpose() / Fe.determinant();
+}
 
 void SetForces(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, ThreadTeam& team,
                NodalForces& nodes) {
@@ -120,9 +176,12 @@ void SetForces(const EulerianBody& body, const EulerianState& state, const Euler
       }
     }
   });
-  HandToInside(body, state, cells, team, nodes);
+  if (body.vertex_forces) AddVertexForces(body, state, nodes);
+  SetLeaders(body, state, cells, team, nodes);
+  HandToInside(body, nodes);
+  const Vec3 gravity = body.gravity_scale.At(state.time) * body.gravity;
   for (std::size_t n = 0; n < nodes.mass.size(); ++n) {
-    nodes.force[n] += nodes.mass[n] * (body.gravity - body.mass_damping * state.v[n]);
+    nodes.force[n] += nodes.mass[n] * (gravity - body.mass_damping * state.v[n]);
   }
 }
 
@@ -130,7 +189,8 @@ double ElasticEnergy(const EulerianBody& body, const EulerianState& state, const
   double sum = 0;
   for (const std::size_t c : cells.solid) {
     const FibreState fibre = FibreOf(body, state, body.grid.CellAt(c));
-    const double density = std::visit([&](const auto& law) { return law.Energy(cells.F[c], fibre); }, body.material);
+    const Mat3 Fe = ElasticGradient(body, state, cells, c);
+    const double density = std::visit([&](const auto& law) { return law.Energy(Fe, fibre); }, body.material);
     sum += density * cells.inside[c] / cells.J[c];
   }
   return sum * std::pow(body.grid.spacing, 3);

@@ -8,20 +8,29 @@
 
 namespace fascicle {
 
-// Lumped mass [kg] and forces [N] of the nodes inside of the solid; zero elsewhere. Nodes outside that solid cells have
-// as corners follow those inside by ExtrapolationWeights; their masses and forces are theirs, each by its weight, so
-// that slivers of cells neither move by themselves nor fray the surface, and momentum is kept [Badia, Verdugo & Martin
-// 2018, the aggregated unfitted finite element method].
+// Lumped mass [kg] and forces [N] of the nodes inside of the solid, and of held ones; zero elsewhere. Nodes outside
+// that solid cells have as corners follow those inside by ExtrapolationWeights; their masses and forces are theirs,
+// each by its weight, so that slivers of cells neither move by themselves nor fray the surface, and momentum is kept
+// [Badia, Verdugo & Martin 2018, the aggregated unfitted finite element method].
 struct NodalForces {
   std::vector<double> mass;
   std::vector<Vec3> force;
   std::vector<std::uint8_t> inside;              // of each node: 1 where it is inside and has mass
   std::vector<std::uint8_t> held;                // of each node: 1 where it is held, inside or not
+  std::vector<Vec3> held_velocity;               // of held nodes [m/s]
   std::vector<std::vector<NodeWeight>> leaders;  // of each node: whom it follows, if it does
 };
 
+// The fibre and activation in a cell.
+FibreState FibreOf(const EulerianBody& body, const EulerianState& state, const GridIndex& cell);
+// The elastic part Fe = F Fp^-1 of a solid cell's deformation gradient; F where nothing is plastic.
+Mat3 ElasticGradient(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
+                     std::size_t cell);
+// sigma = P Fe^T / det Fe [Pa]; without the pressure that preserves volumes.
+Mat3 CauchyStress(const EulerianBody& body, const Mat3& Fe, const FibreState& fibre);
+
 // m = sum of rho0/J times an eighth of the solid part of each cell around a node; f = sum of -V sigma grad N, with
-// sigma = P F^T / J and V the solid part, of gravity, of the given force, and of damping [Fan 2013, 3.1].
+// sigma = P F^T / J of the elastic F and V the solid part, of gravity, of given forces, and of damping [Fan 2013, 3.1].
 void SetForces(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, ThreadTeam& team,
                NodalForces& nodes);
 

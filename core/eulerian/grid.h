@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "core/geometry/voxel_grid.h"
 
@@ -65,6 +66,20 @@ struct EulerianGrid {
     return {i, static_cast<std::int32_t>(rest % nj), static_cast<std::int32_t>(rest / nj)};
   }
 };
+
+// What corner c of a cell counts in trilinear interpolation, at a place `within` it.
+inline double CornerWeight(int c, const Vec3& within) {
+  double weight = 1;
+  for (int axis = 0; axis < 3; ++axis) weight *= (c >> axis & 1) != 0 ? within[axis] : 1 - within[axis];
+  return weight;
+}
+
+// The mean of a field over the corners of a cell.
+inline Vec3 CentreValue(const EulerianGrid& grid, const std::vector<Vec3>& field, const GridIndex& cell) {
+  Vec3 sum = Vec3::Zero();
+  for (int c = 0; c < 8; ++c) sum += field[grid.Corner(cell, c)] / 8;
+  return sum;
+}
 
 // The gradient of the trilinear function of corner c at the centre of a cell [1/m].
 inline Vec3 CornerGradient(int c, double spacing) {

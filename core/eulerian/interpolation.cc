@@ -3,51 +3,107 @@
 namespace fascicle {
 namespace {
 
-// Of the nodes at -1, 0, 1, 2 for a point at t in [0, 1].
+// What `count` nodes in a row, the first one `before` nodes ahead of the place, count along an axis.
+template <int count>
+using Weights = std::array<std::array<double, count>, 3>;
+
+// Lagrange's polynomials of the nodes at -1, 0, 1, 2 for a point at t in [0, 1], and their derivatives.
 std::array<double, 4> CubicWeights(double t) {
   return {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
           (t + 1) * t * (t - 1) / 6};
 }
+std::array<double, 4> CubicSlopes(double t) {
+  return {-(3 * t * t - 6 * t + 2) / 6, (3 * t * t - 4 * t - 1) / 2, -(3 * t * t - 2 * t - 2) / 2, (3 * t * t - 1) / 6};
+}
 
-std::optional<Vec3> Cubic(const EulerianGrid& grid, const KnownField& field, const EulerianGrid::Place& place) {
+// Whether the nodes first .. first + count - 1 along each axis are in the grid and known.
+template <int count>
+bool AllKnown(const EulerianGrid& grid, const KnownField& field, const GridIndex& first) {
   for (int axis = 0; axis < 3; ++axis) {
-    if (place.cell[axis] < 1 || place.cell[axis] + 2 > grid.cells[axis]) return std::nullopt;
+    if (first[axis] < 0 || first[axis] + count - 1 > grid.cells[axis]) return false;
   }
-  std::array<std::array<double, 4>, 3> weights;
-  for (int axis = 0; axis < 3; ++axis) weights[axis] = CubicWeights(place.within[axis]);
-  Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < 4; ++k) {
-    for (int j = 0; j < 4; ++j) {
-      std::size_t node = grid.NodeNumber({place.cell[0] - 1, place.cell[1] - 1 + j, place.cell[2] - 1 + k});
-      Vec3 row = Vec3::Zero();
-      for (int i = 0; i < 4; ++i, ++node) {
-        if ((*field.known)[node] == 0) return std::nullopt;
-        row += weights[0][i] * (*field.values)[node];
+  for (int k = 0; k < count; ++k) {
+    for (int j = 0; j < count; ++j) {
+      const std::uint8_t* row = field.known->data() + grid.NodeNumber({first[0], first[1] + j, first[2] + k});
+      for (int i = 0; i < count; ++i) {
+        if (row[i] == 0) return false;
       }
-      sum += weights[1][j] * weights[2][k] * row;
+    }
+  }
+  return true;
+}
+
+template <int count>
+Vec3 WeightedSum(const EulerianGrid& grid, const KnownField& field, const GridIndex& first,
+                 const std::array<double, count>& x, const std::array<double, count>& y,
+                 const std::array<double, count>& z) {
+  Vec3 sum = Vec3::Zero();
+  for (int k = 0; k < count; ++k) {
+    for (int j = 0; j < count; ++j) {
+      const Vec3* row = field.values->data() + grid.NodeNumber({first[0], first[1] + j, first[2] + k});
+      Vec3 of_row = Vec3::Zero();
+      for (int i = 0; i < count; ++i) of_row += x[i] * row[i];
+      sum += y[j] * z[k] * of_row;
     }
   }
   return sum;
 }
 
-std::optional<Vec3> Linear(const EulerianGrid& grid, const KnownField& field, const EulerianGrid::Place& place) {
-  Vec3 sum = Vec3::Zero();
-  for (int c = 0; c < 8; ++c) {
-    double weight = 1;
-    for (int axis = 0; axis < 3; ++axis) weight *= (c >> axis & 1) != 0 ? place.within[axis] : 1 - place.within[axis];
-    const std::size_t node = grid.Corner(place.cell, c);
-    if ((*field.known)[node] == 0) return std::nullopt;
-    sum += weight * (*field.values)[node];
+// How the nodes around a place make the value there: tricubic or trilinear.
+template <int count>
+struct Stencil {
+  GridIndex first;
+  Weights<count> weights, slopes;  // slopes per cell
+
+  Vec3 Value(const EulerianGrid& grid, const KnownField& field) const {
+    return WeightedSum<count>(grid, field, first, weights[0], weights[1], weights[2]);
   }
-  return sum;
+  ValueAndGradient Both(const EulerianGrid& grid, const KnownField& field) const {
+    ValueAndGradient both{Value(grid, field), {}};
+    both.gradient.col(0) = WeightedSum<count>(grid, field, first, slopes[0], weights[1], weights[2]) / grid.spacing;
+    both.gradient.col(1) = WeightedSum<count>(grid, field, first, weights[0], slopes[1], weights[2]) / grid.spacing;
+    both.gradient.col(2) = WeightedSum<count>(grid, field, first, weights[0], weights[1], slopes[2]) / grid.spacing;
+    return both;
+  }
+};
+
+Stencil<4> Cubic(const EulerianGrid::Place& place) {
+  Stencil<4> stencil;
+  for (int axis = 0; axis < 3; ++axis) {
+    stencil.first[axis] = place.cell[axis] - 1;
+    stencil.weights[axis] = CubicWeights(place.within[axis]);
+    stencil.slopes[axis] = CubicSlopes(place.within[axis]);
+  }
+  return stencil;
+}
+
+Stencil<2> Linear(const EulerianGrid::Place& place) {
+  Stencil<2> stencil;
+  stencil.first = place.cell;
+  for (int axis = 0; axis < 3; ++axis) {
+    stencil.weights[axis] = {1 - place.within[axis], place.within[axis]};
+    stencil.slopes[axis] = {-1, 1};
+  }
+  return stencil;
 }
 
 }  // namespace
 
 std::optional<Vec3> Interpolate(const EulerianGrid& grid, const KnownField& field, const Vec3& point) {
   const EulerianGrid::Place place = grid.PlaceOf(point);
-  if (const std::optional<Vec3> cubic = Cubic(grid, field, place)) return cubic;
-  return Linear(grid, field, place);
+  const Stencil<4> cubic = Cubic(place);
+  if (AllKnown<4>(grid, field, cubic.first)) return cubic.Value(grid, field);
+  if (AllKnown<2>(grid, field, place.cell)) return Linear(place).Value(grid, field);
+  return std::nullopt;
+}
+
+std::optional<ValueAndGradient> InterpolateWithGradient(const EulerianGrid& grid, const KnownField& field,
+                                                        const Vec3& point) {
+  const EulerianGrid::Place place = grid.PlaceOf(point);
+  const Stencil<4> cubic = Cubic(place);
+  if (AllKnown<4>(grid, field, cubic.first)) return cubic.Both(grid, field);
+  if (AllKnown<2>(grid, field, place.cell)) return Linear(place).Both(grid, field);
+  return std::nullopt;
 }
 
 }  // namespace fascicle

@@ -18,6 +18,14 @@ struct KnownField {
 // known, trilinear where the eight around it are, else nothing.
 std::optional<Vec3> Interpolate(const EulerianGrid& grid, const KnownField& field, const Vec3& point);
 
+// The same with its derivative: column d along axis d [1/m of the field's unit].
+struct ValueAndGradient {
+  Vec3 value;
+  Mat3 gradient;
+};
+std::optional<ValueAndGradient> InterpolateWithGradient(const EulerianGrid& grid, const KnownField& field,
+                                                        const Vec3& point);
+
 }  // namespace fascicle
 
 #endif  // FASCICLE_CORE_EULERIAN_INTERPOLATION_H_

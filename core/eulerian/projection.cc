@@ -1,97 +1,188 @@
 #include "core/eulerian/projection.h"
 
+#include <algorithm>
+
 namespace fascicle {
 namespace {
 
 constexpr double kTolerance = 1e-7;
+constexpr std::size_t kGrain = 64;
+// Cells along each axis whose pressures are corrected together.
+constexpr std::int32_t kGroup = 4;
 
-using Triplets = std::vector<Eigen::Triplet<double>>;
+// What a node's velocity makes of a cell's volume [m^2].
+struct NodeFlux {
+  std::size_t node;
+  Vec3 flux;
+};
+using CellFluxes = std::vector<NodeFlux>;  // by rising nodes, each once
 
-// Numbers of the unknown nodes, three velocities each.
-std::vector<int> UnknownNodes(const NodalForces& nodes, int& count) {
-  std::vector<int> number(nodes.mass.size(), -1);
-  count = 0;
-  for (std::size_t n = 0; n < number.size(); ++n) {
-    if (nodes.mass[n] > 0 && nodes.held[n] == 0) number[n] = count++;
+// V grad N of the corners of a cell, those that follow others by whom they follow.
+CellFluxes FluxesOf(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes, std::size_t cell) {
+  const GridIndex at = body.grid.CellAt(cell);
+  const double volume = cells.inside[cell] * std::pow(body.grid.spacing, 3);
+  CellFluxes all;
+  for (int c = 0; c < 8; ++c) {
+    const std::size_t corner = body.grid.Corner(at, c);
+    const Vec3 flux = volume * CornerGradient(c, body.grid.spacing);
+    if (nodes.mass[corner] > 0) all.push_back({corner, flux});
+    for (const NodeWeight& part : nodes.leaders[corner]) all.push_back({part.node, part.weight * flux});
   }
-  return number;
+  std::stable_sort(all.begin(), all.end(), [](const NodeFlux& a, const NodeFlux& b) { return a.node < b.node; });
+  CellFluxes merged;
+  for (const NodeFlux& part : all) {
+    if (!merged.empty() && merged.back().node == part.node) {
+      merged.back().flux += part.flux;
+    } else {
+      merged.push_back(part);
+    }
+  }
+  return merged;
+}
+
+// The problem's numbering: free nodes with three velocities each, and the solid cells that have any.
+struct Numbering {
+  std::vector<int> of_node;  // -1: not free
+  std::vector<int> of_cell;  // of cells.solid: its row; -1: none
+  int nodes = 0, rows = 0;
+};
+
+Numbering Number(const NodalForces& nodes, const std::vector<CellFluxes>& fluxes) {
+  Numbering numbers;
+  numbers.of_node.assign(nodes.mass.size(), -1);
+  for (std::size_t n = 0; n < nodes.mass.size(); ++n) {
+    if (nodes.mass[n] > 0 && nodes.held[n] == 0) numbers.of_node[n] = numbers.nodes++;
+  }
+  for (const CellFluxes& cell : fluxes) {
+    const bool any =
+        std::any_of(cell.begin(), cell.end(), [&](const NodeFlux& part) { return numbers.of_node[part.node] >= 0; });
+    numbers.of_cell.push_back(any ? numbers.rows++ : -1);
+  }
+  return numbers;
+}
+
+// The rows of the volumes; what held nodes do to a volume goes to its right side.
+ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes,
+                          const Numbering& numbers, const std::vector<CellFluxes>& fluxes, double dt,
+                          ThreadTeam& team) {
+  ConstraintRows rows;
+  rows.b.resize(numbers.rows);
+  std::vector<int> begin(static_cast<std::size_t>(numbers.rows) + 1, 0);
+  for (std::size_t c = 0; c < fluxes.size(); ++c) {
+    if (numbers.of_cell[c] < 0) continue;
+    for (const NodeFlux& part : fluxes[c]) begin[numbers.of_cell[c] + 1] += numbers.of_node[part.node] >= 0 ? 3 : 0;
+  }
+  for (std::size_t r = 1; r < begin.size(); ++r) begin[r] += begin[r - 1];
+  std::vector<int> column(begin.back());
+  std::vector<double> value(begin.back());
+  team.For(fluxes.size(), kGrain, [&](std::size_t first, std::size_t last) {
+    for (std::size_t c = first; c < last; ++c) {
+      const int row = numbers.of_cell[c];
+      if (row < 0) continue;
+      const std::size_t cell = cells.solid[c];
+      const double J = cells.J[cell], volume = cells.inside[cell] * std::pow(body.grid.spacing, 3);
+      double right = body.volume == VolumeTreatment::kPreserved ? volume * (1 - J) / (dt * J) : 0;
+      int place = begin[row];
+      for (const NodeFlux& part : fluxes[c]) {
+        const int node = numbers.of_node[part.node];
+        if (node < 0) right -= part.flux.dot(nodes.held_velocity[part.node]);
+        for (int d = 0; d < 3 && node >= 0; ++d, ++place) {
+          column[place] = 3 * node + d;
+          value[place] = part.flux[d];
+        }
+      }
+      rows.b[row] = right;
+    }
+  });
+  rows.G = Eigen::Map<const RowMatrix>(numbers.rows, 3 * numbers.nodes, begin.back(), begin.data(), column.data(),
+                                       value.data());
+  return rows;
 }
 
 // eps L between solid cells that share a face, as large as the volumes' own matrix there: h/rho times their solid
 // parts.
-void AddStabilization(const EulerianBody& body, const EulerianCells& cells, const std::vector<int>& row_of,
-                      Triplets& entries) {
+Eigen::SparseMatrix<double> Stabilization(const EulerianBody& body, const EulerianCells& cells,
+                                          const Numbering& numbers) {
+  std::vector<int> row_of(body.grid.cell_count(), -1);
+  for (std::size_t c = 0; c < cells.solid.size(); ++c) row_of[cells.solid[c]] = numbers.of_cell[c];
   const double weight = body.stabilization * body.grid.spacing / body.density;
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(12 * cells.solid.size());
   for (const std::size_t cell : cells.solid) {
     const GridIndex at = body.grid.CellAt(cell);
     for (int axis = 0; axis < 3; ++axis) {
       GridIndex next = at;
       if (++next[axis] >= body.grid.cells[axis]) continue;
       const std::size_t other = body.grid.CellNumber(next);
-      if (row_of[cell] < 0 || row_of[other] < 0) continue;
-      const double w = weight * std::sqrt(cells.inside[cell] * cells.inside[other]);
       const int a = row_of[cell], b = row_of[other];
-      entries.emplace_back(a, a, w);
-      entries.emplace_back(b, b, w);
-      entries.emplace_back(a, b, -w);
-      entries.emplace_back(b, a, -w);
+      if (a < 0 || b < 0) continue;
+      const double w = weight * std::sqrt(cells.inside[cell] * cells.inside[other]);
+      for (const auto& [row, col, sign] : {std::tuple(a, a, 1), {b, b, 1}, {a, b, -1}, {b, a, -1}}) {
+        entries.emplace_back(row, col, sign * w);
+      }
     }
   }
+  Eigen::SparseMatrix<double> E(numbers.rows, numbers.rows);
+  E.setFromTriplets(entries.begin(), entries.end());
+  return E;
+}
+
+// Which block of cells each row belongs to.
+std::vector<int> Groups(const EulerianBody& body, const EulerianCells& cells, const Numbering& numbers) {
+  const GridIndex size = body.grid.cells;
+  const auto blocks = [&](int axis) { return (size[axis] + kGroup - 1) / kGroup; };
+  std::vector<int> used(static_cast<std::size_t>(blocks(0)) * blocks(1) * blocks(2), -1);
+  std::vector<int> groups(static_cast<std::size_t>(numbers.rows));
+  int count = 0;
+  for (std::size_t c = 0; c < cells.solid.size(); ++c) {
+    if (numbers.of_cell[c] < 0) continue;
+    const GridIndex at = body.grid.CellAt(cells.solid[c]);
+    int& group = used[at[0] / kGroup + static_cast<std::size_t>(blocks(0)) *
+                                           (at[1] / kGroup + static_cast<std::size_t>(blocks(1)) * (at[2] / kGroup))];
+    if (group < 0) group = count++;
+    groups[numbers.of_cell[c]] = group;
+  }
+  return groups;
+}
+
+void SetMasses(const NodalForces& nodes, const Numbering& numbers, const std::vector<Vec3>& velocity,
+               QuadraticProgram& problem) {
+  problem.p.resize(3 * numbers.nodes);
+  Eigen::VectorXd mass(3 * numbers.nodes);
+  for (std::size_t n = 0; n < nodes.mass.size(); ++n) {
+    const int number = numbers.of_node[n];
+    if (number < 0) continue;
+    mass.segment<3>(3 * number).setConstant(nodes.mass[n]);
+    problem.p.segment<3>(3 * number) = nodes.mass[n] * velocity[n];
+  }
+  problem.M = Eigen::SparseMatrix<double>(mass.asDiagonal());
 }
 
 }  // namespace
 
 QpReport ProjectVelocity(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes, double dt,
-                         std::vector<Vec3>& velocity) {
-  int unknowns = 0;
-  const std::vector<int> number = UnknownNodes(nodes, unknowns);
-  std::vector<int> row_of(body.grid.cell_count(), -1);
-  Triplets mass, volumes, stabilization;
+                         ThreadTeam& team, std::vector<Vec3>& velocity, std::vector<Vec3>& held_impulses) {
+  std::vector<CellFluxes> fluxes(cells.solid.size());
+  team.For(fluxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) fluxes[c] = FluxesOf(body, cells, nodes, cells.solid[c]);
+  });
+  const Numbering numbers = Number(nodes, fluxes);
   QuadraticProgram problem;
-  problem.p.resize(3 * unknowns);
-  for (std::size_t n = 0; n < number.size(); ++n) {
-    if (number[n] < 0) continue;
-    for (int d = 0; d < 3; ++d) {
-      mass.emplace_back(3 * number[n] + d, 3 * number[n] + d, nodes.mass[n]);
-      problem.p[3 * number[n] + d] = nodes.mass[n] * velocity[n][d];
-    }
-  }
-  const double cell_volume = std::pow(body.grid.spacing, 3);
-  std::vector<double> right;
-  for (const std::size_t cell : cells.solid) {
-    const GridIndex at = body.grid.CellAt(cell);
-    const double volume = cells.inside[cell] * cell_volume, J = cells.J[cell];
-    const int row = static_cast<int>(right.size());
-    bool any = false;
-    const auto add = [&](std::size_t of, const Vec3& gradient) {
-      if (number[of] < 0) return;
-      any = true;
-      for (int d = 0; d < 3; ++d) volumes.emplace_back(row, 3 * number[of] + d, gradient[d]);
-    };
-    for (int c = 0; c < 8; ++c) {
-      const std::size_t corner = body.grid.Corner(at, c);
-      const Vec3 gradient = volume * CornerGradient(c, body.grid.spacing);
-      add(corner, gradient);
-      for (const NodeWeight& part : nodes.leaders[corner]) add(part.node, part.weight * gradient);
-    }
-    if (!any) continue;
-    row_of[cell] = row;
-    right.push_back(body.volume == VolumeTreatment::kPreserved ? volume * (1 - J) / (dt * J) : 0);
-  }
-  AddStabilization(body, cells, row_of, stabilization);
-  const auto rows = static_cast<Eigen::Index>(right.size());
-  problem.M.resize(3 * unknowns, 3 * unknowns);
-  problem.M.setFromTriplets(mass.begin(), mass.end());
-  problem.volumes.G.resize(rows, 3 * unknowns);
-  problem.volumes.G.setFromTriplets(volumes.begin(), volumes.end());
-  problem.volumes.b = Eigen::Map<const Eigen::VectorXd>(right.data(), rows);
-  problem.E.resize(rows, rows);
-  problem.E.setFromTriplets(stabilization.begin(), stabilization.end());
+  SetMasses(nodes, numbers, velocity, problem);
+  problem.volumes = VolumeRows(body, cells, nodes, numbers, fluxes, dt, team);
+  problem.E = Stabilization(body, cells, numbers);
+  problem.groups = Groups(body, cells, numbers);
   QpSolution solution;
-  const QpReport report = SolveQp(problem, {.tolerance = kTolerance}, solution);
+  const QpReport report = SolveQp(problem, {.tolerance = kTolerance, .team = &team}, solution);
   if (solution.v.size() == 0) return report;
-  for (std::size_t n = 0; n < number.size(); ++n) {
-    if (number[n] >= 0) velocity[n] = solution.v.segment<3>(3 * number[n]);
+  for (std::size_t n = 0; n < velocity.size(); ++n) {
+    if (numbers.of_node[n] >= 0) velocity[n] = solution.v.segment<3>(3 * numbers.of_node[n]);
+  }
+  for (std::size_t c = 0; c < fluxes.size(); ++c) {
+    if (numbers.of_cell[c] < 0) continue;
+    for (const NodeFlux& part : fluxes[c]) {
+      if (nodes.held[part.node] != 0) held_impulses[part.node] += solution.volumes[numbers.of_cell[c]] * part.flux;
+    }
   }
   return report;
 }

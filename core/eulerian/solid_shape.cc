@@ -39,12 +39,9 @@ std::size_t OpenEdges(const TriangleMesh& surface) {
 SolidShape::SolidShape(TriangleMesh surface, double spacing, ThreadTeam& team)
     : surface_(std::move(surface)), volume_(EnclosedVolume(surface_)) {
   const Box box(surface_.nodes);
-  samples_.spacing = spacing;
-  samples_.origin = box.lowest - Vec3::Constant(kMargin * spacing);
-  for (int axis = 0; axis < 3; ++axis) {
-    samples_.cells[axis] =
-        static_cast<std::int32_t>(std::ceil((box.highest[axis] - box.lowest[axis]) / spacing + 2 * kMargin));
-  }
+  lowest_ = box.lowest;
+  highest_ = box.highest;
+  samples_ = MaterialGrid(spacing);
   const TriangleTree tree(surface_);
   distance_.resize(samples_.node_count());
   team.For(distance_.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -53,13 +50,21 @@ SolidShape::SolidShape(TriangleMesh surface, double spacing, ThreadTeam& team)
   });
 }
 
+EulerianGrid SolidShape::MaterialGrid(double spacing) const {
+  EulerianGrid grid;
+  grid.spacing = spacing;
+  grid.origin = lowest_ - Vec3::Constant(kMargin * spacing);
+  for (int axis = 0; axis < 3; ++axis) {
+    grid.cells[axis] = static_cast<std::int32_t>(std::ceil((highest_[axis] - lowest_[axis]) / spacing + 2 * kMargin));
+  }
+  return grid;
+}
+
 double SolidShape::Distance(const Vec3& X) const {
   const EulerianGrid::Place place = samples_.PlaceOf(X);
   double sum = 0;
   for (int c = 0; c < 8; ++c) {
-    double weight = 1;
-    for (int axis = 0; axis < 3; ++axis) weight *= (c >> axis & 1) != 0 ? place.within[axis] : 1 - place.within[axis];
-    sum += weight * distance_[samples_.Corner(place.cell, c)];
+    sum += CornerWeight(c, place.within) * distance_[samples_.Corner(place.cell, c)];
   }
   const Vec3 nearest = samples_.NodePosition(place.cell) + samples_.spacing * place.within;
   return sum + (X - nearest).norm();

@@ -20,11 +20,14 @@ class SolidShape {
 
   const TriangleMesh& surface() const { return surface_; }
   double volume() const { return volume_; }  // [m^3]
+  // A grid of that spacing [m] over the solid and two cells around it.
+  EulerianGrid MaterialGrid(double spacing) const;
   // phi0 [m]: negative inside; trilinear between samples, and no less than the distance from them outside of these.
   double Distance(const Vec3& X) const;
 
  private:
   TriangleMesh surface_;
+  Vec3 lowest_, highest_;  // of the surface's nodes
   EulerianGrid samples_;
   std::vector<double> distance_;  // at the nodes of samples_
   double volume_ = 0;

@@ -4,6 +4,9 @@
 
 #include "core/eulerian/advection.h"
 #include "core/eulerian/extrapolation.h"
+#include "core/eulerian/plasticity.h"
+#include "core/eulerian/surface.h"
+#include "core/eulerian/wave_speed.h"
 
 namespace fascicle {
 namespace {
@@ -11,21 +14,34 @@ namespace {
 constexpr int kBand = 4;  // layers of nodes around the solid where the map is known
 // Velocities reach further than the map, which they carry.
 constexpr int kVelocityBand = kBand + 2;
-constexpr double kCourant = 0.4;     // of a cell, that waves go in a step
-constexpr double kMostTravel = 0.5;  // of a cell, that the solid goes in a step
+constexpr double kCourant = 0.4;       // of a cell, that waves go in a step
+constexpr double kMostTravel = 0.5;    // of a cell, that the solid goes in a step
+constexpr double kLeastStep = 1e-6;    // of that for waves at rest
+constexpr double kMostSurfaceGap = 1;  // cells that the map and its surface may be apart
+constexpr std::size_t kMostNamed = 16;
 
-// The fastest small wave of a law at rest [m/s].
-double WaveSpeed(const EulerianBody& body) {
-  return std::visit(
-      [&](const auto& law) { return std::sqrt((law.BulkModulus() + 4.0 / 3 * law.ShearModulus()) / body.density); },
-      body.material);
+std::vector<std::uint8_t> NodesInside(const EulerianBody& body, const std::vector<Vec3>& X) {
+  std::vector<std::uint8_t> inside(X.size(), 0);
+  for (std::size_t n = 0; n < X.size(); ++n) inside[n] = body.shape.Distance(X[n]) < 0 ? 1 : 0;
+  return inside;
 }
 
-std::vector<std::uint8_t> NodesInside(const EulerianBody& body, const std::vector<Vec3>& X,
-                                      const std::vector<std::uint8_t>& known) {
-  std::vector<std::uint8_t> inside(X.size(), 0);
-  for (std::size_t n = 0; n < X.size(); ++n) inside[n] = known[n] != 0 && body.shape.Distance(X[n]) < 0 ? 1 : 0;
-  return inside;
+void StartPlasticity(const EulerianBody& body, EulerianState& state) {
+  if (!body.plasticity) return;
+  const EulerianGrid samples = PlasticGrid(body);
+  state.plastic.assign(samples.node_count(), Mat3::Identity());
+  for (std::size_t n = 0; n < samples.node_count(); ++n) {
+    state.plastic_places.push_back(samples.NodePosition(samples.NodeAt(n)));
+  }
+}
+
+// Points of the material go along with v, to near where the map will have them.
+void Drift(const EulerianGrid& grid, const KnownField& v, double dt, ThreadTeam& team, std::vector<Vec3>& points) {
+  team.For(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      if (const auto velocity = Interpolate(grid, v, points[k])) points[k] += dt * *velocity;
+    }
+  });
 }
 
 }  // namespace
@@ -34,88 +50,156 @@ EulerianState EulerianSolver::InitialState(const std::function<Vec3(const Vec3&)
                                            const std::function<Vec3(const Vec3&)>& velocity) const {
   const EulerianGrid& grid = body_->grid;
   EulerianState state;
-  const std::size_t count = grid.node_count();
-  for (std::size_t n = 0; n < count; ++n) {
+  for (std::size_t n = 0; n < grid.node_count(); ++n) {
     const Vec3 x = grid.NodePosition(grid.NodeAt(n));
     state.X.push_back(map ? map(x) : x);
     state.v.push_back(velocity ? velocity(x) : Vec3::Zero());
   }
-  state.known = NodesInside(*body_, state.X, std::vector<std::uint8_t>(count, 1));
+  state.known = NodesInside(*body_, state.X);
   // Given everywhere: only how far it counts is to be found.
   std::vector<Vec3> X = state.X;
   Extrapolate(grid, kBand, 1, *team_, state.known, X);
+  state.surface = body_->shape.surface().nodes;
+  CarrySurface(*body_, *team_, state);
+  StartPlasticity(*body_, state);
   return state;
 }
 
 double EulerianSolver::StableStep(const EulerianState& state) const {
-  double fastest = 0, longest = 1;
+  double fastest = 0;
   for (std::size_t n = 0; n < state.v.size(); ++n) {
     if (nodes_.mass[n] > 0) fastest = std::max(fastest, state.v[n].norm());
   }
-  // Waves are as many times faster in space as the material is stretched.
-  for (const std::size_t c : cells_.solid) longest = std::max(longest, cells_.F[c].norm() / std::sqrt(3.0));
   const double h = body_->grid.spacing;
-  const double travel = fastest > 0 ? kMostTravel * h / fastest : std::numeric_limits<double>::infinity();
-  return std::min(kCourant * h / (WaveSpeed(*body_) * longest), travel);
+  double step = body_->time_step.value_or(std::numeric_limits<double>::infinity());
+  if (fastest > 0) step = std::min(step, kMostTravel * h / fastest);
+  return std::min(step, kCourant * h / FastestWave(*body_, state, cells_, *team_));
 }
 
-bool EulerianSolver::IsAtSide() const {
+std::vector<std::int64_t> EulerianSolver::CellsAtSide() const {
+  std::vector<std::int64_t> found;
   for (const std::size_t c : cells_.solid) {
     const GridIndex at = body_->grid.CellAt(c);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (at[axis] < 2 || at[axis] >= body_->grid.cells[axis] - 2) return true;
-    }
+    bool side = false;
+    for (int axis = 0; axis < 3; ++axis) side |= at[axis] < 2 || at[axis] >= body_->grid.cells[axis] - 2;
+    if (side && found.size() < kMostNamed) found.push_back(static_cast<std::int64_t>(c));
   }
-  return false;
+  return found;
 }
 
-EulerianReport EulerianSolver::Step(double end, EulerianState& state) {
-  const EulerianGrid& grid = body_->grid;
-  EulerianReport report;
+// What the map says of the cells, and the forces there.
+StepProblem EulerianSolver::Prepare(const EulerianState& state, EulerianReport& report) {
+  const StageTimer timer(profile_, "forces");
   UpdateCells(*body_, state, *team_, cells_);
   report.smallest_J = cells_.smallest_J;
   report.largest_J = cells_.largest_J;
-  report.left_grid = IsAtSide();
-  if (!cells_.valid) report.problem = StepProblem::kInvertedElement;
-  if (report.left_grid) report.problem = StepProblem::kUnstable;
-  if (report.problem != StepProblem::kNone) return report;
+  if (!cells_.valid) {
+    for (const std::size_t c : cells_.solid) {
+      const bool bad = !(cells_.J[c] > 0) || !cells_.F[c].allFinite();
+      if (bad && report.bad_cells.size() < kMostNamed) report.bad_cells.push_back(static_cast<std::int64_t>(c));
+    }
+    return StepProblem::kInvertedElement;
+  }
+  report.bad_cells = CellsAtSide();
+  if (!report.bad_cells.empty()) return StepProblem::kLeftGrid;
   SetForces(*body_, state, cells_, *team_, nodes_);
-  const double dt = report.dt = std::min(StableStep(state), end - state.time);
+  return StepProblem::kNone;
+}
 
-  std::vector<Vec3> v, X;
-  Advect(grid, state.known, state.v, dt, state.v, *team_, v);
-  std::vector<std::uint8_t> moving(v.size(), 0);
+// v: carried velocities; then those at the end of the step, of nodes inside and held ones.
+StepProblem EulerianSolver::Accelerate(double dt, std::vector<Vec3>& v, EulerianReport& report) {
+  const StageTimer timer(profile_, "constraints");
+  reactions_.assign(v.size(), Vec3::Zero());
   for (std::size_t n = 0; n < v.size(); ++n) {
-    moving[n] = nodes_.inside[n] | nodes_.held[n];
     if (nodes_.held[n] != 0) {
-      v[n].setZero();
+      reactions_[n] = nodes_.mass[n] * (nodes_.held_velocity[n] - v[n]) - dt * nodes_.force[n];
+      v[n] = nodes_.held_velocity[n];
     } else if (nodes_.inside[n] != 0) {
       v[n] += dt / nodes_.mass[n] * nodes_.force[n];
     }
   }
+  std::vector<Vec3> impulses(v.size(), Vec3::Zero());
   if (body_->volume != VolumeTreatment::kNone) {
-    const QpReport qp = ProjectVelocity(*body_, cells_, nodes_, dt, v);
+    const QpReport qp = ProjectVelocity(*body_, cells_, nodes_, dt, *team_, v, impulses);
     report.minres_iterations = qp.minres_iterations.empty() ? 0 : qp.minres_iterations.back();
-    if (qp.status != QpStatus::kSolved) report.problem = StepProblem::kNotSolved;
+    if (qp.status != QpStatus::kSolved) return StepProblem::kNotSolved;
   }
   for (std::size_t n = 0; n < v.size(); ++n) {
-    if (moving[n] != 0 && !v[n].allFinite()) report.problem = StepProblem::kNotFinite;
+    if (nodes_.held[n] != 0) reactions_[n] = (reactions_[n] - impulses[n]) / dt;
+    if ((nodes_.inside[n] | nodes_.held[n]) != 0 && !v[n].allFinite()) return StepProblem::kNotFinite;
   }
-  if (report.problem != StepProblem::kNone) return report;
-  Extrapolate(grid, kVelocityBand, 0, *team_, moving, v);
+  for (std::size_t n = 0; n < v.size(); ++n) {
+    if (nodes_.leaders[n].empty()) continue;
+    v[n].setZero();
+    for (const NodeWeight& part : nodes_.leaders[n]) v[n] += part.weight * v[part.node];
+  }
+  return StepProblem::kNone;
+}
 
-  Advect(grid, state.known, v, dt, state.X, *team_, X);
+void EulerianSolver::Carry(const std::vector<Vec3>& field, const std::vector<Vec3>& v, const EulerianState& state,
+                           double dt, std::vector<Vec3>& result) {
+  const Flow flow = {&body_->grid, &state.known, &v, dt};
+  body_->maccormack ? AdvectMacCormack(flow, field, *team_, result) : Advect(flow, field, *team_, result);
+}
+
+// The map, the surface and what is plastic, with velocities v of the nodes inside, held ones and those that follow.
+StepProblem EulerianSolver::Move(std::vector<Vec3> v, double dt, EulerianState& state) {
+  const EulerianGrid& grid = body_->grid;
+  EulerianState next;
   // The map of nodes outside that follow is their own: it goes with the volumes that their velocities were chosen for.
-  std::vector<std::uint8_t> known(v.size());
+  next.known.resize(v.size());
   for (std::size_t n = 0; n < v.size(); ++n) {
-    known[n] = nodes_.inside[n] | nodes_.held[n] | (nodes_.leaders[n].empty() ? 0 : 1);
+    next.known[n] = nodes_.inside[n] | nodes_.held[n] | (nodes_.leaders[n].empty() ? 0 : 1);
   }
-  Extrapolate(grid, kBand, 1, *team_, known, X);
-  state.X = std::move(X);
-  state.v = std::move(v);
-  state.known = std::move(known);
-  state.time = end - state.time <= dt ? end : state.time + dt;
-  ++state.step;
+  {
+    const StageTimer timer(profile_, "extrapolation of velocities");
+    std::vector<std::uint8_t> moving = next.known;
+    Extrapolate(grid, kVelocityBand, 0, *team_, moving, v);
+  }
+  {
+    const StageTimer timer(profile_, "advection of the map");
+    Carry(state.X, v, state, dt, next.X);
+  }
+  {
+    const StageTimer timer(profile_, "extrapolation of the map");
+    Extrapolate(grid, kBand, 1, *team_, next.known, next.X);
+  }
+  {
+    const StageTimer timer(profile_, "surface");
+    next.surface = state.surface;
+    next.plastic = state.plastic;
+    next.plastic_places = state.plastic_places;
+    Drift(grid, {&v, &state.known}, dt, *team_, next.surface);
+    Drift(grid, {&v, &state.known}, dt, *team_, next.plastic_places);
+    if (!(CarrySurface(*body_, *team_, next) < kMostSurfaceGap * grid.spacing)) return StepProblem::kInvertedElement;
+  }
+  next.time = state.time + dt;
+  if (body_->plasticity) {
+    const StageTimer timer(profile_, "plastic flow");
+    FlowPlastically(*body_, dt, *team_, next);
+  }
+  next.step = state.step + 1;
+  next.v = std::move(v);
+  state = std::move(next);
+  return StepProblem::kNone;
+}
+
+EulerianReport EulerianSolver::Step(double end, EulerianState& state) {
+  EulerianReport report;
+  report.problem = Prepare(state, report);
+  if (report.problem != StepProblem::kNone) return report;
+  const double stable = StableStep(state), left = end - state.time;
+  const double least = kLeastStep * kCourant * body_->grid.spacing / WaveSpeedAtRest(*body_);
+  if (!(stable >= least)) report.problem = StepProblem::kStepTooSmall;
+  const double dt = report.dt = std::min(stable, left);
+  std::vector<Vec3> v;
+  if (report.problem == StepProblem::kNone) {
+    const StageTimer timer(profile_, "advection of velocities");
+    Carry(state.v, state.v, state, dt, v);
+  }
+  if (report.problem == StepProblem::kNone) report.problem = Accelerate(dt, v, report);
+  if (report.problem == StepProblem::kNone) report.problem = Move(std::move(v), dt, state);
+  if (report.problem == StepProblem::kNone && left <= stable) state.time = end;
   return report;
 }
 

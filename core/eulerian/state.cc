@@ -1,6 +1,17 @@
 #include "core/eulerian/state.h"
 
 namespace fascicle {
+namespace {
+
+std::vector<Vec3> Columns(const std::vector<Mat3>& matrices) {
+  std::vector<Vec3> columns;
+  for (const Mat3& matrix : matrices) {
+    for (const Vec3& column : matrix.colwise()) columns.push_back(column);
+  }
+  return columns;
+}
+
+}  // namespace
 
 void EulerianState::Save(ArchiveWriter& archive) const {
   archive.PutDouble("time", time);
@@ -9,6 +20,9 @@ void EulerianState::Save(ArchiveWriter& archive) const {
   archive.PutVectors("v", v);
   const std::vector<std::int32_t> numbers(known.begin(), known.end());
   archive.PutInts("known", numbers);
+  archive.PutVectors("surface", surface);
+  archive.PutVectors("plastic", Columns(plastic));
+  archive.PutVectors("plastic_places", plastic_places);
 }
 
 void EulerianState::Load(ArchiveReader& archive) {
@@ -19,6 +33,11 @@ void EulerianState::Load(ArchiveReader& archive) {
   std::vector<std::int32_t> numbers(known.begin(), known.end());
   archive.GetInts("known", std::span(numbers));
   for (std::size_t n = 0; n < known.size(); ++n) known[n] = numbers[n] != 0 ? 1 : 0;
+  archive.GetVectors("surface", std::span(surface));
+  std::vector<Vec3> columns = Columns(plastic);
+  archive.GetVectors("plastic", std::span(columns));
+  for (std::size_t k = 0; k < columns.size(); ++k) plastic[k / 3].col(static_cast<Eigen::Index>(k % 3)) = columns[k];
+  archive.GetVectors("plastic_places", std::span(plastic_places));
 }
 
 }  // namespace fascicle

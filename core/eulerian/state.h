@@ -17,6 +17,11 @@ struct EulerianState {
   std::vector<Vec3> X;              // reference map: which point of the material is there [m]
   std::vector<Vec3> v;              // velocity [m/s]
   std::vector<std::uint8_t> known;  // of each node: whether X and v mean something
+  std::vector<Vec3> surface;        // where the vertices of the material surface are [m]
+  // At the nodes of PlasticGrid, of bodies that flow plastically: Fp^-1, and where these points of the material are
+  // [m].
+  std::vector<Mat3> plastic;
+  std::vector<Vec3> plastic_places;
 
   void Save(ArchiveWriter& archive) const;
   // Sets failed() of the archive when sizes differ from the present ones.

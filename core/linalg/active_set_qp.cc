@@ -39,7 +39,7 @@ VectorXd Compliance(const QuadraticProgram& problem, const ConstraintRows& rows)
   const VectorXd inverse = problem.M.diagonal().cwiseInverse();
   VectorXd diagonal = VectorXd::Zero(rows.count());
   for (Index i = 0; i < rows.count(); ++i) {
-    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator entry(rows.G, i); entry; ++entry) {
+    for (RowMatrix::InnerIterator entry(rows.G, i); entry; ++entry) {
       diagonal[i] += entry.value() * entry.value() * inverse[entry.col()];
     }
   }
@@ -60,7 +60,7 @@ void TakeMultipliers(const KktSystem& system, const KktSystem::Result& result, Q
 KktSystem::Result Solve(KktSystem& system, const QpSettings& settings, QpReport& report) {
   KktSystem::Result result;
   if (settings.solver == KktSolver::kMinres) {
-    result = system.SolveMinres(settings.tolerance, settings.max_minres_iterations);
+    result = system.SolveMinres(settings);
     report.minres_iterations.push_back(result.iterations);
     if (result.ok || system.size() > kMostFactored) return result;
   }

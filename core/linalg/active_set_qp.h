@@ -5,12 +5,16 @@
 
 #include <vector>
 
+#include "core/base/parallel.h"
+
 namespace fascicle {
+
+using RowMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 // Rows of constraints on n unknowns, and their right sides.
 struct ConstraintRows {
-  Eigen::SparseMatrix<double, Eigen::RowMajor> G;  // m x n
-  Eigen::VectorXd b;                               // m
+  RowMatrix G;        // m x n
+  Eigen::VectorXd b;  // m
 
   Eigen::Index count() const { return b.size(); }
 };
@@ -25,13 +29,16 @@ struct QuadraticProgram {
   Eigen::VectorXd p;              // n
   ConstraintRows equalities, volumes, inequalities;
   Eigen::SparseMatrix<double> E;  // of volumes: symmetric, positive semidefinite (eps L); empty: zero
+  // Of volumes, for MINRES: the block of neighbours that each belongs to, counted from 0. Their multipliers are
+  // corrected block by block together, so that far rows hear of each other at once [Nicolaides 1987]. Empty: none.
+  std::vector<int> groups;
 };
 
 enum class KktSolver {
   kDirect,  // MUMPS: small systems, and what MINRES is measured against
   // Systems that it does not solve in its iterations are factored after all, where they are not too large.
-  kMinres,  // preconditioned by blocks: diag M, the diagonal of G_v (diag M)^-1 G_v^T + E, and S of all other rows,
-            // factored
+  kMinres,  // preconditioned by blocks: diag M, the diagonal of G_v (diag M)^-1 G_v^T + E with its `groups`, and S of
+            // all other rows, factored. Where M is diagonal, v is taken out, and the system is that of the multipliers
 };
 
 struct QpSettings {
@@ -39,6 +46,7 @@ struct QpSettings {
   double tolerance = 1e-9;  // of the residuals of QpReport [1]
   int max_active_set_iterations = 500;
   int max_minres_iterations = 1000;  // of each system
+  ThreadTeam* team = nullptr;        // shares the products; the bits are the same without
 };
 
 // M v = p + G_a^T y_a + G_v^T y_v + G_c^T y_c, y_c >= 0, and y_c = 0 where an inequality is not active.
@@ -67,8 +75,8 @@ struct QpReport {
 
 // By primal-dual active sets [Hintermueller, Ito & Kunisch 2002; Ito & Kunisch 2008]: all inequalities whose sign is
 // wrong change sides at once, and the equality constrained problem is solved again. Where that no longer lessens their
-// number, one at a time [Judice & Pires 1994, block principal pivoting], which comes to an end. One thread; the same
-// input gives the same bits.
+// number, one at a time [Judice & Pires 1994, block principal pivoting], which comes to an end. The same input gives
+// the same bits, for any number of threads.
 QpReport SolveQp(const QuadraticProgram& problem, const QpSettings& settings, QpSolution& solution);
 
 }  // namespace fascicle

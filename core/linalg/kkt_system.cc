@@ -1,16 +1,17 @@
 #include "core/linalg/kkt_system.h"
 
+#include "core/linalg/lower_triangle.h"
 #include "core/linalg/minres.h"
+#include "core/linalg/multiplier_preconditioner.h"
 
 namespace fascicle {
 namespace {
-
-using RowMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr double kHair = 1e-12;
 constexpr int kDirectRefinements = 3;
 // The residual of MINRES is of another norm than that which counts: it solves again for what is left.
 constexpr int kMostRefinements = 6;
+constexpr std::size_t kGrain = 512;  // rows
 
 // Rows that are chosen of all, one below the other.
 class RowStack {
@@ -22,15 +23,16 @@ class RowStack {
     for (Eigen::Index i = 0; i < rows.count(); ++i) {
       if (!is_chosen(i)) continue;
       for (RowMatrix::InnerIterator entry(rows.G, i); entry; ++entry) {
-        entries_.emplace_back(static_cast<int>(right_.size()), static_cast<int>(entry.col()), entry.value());
+        column_.push_back(static_cast<int>(entry.col()));
+        value_.push_back(entry.value());
       }
+      begin_.push_back(static_cast<int>(column_.size()));
       right_.push_back(rows.b[i]);
     }
   }
   RowMatrix G() const {
-    RowMatrix matrix(static_cast<Eigen::Index>(right_.size()), columns_);
-    matrix.setFromTriplets(entries_.begin(), entries_.end());
-    return matrix;
+    return Eigen::Map<const RowMatrix>(static_cast<Eigen::Index>(right_.size()), columns_, begin_.back(), begin_.data(),
+                                       column_.data(), value_.data());
   }
   Eigen::VectorXd b() const {
     return Eigen::Map<const Eigen::VectorXd>(right_.data(), static_cast<Eigen::Index>(right_.size()));
@@ -38,23 +40,33 @@ class RowStack {
 
  private:
   Eigen::Index columns_;
-  std::vector<Eigen::Triplet<double>> entries_;
-  std::vector<double> right_;
+  std::vector<int> begin_ = {0}, column_;
+  std::vector<double> value_, right_;
 };
 
-// Triplets of a lower triangle, for MUMPS.
-struct LowerTriangle {
-  void Add(Eigen::Index row, Eigen::Index column, double value) {
-    rows.push_back(static_cast<std::int32_t>(row));
-    columns.push_back(static_cast<std::int32_t>(column));
-    values.push_back(value);
+// y = A x, rows in parallel where there is a team.
+void Product(const RowMatrix& A, const Eigen::VectorXd& x, ThreadTeam* team, Eigen::VectorXd& y) {
+  y.resize(A.rows());
+  const auto rows = [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
+      double sum = 0;
+      for (RowMatrix::InnerIterator entry(A, i); entry; ++entry) sum += entry.value() * x[entry.col()];
+      y[i] = sum;
+    }
+  };
+  const auto count = static_cast<std::size_t>(A.rows());
+  team != nullptr ? team->For(count, kGrain, rows) : rows(0, count);
+}
+
+bool IsDiagonal(const Eigen::SparseMatrix<double>& M) {
+  if (M.nonZeros() != M.rows()) return false;
+  for (Eigen::Index column = 0; column < M.cols(); ++column) {
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(M, column); entry; ++entry) {
+      if (entry.row() != column) return false;
+    }
   }
-  bool Factor(Eigen::Index size, DirectSolver& solver) const {
-    return solver.Analyze(static_cast<std::int32_t>(size), rows, columns) && solver.Factor(values).ok;
-  }
-  std::vector<std::int32_t> rows, columns;
-  std::vector<double> values;
-};
+  return true;
+}
 
 }  // namespace
 
@@ -95,21 +107,13 @@ void KktSystem::Apply(const Eigen::VectorXd& x, double hair_part, Eigen::VectorX
 
 KktSystem::Result KktSystem::SolveDirect() {
   const Eigen::Index n = problem_->p.size(), m = b_.size();
+  const bool has_E = problem_->E.size() > 0;
   LowerTriangle lower;
-  for (Eigen::Index column = 0; column < n; ++column) {
-    for (Eigen::SparseMatrix<double>::InnerIterator entry(problem_->M, column); entry; ++entry) {
-      if (entry.row() >= column) lower.Add(entry.row(), column, entry.value());
-    }
-  }
+  lower.Add(problem_->M, 0, 1);
   for (Eigen::Index i = 0; i < m; ++i) {
     for (RowMatrix::InnerIterator entry(G_, i); entry; ++entry) lower.Add(n + i, entry.col(), entry.value());
   }
-  const bool has_E = problem_->E.size() > 0;
-  for (Eigen::Index column = 0; column < volumes_ && has_E; ++column) {
-    for (Eigen::SparseMatrix<double>::InnerIterator entry(problem_->E, column); entry; ++entry) {
-      if (entry.row() >= column) lower.Add(n + entry.row(), n + column, -entry.value());
-    }
-  }
+  if (has_E) lower.Add(problem_->E, n, -1);
   for (Eigen::Index i = has_E ? volumes_ : 0; i < m; ++i) lower.Add(n + i, n + i, -hair_[i]);
   Result result;
   if (!lower.Factor(n + m, factors_)) return result;
@@ -136,51 +140,83 @@ void KktSystem::Improve(double hair_part, Result& result) {
   result.y = -x.tail(m);
 }
 
-KktSystem::Result KktSystem::SolveMinres(double tolerance, int max_iterations) const {
-  const Eigen::Index n = problem_->p.size(), m = b_.size(), others = m - volumes_;
-  Eigen::VectorXd of_volumes = schur_.head(volumes_);
-  if (problem_->E.size() > 0) of_volumes += problem_->E.diagonal();
-  of_volumes = of_volumes.cwiseInverse().eval();
-  DirectSolver S;
+KktSystem::Result KktSystem::SolveMinres(const QpSettings& settings) const {
+  return IsDiagonal(problem_->M) && b_.size() > 0 ? SolveMultipliers(settings) : SolveWhole(settings);
+}
+
+bool KktSystem::IsGood(const Result& result, double tolerance) const {
+  const Eigen::VectorXd forces = problem_->M * result.v;
+  const Eigen::VectorXd left = forces - problem_->p - G_.transpose() * result.y;
+  if (left.norm() > tolerance * std::max(problem_->p.norm(), forces.norm())) return false;
+  if (b_.size() == 0) return true;
+  Eigen::VectorXd gap = G_ * result.v - b_;
+  if (problem_->E.size() > 0) gap.head(volumes_) += problem_->E * result.y.head(volumes_);
+  const double terms = std::max(b_.lpNorm<Eigen::Infinity>(), (G_.cwiseAbs() * result.v.cwiseAbs()).eval().maxCoeff());
+  return gap.lpNorm<Eigen::Infinity>() <= tolerance * terms;
+}
+
+// (G M^-1 G^T + C) y = b - G M^-1 p, then v = M^-1 (p + G^T y).
+KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const {
   Result result;
-  if (others > 0) {
-    const RowMatrix rows = G_.bottomRows(others);
-    const Eigen::SparseMatrix<double> product =
-        rows * inverse_mass_.asDiagonal() * Eigen::SparseMatrix<double>(rows.transpose());
-    LowerTriangle lower;
-    for (Eigen::Index column = 0; column < others; ++column) {
-      for (Eigen::SparseMatrix<double>::InnerIterator entry(product, column); entry; ++entry) {
-        if (entry.row() < column) continue;
-        lower.Add(entry.row(), column, entry.value() + (entry.row() == column ? hair_[volumes_ + column] : 0));
-      }
-    }
-    if (!lower.Factor(others, S)) return result;
+  const MultiplierPreconditioner preconditioner(*problem_, G_, volumes_, inverse_mass_, schur_, hair_);
+  if (!preconditioner.ok()) return result;
+  const RowMatrix transposed = G_.transpose();
+  const RowMatrix E = problem_->E;  // symmetric: the same by rows
+  Eigen::VectorXd v, of_volumes;
+  const auto apply = [&](const Eigen::VectorXd& y, Eigen::VectorXd& product) {
+    Product(transposed, y, settings.team, v);
+    v.array() *= inverse_mass_.array();
+    Product(G_, v, settings.team, product);
+    if (E.size() == 0) return;
+    Product(E, y.head(volumes_), settings.team, of_volumes);
+    product.head(volumes_) += of_volumes;
+  };
+  const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+    z.resize(r.size());
+    preconditioner.Apply(r, z);
+  };
+  Eigen::VectorXd r = b_ - G_ * inverse_mass_.cwiseProduct(problem_->p), step, product;
+  const Eigen::VectorXd side = r;
+  result.y = Eigen::VectorXd::Zero(b_.size());
+  for (int k = 0; k < kMostRefinements && !result.ok; ++k) {
+    const MinresResult minres = Minres(apply, precondition, r, 0.1 * settings.tolerance,
+                                       settings.max_minres_iterations - result.iterations, step);
+    result.iterations += minres.iterations;
+    result.y += step;
+    apply(result.y, product);
+    r = side - product;
+    result.v = inverse_mass_.cwiseProduct(problem_->p + transposed * result.y);
+    result.ok = IsGood(result, settings.tolerance);
+    if (!minres.converged && minres.iterations == 0) break;
   }
+  return result;
+}
+
+KktSystem::Result KktSystem::SolveWhole(const QpSettings& settings) const {
+  const Eigen::Index n = problem_->p.size(), m = b_.size();
+  Result result;
+  const MultiplierPreconditioner of_multipliers(*problem_, G_, volumes_, inverse_mass_, schur_, hair_);
+  if (!of_multipliers.ok()) return result;
   const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     z.resize(n + m);
     z.head(n) = inverse_mass_.cwiseProduct(r.head(n));
-    z.segment(n, volumes_) = of_volumes.cwiseProduct(r.segment(n, volumes_));
-    z.tail(others) = r.tail(others);
-    if (others > 0) S.Solve({z.data() + n + volumes_, static_cast<std::size_t>(others)});
+    of_multipliers.Apply(r.tail(m), z.tail(m));
   };
   const auto apply = [this](const Eigen::VectorXd& x, Eigen::VectorXd& y) { Apply(x, 0, y); };
   const Eigen::VectorXd side = Side();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n + m), r = side, step, product;
-  const double goal_of_forces = tolerance * problem_->p.norm(), size = b_.size() > 0 ? b_.lpNorm<Eigen::Infinity>() : 0;
   for (int k = 0; k < kMostRefinements && !result.ok; ++k) {
-    const MinresResult minres =
-        Minres(apply, precondition, r, 0.1 * tolerance, max_iterations - result.iterations, step);
+    const MinresResult minres = Minres(apply, precondition, r, 0.1 * settings.tolerance,
+                                       settings.max_minres_iterations - result.iterations, step);
     result.iterations += minres.iterations;
     x += step;
     Apply(x, 0, product);
     r = side - product;
-    const double terms = m == 0 ? 0 : std::max(size, (G_.cwiseAbs() * x.head(n).cwiseAbs()).eval().maxCoeff());
-    result.ok = r.head(n).norm() <= std::max(goal_of_forces, tolerance * (problem_->M * x.head(n)).norm()) &&
-                (m == 0 || r.tail(m).lpNorm<Eigen::Infinity>() <= tolerance * terms);
+    result.v = x.head(n);
+    result.y = -x.tail(m);
+    result.ok = IsGood(result, settings.tolerance);
     if (!minres.converged && minres.iterations == 0) break;
   }
-  result.v = x.head(n);
-  result.y = -x.tail(m);
   return result;
 }
 

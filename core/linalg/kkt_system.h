@@ -25,22 +25,27 @@ class KktSystem {
   Result SolveDirect();
   // What the hair took from the constraints comes back, by the same factors. After SolveDirect.
   void TakeOutHair(Result& result);
-  Result SolveMinres(double tolerance, int max_iterations) const;
+  Result SolveMinres(const QpSettings& settings) const;
 
   Eigen::Index size() const { return problem_->p.size() + b_.size(); }
   Eigen::Index volumes() const { return volumes_; }
-  const Eigen::SparseMatrix<double, Eigen::RowMajor>& G() const { return G_; }
+  const RowMatrix& G() const { return G_; }
 
  private:
   Eigen::VectorXd Side() const;
+  // M v = p + G^T y together with its multipliers, and v of these alone, where M is diagonal.
+  Result SolveWhole(const QpSettings& settings) const;
+  Result SolveMultipliers(const QpSettings& settings) const;
+  // Whether forces balance and constraints hold to a tolerance.
+  bool IsGood(const Result& result, double tolerance) const;
   // hair_part: 1 with the hair, 0 without.
   void Apply(const Eigen::VectorXd& x, double hair_part, Eigen::VectorXd& y) const;
   // Refines a solution by the factors.
   void Improve(double hair_part, Result& result);
 
   const QuadraticProgram* problem_;
-  Eigen::Index volumes_;                            // the first rows
-  Eigen::SparseMatrix<double, Eigen::RowMajor> G_;  // m x n
+  Eigen::Index volumes_;  // the first rows
+  RowMatrix G_;           // m x n
   Eigen::VectorXd b_;
   Eigen::VectorXd inverse_mass_;  // of diag M
   Eigen::VectorXd schur_;         // diagonal of G (diag M)^-1 G^T

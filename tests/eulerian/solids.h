@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/eulerian/solver.h"
+#include "core/eulerian/surface.h"
 
 namespace fascicle::testing {
 
@@ -66,11 +67,15 @@ inline EulerianBody MakeSolid(int n, bool round, double young, double poisson, T
   return body;
 }
 
+// Material above a height rests.
+inline auto HeldAbove(double z) {
+  return
+      [z](const Vec3& X, const Vec3&, double) { return X[2] > z ? std::optional<Vec3>(Vec3::Zero()) : std::nullopt; };
+}
+
 // The volume on the surface, relative to that at rest.
-inline double VolumeRatio(const EulerianBody& body, const std::vector<Vec3>& vertices) {
-  TriangleMesh surface = body.shape.surface();
-  surface.nodes = vertices;
-  return EnclosedVolume(surface) / body.shape.volume();
+inline double VolumeRatio(const EulerianBody& body, const EulerianState& state) {
+  return SurfaceVolume(body, state) / body.shape.volume();
 }
 
 }  // namespace fascicle::testing

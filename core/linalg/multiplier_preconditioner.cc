@@ -1,0 +1,102 @@
+#include "core/linalg/multiplier_preconditioner.h"
+
+#include <algorithm>
+
+#include "core/linalg/lower_triangle.h"
+
+namespace fascicle {
+namespace {
+
+// Sums the entries of rows and columns that belong to the same group.
+Eigen::SparseMatrix<double> Grouped(const Eigen::SparseMatrix<double>& matrix, const std::vector<int>& groups,
+                                    Eigen::Index count) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, column); entry; ++entry) {
+      const int row = groups[static_cast<std::size_t>(entry.row())], col = groups[static_cast<std::size_t>(column)];
+      if (row != col || entry.value() != 0) entries.emplace_back(row, col, entry.value());
+    }
+  }
+  Eigen::SparseMatrix<double> sums(count, count);
+  sums.setFromTriplets(entries.begin(), entries.end());
+  return sums;
+}
+
+// Row g: the sum of the first rows of G whose group is g, without what cancels.
+RowMatrix GroupedRows(const RowMatrix& G, const std::vector<int>& groups, Eigen::Index count) {
+  std::vector<std::vector<Eigen::Index>> members(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < groups.size(); ++i) members[groups[i]].push_back(static_cast<Eigen::Index>(i));
+  std::vector<double> sum(static_cast<std::size_t>(G.cols()), 0);
+  std::vector<double> size(sum.size(), 0);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Eigen::Index g = 0; g < count; ++g) {
+    std::vector<int> columns;
+    for (const Eigen::Index row : members[static_cast<std::size_t>(g)]) {
+      for (RowMatrix::InnerIterator entry(G, row); entry; ++entry) {
+        const auto c = static_cast<std::size_t>(entry.col());
+        if (size[c] == 0) columns.push_back(static_cast<int>(c));
+        sum[c] += entry.value();
+        size[c] += std::abs(entry.value());
+      }
+    }
+    for (const int c : columns) {
+      if (std::abs(sum[c]) > 1e-12 * size[c]) entries.emplace_back(static_cast<int>(g), c, sum[c]);
+      sum[c] = size[c] = 0;
+    }
+  }
+  RowMatrix rows(count, G.cols());
+  rows.setFromTriplets(entries.begin(), entries.end());
+  return rows;
+}
+
+}  // namespace
+
+MultiplierPreconditioner::MultiplierPreconditioner(const QuadraticProgram& problem, const RowMatrix& G,
+                                                   Eigen::Index volumes, const Eigen::VectorXd& inverse_mass,
+                                                   const Eigen::VectorXd& schur, const Eigen::VectorXd& hair)
+    : volumes_(volumes), others_(G.rows() - volumes), of_volumes_(schur.head(volumes)), groups_(problem.groups) {
+  if (problem.E.size() > 0) of_volumes_ += problem.E.diagonal();
+  of_volumes_ = of_volumes_.cwiseInverse().eval();
+  if (!groups_.empty()) ok_ = FactorGroups(problem, G, inverse_mass);
+  if (others_ > 0) ok_ &= FactorOthers(G, inverse_mass, hair);
+}
+
+bool MultiplierPreconditioner::FactorGroups(const QuadraticProgram& problem, const RowMatrix& G,
+                                            const Eigen::VectorXd& inverse_mass) {
+  group_count_ = *std::max_element(groups_.begin(), groups_.end()) + 1;
+  of_groups_.resize(group_count_);
+  const RowMatrix rows = GroupedRows(G, groups_, group_count_);
+  Eigen::SparseMatrix<double> matrix = rows * inverse_mass.asDiagonal() * Eigen::SparseMatrix<double>(rows.transpose());
+  if (problem.E.size() > 0) matrix += Grouped(problem.E, groups_, group_count_);
+  // A body that nothing holds may have a pressure of its own that changes nothing.
+  const double hair = 1e-9 * matrix.diagonal().maxCoeff();
+  for (Eigen::Index g = 0; g < group_count_; ++g) matrix.coeffRef(g, g) += hair;
+  LowerTriangle lower;
+  lower.Add(matrix, 0, 1);
+  return lower.Factor(group_count_, coarse_);
+}
+
+bool MultiplierPreconditioner::FactorOthers(const RowMatrix& G, const Eigen::VectorXd& inverse_mass,
+                                            const Eigen::VectorXd& hair) {
+  const RowMatrix rows = G.bottomRows(others_);
+  Eigen::SparseMatrix<double> matrix = rows * inverse_mass.asDiagonal() * Eigen::SparseMatrix<double>(rows.transpose());
+  for (Eigen::Index k = 0; k < others_; ++k) matrix.coeffRef(k, k) += hair[volumes_ + k];
+  LowerTriangle lower;
+  lower.Add(matrix, 0, 1);
+  return lower.Factor(others_, S_);
+}
+
+void MultiplierPreconditioner::Apply(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> z) const {
+  z.head(volumes_) = of_volumes_.cwiseProduct(r.head(volumes_));
+  if (group_count_ > 0) {
+    of_groups_.setZero();
+    for (Eigen::Index i = 0; i < volumes_; ++i) of_groups_[groups_[static_cast<std::size_t>(i)]] += r[i];
+    coarse_.Solve({of_groups_.data(), static_cast<std::size_t>(group_count_)});
+    for (Eigen::Index i = 0; i < volumes_; ++i) z[i] += of_groups_[groups_[static_cast<std::size_t>(i)]];
+  }
+  if (others_ == 0) return;
+  z.tail(others_) = r.tail(others_);
+  S_.Solve({z.data() + volumes_, static_cast<std::size_t>(others_)});
+}
+
+}  // namespace fascicle

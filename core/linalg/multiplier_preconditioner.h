@@ -1,0 +1,38 @@
+#ifndef FASCICLE_CORE_LINALG_MULTIPLIER_PRECONDITIONER_H_
+#define FASCICLE_CORE_LINALG_MULTIPLIER_PRECONDITIONER_H_
+
+#include "core/linalg/active_set_qp.h"
+#include "core/linalg/direct_solver.h"
+
+namespace fascicle {
+
+// An approximate inverse of G (diag M)^-1 G^T + C for the multipliers of a quadratic program: of volumes the diagonal,
+// corrected block by block of `groups` (their sum is an additive two-level method); of all other rows the matrix
+// itself, factored. Symmetric and positive definite. For this room alone.
+class MultiplierPreconditioner {
+ public:
+  // G: rows of volumes first, then others. `hair`: of each row, added to its diagonal where C has none.
+  MultiplierPreconditioner(const QuadraticProgram& problem, const RowMatrix& G, Eigen::Index volumes,
+                           const Eigen::VectorXd& inverse_mass, const Eigen::VectorXd& schur,
+                           const Eigen::VectorXd& hair);
+
+  bool ok() const { return ok_; }
+  // z = P r, of all multipliers.
+  void Apply(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> z) const;
+
+ private:
+  bool FactorGroups(const QuadraticProgram& problem, const RowMatrix& G, const Eigen::VectorXd& inverse_mass);
+  bool FactorOthers(const RowMatrix& G, const Eigen::VectorXd& inverse_mass, const Eigen::VectorXd& hair);
+
+  Eigen::Index volumes_, others_;
+  Eigen::VectorXd of_volumes_;
+  std::vector<int> groups_;
+  Eigen::Index group_count_ = 0;
+  mutable Eigen::VectorXd of_groups_;  // scratch
+  mutable DirectSolver coarse_, S_;    // solving changes none of their factors
+  bool ok_ = true;
+};
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_LINALG_MULTIPLIER_PRECONDITIONER_H_
