@@ -41,7 +41,7 @@ struct EulerianBody {
   std::optional<Plasticity> plasticity = std::nullopt;
   // The elastic force is taken where the step ends, linearized, which costs a larger system and allows long steps.
   bool implicit_elasticity = false;
-  bool maccormack = false;          // advection of second order in time, limited, in place of semi-Lagrangian
+  bool maccormack = false;  // advection of second order in time, limited, in place of semi-Lagrangian
   std::optional<double> time_step = std::nullopt;  // the longest step [s]
   // The velocity that a point X of the material is given at x, which then does not move by itself; nothing: it is free.
   // Null: all are.

@@ -5,8 +5,9 @@
 namespace fascicle {
 namespace {
 
-constexpr int kReach = 2;       // [cells]
-constexpr double kHair = 1e-6;  // of the weights, against slopes that nothing tells
+constexpr int kReach = 2;        // [cells] along each axis
+constexpr int kSquareReach = 6;  // [cells^2]: at a cube's corner four nodes inside that are not in a plane
+constexpr double kHair = 1e-6;   // of the weights, against slopes that nothing tells
 
 // Calls body(number, offset) for the nodes of the grid within `reach` of one.
 template <class Body>
@@ -14,11 +15,32 @@ void ForNeighbours(const EulerianGrid& grid, const GridIndex& at, int reach, con
   for (int k = -reach; k <= reach; ++k) {
     for (int j = -reach; j <= reach; ++j) {
       for (int i = -reach; i <= reach; ++i) {
+        if (i * i + j * j + k * k > kSquareReach) continue;
         const GridIndex other = {at[0] + i, at[1] + j, at[2] + k};
         if (grid.HasNode(other)) body(grid.NodeNumber(other), Vec3(i, j, k));
       }
     }
   }
+}
+
+// The value there of the linear function that fits the field less slope times the position: what ExtrapolationWeights
+// weighs, without the weights.
+Vec3 Fitted(const EulerianGrid& grid, const GridIndex& at, double slope, const std::vector<std::uint8_t>& known,
+            const std::vector<Vec3>& field) {
+  Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
+  Eigen::Matrix<double, 4, 3> b = Eigen::Matrix<double, 4, 3>::Zero();
+  const Vec3 x = grid.NodePosition(at);
+  ForNeighbours(grid, at, kReach, [&](std::size_t number, const Vec3& offset) {
+    if (known[number] == 0) return;
+    const Eigen::Vector4d row(1, offset[0], offset[1], offset[2]);
+    const Eigen::Vector4d weighted = row / std::max(offset.squaredNorm(), 0.25);
+    A += weighted * row.transpose();
+    b += weighted * (field[number] - slope * (x + grid.spacing * offset)).transpose();
+  });
+  const double total = A(0, 0);
+  for (int axis = 1; axis < 4; ++axis) A(axis, axis) += kHair * total;
+  const Eigen::Vector4d value = A.ldlt().solve(Eigen::Vector4d::Unit(0));
+  return slope * x + b.transpose() * value;
 }
 
 }  // namespace
@@ -47,25 +69,27 @@ std::vector<NodeWeight> ExtrapolationWeights(const EulerianGrid& grid, const Gri
 
 void Extrapolate(const EulerianGrid& grid, int layers, double slope, ThreadTeam& team, std::vector<std::uint8_t>& known,
                  std::vector<Vec3>& field) {
-  std::vector<std::uint8_t> next = known;
+  std::vector<std::size_t> front, next;
+  for (std::size_t n = 0; n < known.size(); ++n) {
+    if (known[n] != 0) front.push_back(n);
+  }
   for (int layer = 0; layer < layers; ++layer) {
-    team.For(known.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) {
-        if (known[n] != 0) continue;
-        const GridIndex at = grid.NodeAt(n);
-        bool touches = false;
-        ForNeighbours(grid, at, 1, [&](std::size_t number, const Vec3&) { touches |= known[number] != 0; });
-        if (!touches) continue;
-        const Vec3 x = grid.NodePosition(at);
-        Vec3 sum = slope * x;
-        for (const NodeWeight& part : ExtrapolationWeights(grid, at, known)) {
-          sum += part.weight * (field[part.node] - slope * grid.NodePosition(grid.NodeAt(part.node)));
-        }
-        field[n] = sum;
-        next[n] = 1;
+    next.clear();
+    for (const std::size_t n : front) {
+      ForNeighbours(grid, grid.NodeAt(n), 1, [&](std::size_t number, const Vec3&) {
+        if (known[number] != 0) return;
+        known[number] = 1;  // so that it is found once; not yet known
+        next.push_back(number);
+      });
+    }
+    for (const std::size_t n : next) known[n] = 0;
+    team.For(next.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        field[next[k]] = Fitted(grid, grid.NodeAt(next[k]), slope, known, field);
       }
     });
-    known = next;
+    for (const std::size_t n : next) known[n] = 1;
+    std::swap(front, next);
   }
 }
 

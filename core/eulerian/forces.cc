@@ -64,33 +64,42 @@ void SetLeaders(const EulerianBody& body, const EulerianState& state, const Eule
   nodes.held_velocity.assign(count, Vec3::Zero());
   nodes.inside.assign(count, 0);
   for (std::size_t n = 0; n < count; ++n) nodes.inside[n] = nodes.mass[n] > 0 && cells.distance[n] < 0 ? 1 : 0;
-  nodes.leaders.assign(count, {});
-  team.For(count, 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      if (nodes.mass[n] == 0) continue;
-      const GridIndex at = body.grid.NodeAt(n);
-      if (body.held_velocity) {
-        if (const auto velocity = body.held_velocity(state.X[n], body.grid.NodePosition(at), state.time)) {
-          nodes.held[n] = 1;
-          nodes.held_velocity[n] = *velocity;
-          continue;
-        }
+  if (body.held_velocity) {
+    team.For(count, 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        if (nodes.mass[n] == 0) continue;
+        const Vec3 x = body.grid.NodePosition(body.grid.NodeAt(n));
+        const std::optional<Vec3> velocity = body.held_velocity(state.X[n], x, state.time);
+        nodes.held[n] = velocity ? 1 : 0;
+        nodes.held_velocity[n] = velocity.value_or(Vec3::Zero());
       }
-      if (nodes.inside[n] == 0) nodes.leaders[n] = ExtrapolationWeights(body.grid, at, nodes.inside);
+    });
+  }
+  nodes.followers.clear();
+  for (std::size_t n = 0; n < count; ++n) {
+    if (nodes.mass[n] > 0 && nodes.inside[n] == 0 && nodes.held[n] == 0) nodes.followers.push_back({n, {}});
+  }
+  team.For(nodes.followers.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      NodalForces::Follower& follower = nodes.followers[f];
+      follower.leaders = ExtrapolationWeights(body.grid, body.grid.NodeAt(follower.node), nodes.inside);
     }
   });
+  nodes.follower_of.assign(count, -1);
+  for (std::size_t f = 0; f < nodes.followers.size(); ++f) {
+    if (!nodes.followers[f].leaders.empty()) nodes.follower_of[nodes.followers[f].node] = static_cast<std::int32_t>(f);
+  }
 }
 
 void HandToInside(const EulerianBody& body, NodalForces& nodes) {
   const std::size_t count = nodes.mass.size();
-  for (std::size_t n = 0; n < count; ++n) {
-    if (nodes.inside[n] != 0 || nodes.held[n] != 0) continue;
-    for (const NodeWeight& part : nodes.leaders[n]) {
-      nodes.mass[part.node] += part.weight * nodes.mass[n];
-      nodes.force[part.node] += part.weight * nodes.force[n];
+  for (const NodalForces::Follower& follower : nodes.followers) {
+    for (const NodeWeight& part : follower.leaders) {
+      nodes.mass[part.node] += part.weight * nodes.mass[follower.node];
+      nodes.force[part.node] += part.weight * nodes.force[follower.node];
     }
-    nodes.mass[n] = 0;
-    nodes.force[n].setZero();
+    nodes.mass[follower.node] = 0;
+    nodes.force[follower.node].setZero();
   }
   const double least = kLeastMass * body.density * std::pow(body.grid.spacing, 3);
   for (std::size_t n = 0; n < count; ++n) {
@@ -155,10 +164,12 @@ Mat3 CauchyStress(const EulerianBody& body, const Mat3& Fe, const FibreState& fi
 void SetForces(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, ThreadTeam& team,
                NodalForces& nodes) {
   const EulerianGrid& grid = body.grid;
-  std::vector<CellForce> of_cell(grid.cell_count());
-  team.For(of_cell.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) of_cell[c] = ForceOf(body, state, cells, c);
+  std::vector<CellForce> of_solid(cells.solid.size());
+  team.For(of_solid.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) of_solid[c] = ForceOf(body, state, cells, cells.solid[c]);
   });
+  std::vector<std::int32_t> solid_of(grid.cell_count(), -1);
+  for (std::size_t c = 0; c < of_solid.size(); ++c) solid_of[cells.solid[c]] = static_cast<std::int32_t>(c);
   nodes.mass.assign(grid.node_count(), 0);
   nodes.force.assign(grid.node_count(), Vec3::Zero());
   team.For(grid.node_count(), 256, [&](std::size_t begin, std::size_t end) {
@@ -169,7 +180,9 @@ void SetForces(const EulerianBody& body, const EulerianState& state, const Euler
         bool exists = true;
         for (int axis = 0; axis < 3; ++axis) exists &= cell[axis] >= 0 && cell[axis] < grid.cells[axis];
         if (!exists) continue;
-        const CellForce& f = of_cell[grid.CellNumber(cell)];
+        const std::int32_t solid = solid_of[grid.CellNumber(cell)];
+        if (solid < 0) continue;
+        const CellForce& f = of_solid[solid];
         nodes.mass[n] += f.mass / 8;
         nodes.force[n] += f.given / 8 - f.stress * CornerGradient(c, grid.spacing);
         for (int a = 0; a < kPatterns; ++a) nodes.force[n] += Pattern(a, c) * f.pattern[a];
@@ -180,9 +193,11 @@ void SetForces(const EulerianBody& body, const EulerianState& state, const Euler
   SetLeaders(body, state, cells, team, nodes);
   HandToInside(body, nodes);
   const Vec3 gravity = body.gravity_scale.At(state.time) * body.gravity;
-  for (std::size_t n = 0; n < nodes.mass.size(); ++n) {
-    nodes.force[n] += nodes.mass[n] * (gravity - body.mass_damping * state.v[n]);
-  }
+  team.For(nodes.mass.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      nodes.force[n] += nodes.mass[n] * (gravity - body.mass_damping * state.v[n]);
+    }
+  });
 }
 
 double ElasticEnergy(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells) {

@@ -26,7 +26,9 @@ CellFluxes FluxesOf(const EulerianBody& body, const EulerianCells& cells, const 
     const std::size_t corner = body.grid.Corner(at, c);
     const Vec3 flux = volume * CornerGradient(c, body.grid.spacing);
     if (nodes.mass[corner] > 0) all.push_back({corner, flux});
-    for (const NodeWeight& part : nodes.leaders[corner]) all.push_back({part.node, part.weight * flux});
+    const std::int32_t follower = nodes.follower_of[corner];
+    if (follower < 0) continue;
+    for (const NodeWeight& part : nodes.followers[follower].leaders) all.push_back({part.node, part.weight * flux});
   }
   std::stable_sort(all.begin(), all.end(), [](const NodeFlux& a, const NodeFlux& b) { return a.node < b.node; });
   CellFluxes merged;
@@ -67,14 +69,17 @@ ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, 
                           ThreadTeam& team) {
   ConstraintRows rows;
   rows.b.resize(numbers.rows);
-  std::vector<int> begin(static_cast<std::size_t>(numbers.rows) + 1, 0);
+  rows.G.resize(numbers.rows, 3 * numbers.nodes);
+  int* const begin = rows.G.outerIndexPtr();
+  std::fill(begin, begin + numbers.rows + 1, 0);
   for (std::size_t c = 0; c < fluxes.size(); ++c) {
     if (numbers.of_cell[c] < 0) continue;
     for (const NodeFlux& part : fluxes[c]) begin[numbers.of_cell[c] + 1] += numbers.of_node[part.node] >= 0 ? 3 : 0;
   }
-  for (std::size_t r = 1; r < begin.size(); ++r) begin[r] += begin[r - 1];
-  std::vector<int> column(begin.back());
-  std::vector<double> value(begin.back());
+  for (int r = 0; r < numbers.rows; ++r) begin[r + 1] += begin[r];
+  rows.G.resizeNonZeros(begin[numbers.rows]);
+  int* const column = rows.G.innerIndexPtr();
+  double* const value = rows.G.valuePtr();
   team.For(fluxes.size(), kGrain, [&](std::size_t first, std::size_t last) {
     for (std::size_t c = first; c < last; ++c) {
       const int row = numbers.of_cell[c];
@@ -94,8 +99,6 @@ ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, 
       rows.b[row] = right;
     }
   });
-  rows.G = Eigen::Map<const RowMatrix>(numbers.rows, 3 * numbers.nodes, begin.back(), begin.data(), column.data(),
-                                       value.data());
   return rows;
 }
 
@@ -103,28 +106,41 @@ ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, 
 // parts.
 Eigen::SparseMatrix<double> Stabilization(const EulerianBody& body, const EulerianCells& cells,
                                           const Numbering& numbers) {
-  std::vector<int> row_of(body.grid.cell_count(), -1);
+  const EulerianGrid& grid = body.grid;
+  std::vector<int> row_of(grid.cell_count(), -1);
   for (std::size_t c = 0; c < cells.solid.size(); ++c) row_of[cells.solid[c]] = numbers.of_cell[c];
-  const double weight = body.stabilization * body.grid.spacing / body.density;
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(12 * cells.solid.size());
-  for (const std::size_t cell : cells.solid) {
-    const GridIndex at = body.grid.CellAt(cell);
-    for (int axis = 0; axis < 3; ++axis) {
-      GridIndex next = at;
-      if (++next[axis] >= body.grid.cells[axis]) continue;
-      const std::size_t other = body.grid.CellNumber(next);
-      const int a = row_of[cell], b = row_of[other];
-      if (a < 0 || b < 0) continue;
+  const double weight = body.stabilization * grid.spacing / body.density;
+  const std::array<std::ptrdiff_t, 3> along = {1, grid.cells[0],
+                                               static_cast<std::ptrdiff_t>(grid.cells[0]) * grid.cells[1]};
+  std::vector<int> begin = {0}, column;
+  std::vector<double> value;
+  for (std::size_t c = 0; c < cells.solid.size(); ++c) {
+    if (numbers.of_cell[c] < 0) continue;
+    const std::size_t cell = cells.solid[c];
+    const GridIndex at = grid.CellAt(cell);
+    double sum = 0;
+    std::size_t own = 0;
+    const auto add = [&](int axis, int side) {
+      const std::int32_t next = at[axis] + side;
+      if (next < 0 || next >= grid.cells[axis]) return;
+      const std::size_t other = cell + side * along[axis];
+      if (row_of[other] < 0) return;
       const double w = weight * std::sqrt(cells.inside[cell] * cells.inside[other]);
-      for (const auto& [row, col, sign] : {std::tuple(a, a, 1), {b, b, 1}, {a, b, -1}, {b, a, -1}}) {
-        entries.emplace_back(row, col, sign * w);
-      }
-    }
+      column.push_back(row_of[other]);
+      value.push_back(-w);
+      sum += w;
+    };
+    for (const int axis : {2, 1, 0}) add(axis, -1);
+    own = value.size();
+    column.push_back(numbers.of_cell[c]);
+    value.push_back(0);
+    for (const int axis : {0, 1, 2}) add(axis, 1);
+    value[own] = sum;
+    begin.push_back(static_cast<int>(column.size()));
   }
-  Eigen::SparseMatrix<double> E(numbers.rows, numbers.rows);
-  E.setFromTriplets(entries.begin(), entries.end());
-  return E;
+  // Symmetric: the same by rows and by columns.
+  return Eigen::Map<const Eigen::SparseMatrix<double>>(numbers.rows, numbers.rows, begin.back(), begin.data(),
+                                                       column.data(), value.data());
 }
 
 // Which block of cells each row belongs to.
@@ -178,7 +194,7 @@ QpReport ProjectVelocity(const EulerianBody& body, const EulerianCells& cells, c
   for (std::size_t n = 0; n < velocity.size(); ++n) {
     if (numbers.of_node[n] >= 0) velocity[n] = solution.v.segment<3>(3 * numbers.of_node[n]);
   }
-  for (std::size_t c = 0; c < fluxes.size(); ++c) {
+  for (std::size_t c = 0; c < fluxes.size() && body.held_velocity; ++c) {
     if (numbers.of_cell[c] < 0) continue;
     for (const NodeFlux& part : fluxes[c]) {
       if (nodes.held[part.node] != 0) held_impulses[part.node] += solution.volumes[numbers.of_cell[c]] * part.flux;

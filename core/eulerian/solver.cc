@@ -19,6 +19,7 @@ constexpr double kMostTravel = 0.5;    // of a cell, that the solid goes in a st
 constexpr double kLeastStep = 1e-6;    // of that for waves at rest
 constexpr double kMostSurfaceGap = 1;  // cells that the map and its surface may be apart
 constexpr std::size_t kMostNamed = 16;
+constexpr std::size_t kGrain = 1024;
 
 std::vector<std::uint8_t> NodesInside(const EulerianBody& body, const std::vector<Vec3>& X) {
   std::vector<std::uint8_t> inside(X.size(), 0);
@@ -110,14 +111,16 @@ StepProblem EulerianSolver::Prepare(const EulerianState& state, EulerianReport& 
 StepProblem EulerianSolver::Accelerate(double dt, std::vector<Vec3>& v, EulerianReport& report) {
   const StageTimer timer(profile_, "constraints");
   reactions_.assign(v.size(), Vec3::Zero());
-  for (std::size_t n = 0; n < v.size(); ++n) {
-    if (nodes_.held[n] != 0) {
-      reactions_[n] = nodes_.mass[n] * (nodes_.held_velocity[n] - v[n]) - dt * nodes_.force[n];
-      v[n] = nodes_.held_velocity[n];
-    } else if (nodes_.inside[n] != 0) {
-      v[n] += dt / nodes_.mass[n] * nodes_.force[n];
+  team_->For(v.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      if (nodes_.held[n] != 0) {
+        reactions_[n] = nodes_.mass[n] * (nodes_.held_velocity[n] - v[n]) - dt * nodes_.force[n];
+        v[n] = nodes_.held_velocity[n];
+      } else if (nodes_.inside[n] != 0) {
+        v[n] += dt / nodes_.mass[n] * nodes_.force[n];
+      }
     }
-  }
+  });
   std::vector<Vec3> impulses(v.size(), Vec3::Zero());
   if (body_->volume != VolumeTreatment::kNone) {
     const QpReport qp = ProjectVelocity(*body_, cells_, nodes_, dt, *team_, v, impulses);
@@ -128,10 +131,10 @@ StepProblem EulerianSolver::Accelerate(double dt, std::vector<Vec3>& v, Eulerian
     if (nodes_.held[n] != 0) reactions_[n] = (reactions_[n] - impulses[n]) / dt;
     if ((nodes_.inside[n] | nodes_.held[n]) != 0 && !v[n].allFinite()) return StepProblem::kNotFinite;
   }
-  for (std::size_t n = 0; n < v.size(); ++n) {
-    if (nodes_.leaders[n].empty()) continue;
-    v[n].setZero();
-    for (const NodeWeight& part : nodes_.leaders[n]) v[n] += part.weight * v[part.node];
+  for (const NodalForces::Follower& follower : nodes_.followers) {
+    Vec3 sum = Vec3::Zero();
+    for (const NodeWeight& part : follower.leaders) sum += part.weight * v[part.node];
+    if (!follower.leaders.empty()) v[follower.node] = sum;
   }
   return StepProblem::kNone;
 }
@@ -149,7 +152,7 @@ StepProblem EulerianSolver::Move(std::vector<Vec3> v, double dt, EulerianState& 
   // The map of nodes outside that follow is their own: it goes with the volumes that their velocities were chosen for.
   next.known.resize(v.size());
   for (std::size_t n = 0; n < v.size(); ++n) {
-    next.known[n] = nodes_.inside[n] | nodes_.held[n] | (nodes_.leaders[n].empty() ? 0 : 1);
+    next.known[n] = nodes_.moves(n) ? 1 : 0;
   }
   {
     const StageTimer timer(profile_, "extrapolation of velocities");

@@ -31,7 +31,7 @@ VectorXd Excess(const ConstraintRows& rows, const VectorXd& v) {
 // The largest of the terms that make constraints, for what "zero" means.
 double TermsOf(const ConstraintRows& rows, const VectorXd& v) {
   if (rows.count() == 0) return 0;
-  return std::max(Largest(rows.b), (rows.G.cwiseAbs() * v.cwiseAbs()).eval().maxCoeff());
+  return std::max(Largest(rows.b), LargestTerms(rows.G, v));
 }
 
 // Diagonal of G (diag M)^-1 G^T: a multiplier times it is what the multiplier changes its constraint by.

@@ -5,11 +5,9 @@
 
 #include <vector>
 
-#include "core/base/parallel.h"
+#include "core/linalg/row_products.h"
 
 namespace fascicle {
-
-using RowMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 // Rows of constraints on n unknowns, and their right sides.
 struct ConstraintRows {

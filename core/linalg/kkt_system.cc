@@ -11,7 +11,6 @@ constexpr double kHair = 1e-12;
 constexpr int kDirectRefinements = 3;
 // The residual of MINRES is of another norm than that which counts: it solves again for what is left.
 constexpr int kMostRefinements = 6;
-constexpr std::size_t kGrain = 512;  // rows
 
 // Rows that are chosen of all, one below the other.
 class RowStack {
@@ -44,20 +43,6 @@ class RowStack {
   std::vector<double> value_, right_;
 };
 
-// y = A x, rows in parallel where there is a team.
-void Product(const RowMatrix& A, const Eigen::VectorXd& x, ThreadTeam* team, Eigen::VectorXd& y) {
-  y.resize(A.rows());
-  const auto rows = [&](std::size_t begin, std::size_t end) {
-    for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
-      double sum = 0;
-      for (RowMatrix::InnerIterator entry(A, i); entry; ++entry) sum += entry.value() * x[entry.col()];
-      y[i] = sum;
-    }
-  };
-  const auto count = static_cast<std::size_t>(A.rows());
-  team != nullptr ? team->For(count, kGrain, rows) : rows(0, count);
-}
-
 bool IsDiagonal(const Eigen::SparseMatrix<double>& M) {
   if (M.nonZeros() != M.rows()) return false;
   for (Eigen::Index column = 0; column < M.cols(); ++column) {
@@ -72,17 +57,23 @@ bool IsDiagonal(const Eigen::SparseMatrix<double>& M) {
 
 KktSystem::KktSystem(const QuadraticProgram& problem, const std::vector<bool>& active)
     : problem_(&problem), volumes_(problem.volumes.count()) {
-  const auto all = [](Eigen::Index) { return true; };
-  RowStack rows(problem.p.size());
-  rows.Add(problem.volumes, all);
-  rows.Add(problem.equalities, all);
-  rows.Add(problem.inequalities, [&](Eigen::Index i) { return active[static_cast<std::size_t>(i)]; });
-  G_ = rows.G();
-  b_ = rows.b();
+  if (problem.equalities.count() == 0 && problem.inequalities.count() == 0 && volumes_ > 0) {
+    G_ = &problem.volumes.G;
+    b_ = problem.volumes.b;
+  } else {
+    const auto all = [](Eigen::Index) { return true; };
+    RowStack rows(problem.p.size());
+    rows.Add(problem.volumes, all);
+    rows.Add(problem.equalities, all);
+    rows.Add(problem.inequalities, [&](Eigen::Index i) { return active[static_cast<std::size_t>(i)]; });
+    stacked_ = rows.G();
+    G_ = &stacked_;
+    b_ = rows.b();
+  }
   inverse_mass_ = problem.M.diagonal().cwiseInverse();
-  schur_ = Eigen::VectorXd::Zero(G_.rows());
-  for (Eigen::Index i = 0; i < G_.rows(); ++i) {
-    for (RowMatrix::InnerIterator entry(G_, i); entry; ++entry) {
+  schur_ = Eigen::VectorXd::Zero(G_->rows());
+  for (Eigen::Index i = 0; i < G_->rows(); ++i) {
+    for (RowMatrix::InnerIterator entry(*G_, i); entry; ++entry) {
       schur_[i] += entry.value() * entry.value() * inverse_mass_[entry.col()];
     }
   }
@@ -98,8 +89,8 @@ Eigen::VectorXd KktSystem::Side() const {
 void KktSystem::Apply(const Eigen::VectorXd& x, double hair_part, Eigen::VectorXd& y) const {
   const Eigen::Index n = problem_->p.size(), m = b_.size();
   y.resize(n + m);
-  y.head(n) = problem_->M * x.head(n) + G_.transpose() * x.tail(m);
-  y.tail(m) = G_ * x.head(n);
+  y.head(n) = problem_->M * x.head(n) + G_->transpose() * x.tail(m);
+  y.tail(m) = *G_ * x.head(n);
   if (problem_->E.size() > 0) y.segment(n, volumes_) -= problem_->E * x.segment(n, volumes_);
   const Eigen::Index first = problem_->E.size() > 0 ? volumes_ : 0;
   y.tail(m - first) -= hair_part * hair_.tail(m - first).cwiseProduct(x.tail(m - first));
@@ -111,7 +102,7 @@ KktSystem::Result KktSystem::SolveDirect() {
   LowerTriangle lower;
   lower.Add(problem_->M, 0, 1);
   for (Eigen::Index i = 0; i < m; ++i) {
-    for (RowMatrix::InnerIterator entry(G_, i); entry; ++entry) lower.Add(n + i, entry.col(), entry.value());
+    for (RowMatrix::InnerIterator entry(*G_, i); entry; ++entry) lower.Add(n + i, entry.col(), entry.value());
   }
   if (has_E) lower.Add(problem_->E, n, -1);
   for (Eigen::Index i = has_E ? volumes_ : 0; i < m; ++i) lower.Add(n + i, n + i, -hair_[i]);
@@ -144,29 +135,33 @@ KktSystem::Result KktSystem::SolveMinres(const QpSettings& settings) const {
   return IsDiagonal(problem_->M) && b_.size() > 0 ? SolveMultipliers(settings) : SolveWhole(settings);
 }
 
-bool KktSystem::IsGood(const Result& result, double tolerance) const {
+// transposed: G^T.
+bool KktSystem::IsGood(const Result& result, const RowMatrix& transposed, const QpSettings& settings) const {
   const Eigen::VectorXd forces = problem_->M * result.v;
-  const Eigen::VectorXd left = forces - problem_->p - G_.transpose() * result.y;
-  if (left.norm() > tolerance * std::max(problem_->p.norm(), forces.norm())) return false;
+  Eigen::VectorXd product;
+  Product(transposed, result.y, settings.team, product);
+  const double left = (forces - problem_->p - product).norm();
+  if (!(left <= settings.tolerance * std::max(problem_->p.norm(), forces.norm()))) return false;
   if (b_.size() == 0) return true;
-  Eigen::VectorXd gap = G_ * result.v - b_;
-  if (problem_->E.size() > 0) gap.head(volumes_) += problem_->E * result.y.head(volumes_);
-  const double terms = std::max(b_.lpNorm<Eigen::Infinity>(), (G_.cwiseAbs() * result.v.cwiseAbs()).eval().maxCoeff());
-  return gap.lpNorm<Eigen::Infinity>() <= tolerance * terms;
+  Product(*G_, result.v, settings.team, product);
+  product -= b_;
+  if (problem_->E.size() > 0) product.head(volumes_) += problem_->E * result.y.head(volumes_);
+  const double terms = std::max(b_.lpNorm<Eigen::Infinity>(), LargestTerms(*G_, result.v));
+  return product.lpNorm<Eigen::Infinity>() <= settings.tolerance * terms;
 }
 
 // (G M^-1 G^T + C) y = b - G M^-1 p, then v = M^-1 (p + G^T y).
 KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const {
   Result result;
-  const MultiplierPreconditioner preconditioner(*problem_, G_, volumes_, inverse_mass_, schur_, hair_);
+  const MultiplierPreconditioner preconditioner(*problem_, *G_, volumes_, inverse_mass_, schur_, hair_);
   if (!preconditioner.ok()) return result;
-  const RowMatrix transposed = G_.transpose();
+  const RowMatrix transposed = G_->transpose();
   const RowMatrix E = problem_->E;  // symmetric: the same by rows
   Eigen::VectorXd v, of_volumes;
   const auto apply = [&](const Eigen::VectorXd& y, Eigen::VectorXd& product) {
     Product(transposed, y, settings.team, v);
     v.array() *= inverse_mass_.array();
-    Product(G_, v, settings.team, product);
+    Product(*G_, v, settings.team, product);
     if (E.size() == 0) return;
     Product(E, y.head(volumes_), settings.team, of_volumes);
     product.head(volumes_) += of_volumes;
@@ -175,7 +170,7 @@ KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const 
     z.resize(r.size());
     preconditioner.Apply(r, z);
   };
-  Eigen::VectorXd r = b_ - G_ * inverse_mass_.cwiseProduct(problem_->p), step, product;
+  Eigen::VectorXd r = b_ - *G_ * inverse_mass_.cwiseProduct(problem_->p), step, product;
   const Eigen::VectorXd side = r;
   result.y = Eigen::VectorXd::Zero(b_.size());
   for (int k = 0; k < kMostRefinements && !result.ok; ++k) {
@@ -185,8 +180,9 @@ KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const 
     result.y += step;
     apply(result.y, product);
     r = side - product;
-    result.v = inverse_mass_.cwiseProduct(problem_->p + transposed * result.y);
-    result.ok = IsGood(result, settings.tolerance);
+    Product(transposed, result.y, settings.team, v);
+    result.v = inverse_mass_.cwiseProduct(problem_->p + v);
+    result.ok = IsGood(result, transposed, settings);
     if (!minres.converged && minres.iterations == 0) break;
   }
   return result;
@@ -195,13 +191,14 @@ KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const 
 KktSystem::Result KktSystem::SolveWhole(const QpSettings& settings) const {
   const Eigen::Index n = problem_->p.size(), m = b_.size();
   Result result;
-  const MultiplierPreconditioner of_multipliers(*problem_, G_, volumes_, inverse_mass_, schur_, hair_);
+  const MultiplierPreconditioner of_multipliers(*problem_, *G_, volumes_, inverse_mass_, schur_, hair_);
   if (!of_multipliers.ok()) return result;
   const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     z.resize(n + m);
     z.head(n) = inverse_mass_.cwiseProduct(r.head(n));
     of_multipliers.Apply(r.tail(m), z.tail(m));
   };
+  const RowMatrix transposed = G_->transpose();
   const auto apply = [this](const Eigen::VectorXd& x, Eigen::VectorXd& y) { Apply(x, 0, y); };
   const Eigen::VectorXd side = Side();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n + m), r = side, step, product;
@@ -214,7 +211,7 @@ KktSystem::Result KktSystem::SolveWhole(const QpSettings& settings) const {
     r = side - product;
     result.v = x.head(n);
     result.y = -x.tail(m);
-    result.ok = IsGood(result, settings.tolerance);
+    result.ok = IsGood(result, transposed, settings);
     if (!minres.converged && minres.iterations == 0) break;
   }
   return result;

@@ -29,7 +29,8 @@ class KktSystem {
 
   Eigen::Index size() const { return problem_->p.size() + b_.size(); }
   Eigen::Index volumes() const { return volumes_; }
-  const RowMatrix& G() const { return G_; }
+  KktSystem(const KktSystem&) = delete;
+  KktSystem& operator=(const KktSystem&) = delete;
 
  private:
   Eigen::VectorXd Side() const;
@@ -37,7 +38,7 @@ class KktSystem {
   Result SolveWhole(const QpSettings& settings) const;
   Result SolveMultipliers(const QpSettings& settings) const;
   // Whether forces balance and constraints hold to a tolerance.
-  bool IsGood(const Result& result, double tolerance) const;
+  bool IsGood(const Result& result, const RowMatrix& transposed, const QpSettings& settings) const;
   // hair_part: 1 with the hair, 0 without.
   void Apply(const Eigen::VectorXd& x, double hair_part, Eigen::VectorXd& y) const;
   // Refines a solution by the factors.
@@ -45,7 +46,8 @@ class KktSystem {
 
   const QuadraticProgram* problem_;
   Eigen::Index volumes_;  // the first rows
-  RowMatrix G_;           // m x n
+  RowMatrix stacked_;     // rows of more than volumes
+  const RowMatrix* G_;    // m x n
   Eigen::VectorXd b_;
   Eigen::VectorXd inverse_mass_;  // of diag M
   Eigen::VectorXd schur_;         // diagonal of G (diag M)^-1 G^T

@@ -64,16 +64,14 @@ MultiplierPreconditioner::MultiplierPreconditioner(const QuadraticProgram& probl
 bool MultiplierPreconditioner::FactorGroups(const QuadraticProgram& problem, const RowMatrix& G,
                                             const Eigen::VectorXd& inverse_mass) {
   group_count_ = *std::max_element(groups_.begin(), groups_.end()) + 1;
-  of_groups_.resize(group_count_);
   const RowMatrix rows = GroupedRows(G, groups_, group_count_);
   Eigen::SparseMatrix<double> matrix = rows * inverse_mass.asDiagonal() * Eigen::SparseMatrix<double>(rows.transpose());
   if (problem.E.size() > 0) matrix += Grouped(problem.E, groups_, group_count_);
   // A body that nothing holds may have a pressure of its own that changes nothing.
   const double hair = 1e-9 * matrix.diagonal().maxCoeff();
   for (Eigen::Index g = 0; g < group_count_; ++g) matrix.coeffRef(g, g) += hair;
-  LowerTriangle lower;
-  lower.Add(matrix, 0, 1);
-  return lower.Factor(group_count_, coarse_);
+  coarse_.compute(matrix);
+  return coarse_.info() == Eigen::Success;
 }
 
 bool MultiplierPreconditioner::FactorOthers(const RowMatrix& G, const Eigen::VectorXd& inverse_mass,
@@ -89,10 +87,10 @@ bool MultiplierPreconditioner::FactorOthers(const RowMatrix& G, const Eigen::Vec
 void MultiplierPreconditioner::Apply(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> z) const {
   z.head(volumes_) = of_volumes_.cwiseProduct(r.head(volumes_));
   if (group_count_ > 0) {
-    of_groups_.setZero();
-    for (Eigen::Index i = 0; i < volumes_; ++i) of_groups_[groups_[static_cast<std::size_t>(i)]] += r[i];
-    coarse_.Solve({of_groups_.data(), static_cast<std::size_t>(group_count_)});
-    for (Eigen::Index i = 0; i < volumes_; ++i) z[i] += of_groups_[groups_[static_cast<std::size_t>(i)]];
+    Eigen::VectorXd sums = Eigen::VectorXd::Zero(group_count_);
+    for (Eigen::Index i = 0; i < volumes_; ++i) sums[groups_[static_cast<std::size_t>(i)]] += r[i];
+    sums = coarse_.solve(sums).eval();
+    for (Eigen::Index i = 0; i < volumes_; ++i) z[i] += sums[groups_[static_cast<std::size_t>(i)]];
   }
   if (others_ == 0) return;
   z.tail(others_) = r.tail(others_);

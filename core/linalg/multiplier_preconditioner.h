@@ -1,6 +1,8 @@
 #ifndef FASCICLE_CORE_LINALG_MULTIPLIER_PRECONDITIONER_H_
 #define FASCICLE_CORE_LINALG_MULTIPLIER_PRECONDITIONER_H_
 
+#include <Eigen/SparseCholesky>
+
 #include "core/linalg/active_set_qp.h"
 #include "core/linalg/direct_solver.h"
 
@@ -28,8 +30,8 @@ class MultiplierPreconditioner {
   Eigen::VectorXd of_volumes_;
   std::vector<int> groups_;
   Eigen::Index group_count_ = 0;
-  mutable Eigen::VectorXd of_groups_;  // scratch
-  mutable DirectSolver coarse_, S_;    // solving changes none of their factors
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> coarse_;
+  mutable DirectSolver S_;  // solving does not change its factors
   bool ok_ = true;
 };
 

@@ -14,7 +14,8 @@ constexpr int kSteps = 3;
 
 class Ball {
  public:
-  Ball(int cells, int threads) : team_(threads), body_(MakeSolid(cells, true, 2e4, 0.3, team_)), solver_(body_, team_) {
+  Ball(int cells, int threads)
+      : team_(threads), body_(MakeSolid(cells, true, 2e4, 0.3, team_)), solver_(body_, team_, &profile_) {
     body_.volume = VolumeTreatment::kPreserved;
     const Vec3 stretch(1.1, 1 / std::sqrt(1.1), 1 / std::sqrt(1.1));
     start_ = solver_.InitialState([&](const Vec3& x) { return Vec3(x.cwiseQuotient(stretch)); });
@@ -22,13 +23,27 @@ class Ball {
   void Run() {
     EulerianState state = start_;
     for (int k = 0; k < kSteps; ++k) {
-      if (solver_.Step(1, state).problem != StepProblem::kNone) std::abort();
+      const EulerianReport report = solver_.Step(1, state);
+      if (report.problem != StepProblem::kNone) std::abort();
+      iterations_ = report.minres_iterations;
     }
+  }
+  // Wall time of each stage of a step [ms].
+  void PrintStages(int cells) const {
+    std::printf("one step at %d^3, ms:", cells);
+    std::int64_t steps = 0;
+    for (const ProfileStage& stage : profile_.Stages()) steps = std::max(steps, stage.calls);
+    for (const ProfileStage& stage : profile_.Stages()) {
+      std::printf(" %s %.1f;", stage.name.c_str(), 1e3 * stage.seconds / static_cast<double>(steps));
+    }
+    std::printf(" MINRES iterations %d\n", iterations_);
   }
   double Kilocells() const { return 1e-3 * kSteps * static_cast<double>(body_.grid.cell_count()); }
 
  private:
+  Profile profile_;
   ThreadTeam team_;
+  int iterations_ = 0;
   EulerianBody body_;
   EulerianSolver solver_;
   EulerianState start_;
@@ -40,6 +55,8 @@ int Main() {
     const std::string name = cells == 64 ? "eulerian_threads_2" : "eulerian_threads_2_32";
     MedianRatio(
         name, cells == 64 ? 3 : kRounds, [&] { two.Run(); }, [&] { one.Run(); }, {two.Kilocells(), "kcells"});
+    one.PrintStages(cells);
+    two.PrintStages(cells);
   }
   return EXIT_SUCCESS;
 }

@@ -191,13 +191,15 @@ QuadraticProgram Block(int nodes) {
   const int cells = nodes - 1, n = 3 * nodes * nodes * nodes;
   const auto node = [=](int i, int j, int k) { return i + nodes * (j + nodes * k); };
   const auto cell = [=](int i, int j, int k) { return i + cells * (j + cells * k); };
-  const double h = 0.1 / cells, density = 1000, step = 0.01;
+  const double h = 0.1 / cells, density = 1000;
   QuadraticProgram problem;
   Triplets mass, volumes, laplacian, held, wall;
   std::vector<double> of_node(static_cast<std::size_t>(n / 3), 0);
   for (int k = 0; k < cells; ++k) {
     for (int j = 0; j < cells; ++j) {
       for (int i = 0; i < cells; ++i) {
+        const int blocks = (cells + 3) / 4;
+        problem.groups.push_back(i / 4 + blocks * (j / 4 + blocks * (k / 4)));
         const bool is_surface = i == 0 || j == 0 || i == cells - 1 || j == cells - 1;
         const double part = is_surface ? 0.3 : 1;
         for (int c = 0; c < 8; ++c) {
@@ -206,7 +208,7 @@ QuadraticProgram Block(int nodes) {
           for (int d = 0; d < 3; ++d)
             volumes.emplace_back(cell(i, j, k), 3 * at + d, (c >> d & 1 ? 1 : -1) * part * h * h / 4);
         }
-        const double weight = 1e-2 * step * h / density;
+        const double weight = 0.05 * h / density;  // as core/eulerian has it
         const auto couple = [&](int other) {
           laplacian.emplace_back(cell(i, j, k), cell(i, j, k), weight);
           laplacian.emplace_back(cell(i, j, k), other, -weight);

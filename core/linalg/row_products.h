@@ -1,0 +1,44 @@
+#ifndef FASCICLE_CORE_LINALG_ROW_PRODUCTS_H_
+#define FASCICLE_CORE_LINALG_ROW_PRODUCTS_H_
+
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+
+namespace fascicle {
+
+using RowMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+// y = A x, rows in parallel where there is a team; the same bits without.
+inline void Product(const RowMatrix& A, const Eigen::Ref<const Eigen::VectorXd>& x, ThreadTeam* team,
+                    Eigen::VectorXd& y) {
+  y.resize(A.rows());
+  const auto rows = [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
+      double sum = 0;
+      for (RowMatrix::InnerIterator entry(A, i); entry; ++entry) sum += entry.value() * x[entry.col()];
+      y[i] = sum;
+    }
+  };
+  const auto count = static_cast<std::size_t>(A.rows());
+  constexpr std::size_t kGrain = 512;
+  team != nullptr ? team->For(count, kGrain, rows) : rows(0, count);
+}
+
+// The largest sum over a row of |A_ij x_j|: what the terms of a constraint amount to.
+inline double LargestTerms(const RowMatrix& A, const Eigen::VectorXd& x) {
+  double largest = 0;
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    double sum = 0;
+    for (RowMatrix::InnerIterator entry(A, i); entry; ++entry) sum += std::abs(entry.value() * x[entry.col()]);
+    largest = std::max(largest, sum);
+  }
+  return largest;
+}
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_LINALG_ROW_PRODUCTS_H_
