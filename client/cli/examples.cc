@@ -67,6 +67,7 @@ std::vector<Example> AllExamples() {
         AddFile(path, example);
         if (path.ends_with(".node")) AddFile(path.substr(0, path.size() - 5) + ".ele", example);
       }
+      if (body.mesh().has_surface()) AddFile(body.mesh().surface().path(), example);
       if (body.mesh().image().has_file()) AddFile(body.mesh().image().file().path(), example);
       for (const v1::FileRef& more : body.mesh().image().more_files()) AddFile(more.path(), example);
       if (body.fibres().has_file()) AddFile(body.fibres().file().path(), example);

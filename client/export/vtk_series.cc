@@ -51,7 +51,7 @@ void SetMesh(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnst
   grid.SetPoints(points);
   vtkNew<vtkCellArray> cells;
   cells->AllocateExact(static_cast<vtkIdType>(shape.elements()),
-                       static_cast<vtkIdType>(4 * shape.tetrahedra.size() + 8 * shape.bricks.size()));
+                       static_cast<vtkIdType>(4 * shape.tetrahedra.size() + 8 * shape.bricks.size() + 3 * shape.triangles.size()));
   for (const auto& t : shape.tetrahedra)
     cells->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}, vtkIdType{t[3]}});
   for (const auto& brick : shape.bricks) {
@@ -59,7 +59,8 @@ void SetMesh(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnst
     for (std::size_t c = 0; c < 8; ++c) nodes[c] = brick[kHexahedronCorners[c]];
     cells->InsertNextCell(8, nodes.data());
   }
-  grid.SetCells(shape.bricks.empty() ? VTK_TETRA : VTK_HEXAHEDRON, cells);
+  for (const auto& t : shape.triangles) cells->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}});
+  grid.SetCells(CellTypeOf(shape), cells);
 }
 
 void AddDisplacement(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnstructuredGrid& grid) {

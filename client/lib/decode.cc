@@ -35,6 +35,8 @@ BodyShape DecodeBody(const v1::BodyGeometry& body) {
   shape.tetrahedra = DecodeArray<std::array<std::uint32_t, 4>>(body.tetrahedra(), "tetrahedra");
   shape.fibres = DecodeArray<Vec3>(body.fibres(), "fibres");
   shape.bricks = DecodeArray<std::array<std::uint32_t, 8>>(body.bricks(), "voxels");
+  shape.triangles = DecodeArray<std::array<std::uint32_t, 3>>(body.triangles(), "triangles");
+  CheckNodes(shape.triangles, shape.positions.size(), "a triangle");
   CheckNodes(shape.tetrahedra, shape.positions.size(), "a tetrahedron");
   CheckNodes(shape.bricks, shape.positions.size(), "a voxel");
   if (!shape.fibres.empty() && shape.fibres.size() != shape.tetrahedra.size()) {

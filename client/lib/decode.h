@@ -20,6 +20,7 @@ struct BodyShape {
   std::vector<Vec3> positions;                           // [m]
   std::vector<std::array<std::uint32_t, 4>> tetrahedra;  // node indices, all in range
   std::vector<std::array<std::uint32_t, 8>> bricks;      // in place of tetrahedra: voxels, as BodyGeometry has them
+  std::vector<std::array<std::uint32_t, 3>> triangles;   // in place of tetrahedra: a closed surface
   std::vector<Vec3> fibres;                              // unit, one for each tetrahedron, or empty
   struct Region {
     std::string name;
@@ -27,11 +28,14 @@ struct BodyShape {
   };
   std::vector<Region> regions;
 
-  std::size_t elements() const { return tetrahedra.size() + bricks.size(); }
+  std::size_t elements() const { return tetrahedra.size() + bricks.size() + triangles.size(); }
 };
 
 // The corners of a brick in the order of a hexahedron: around the lower side, then around the upper.
 inline constexpr std::array<std::size_t, 8> kHexahedronCorners = {0, 1, 3, 2, 4, 5, 7, 6};
+
+// VTK's number of the kind of cells that a body is made of: tetrahedra (10), voxels as hexahedra (12) or triangles (5).
+inline int CellTypeOf(const BodyShape& shape) { return !shape.bricks.empty() ? 12 : !shape.triangles.empty() ? 5 : 10; }
 
 std::vector<BodyShape> DecodeGeometry(const v1::Geometry& geometry);
 

@@ -56,7 +56,8 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std:
     for (std::size_t c = 0; c < 8; ++c) nodes[c] = brick[kHexahedronCorners[c]];
     cells->InsertNextCell(8, nodes.data());
   }
-  grid->SetCells(shape.bricks.empty() ? VTK_TETRA : VTK_HEXAHEDRON, cells);
+  for (const auto& t : shape.triangles) cells->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}});
+  grid->SetCells(CellTypeOf(shape), cells);
   if (!values.empty()) {
     vtkNew<vtkDoubleArray> colour;
     colour->SetName("colour");

@@ -5,24 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/curve.h"
 #include "core/eulerian/solid_shape.h"
 #include "core/materials/material.h"
+#include "core/scene/scene.h"
 
 namespace fascicle {
-
-enum class VolumeTreatment {
-  kNone,            // the law's own resistance alone
-  kDivergenceFree,  // div v = 0, which drifts
-  kPreserved,       // div v = (1 - J)/(dt J), which does not [Fan 2013, 3.2]
-};
-
-// Plastic flow at constant volume [Fan 2013, 3.5; Bargteil et al. 2007].
-struct Plasticity {
-  double yield_stress = 0;  // von Mises Cauchy stress from which it flows [Pa]
-  // Time in which what is beyond it flows away but for 1/e [s]; 0: at once, whatever the step.
-  double relaxation_time = 0;
-};
 
 // A solid that moves through a grid of its own. Const while it is stepped; functions may be called from several
 // threads.
@@ -43,9 +30,11 @@ struct EulerianBody {
   bool implicit_elasticity = false;
   bool maccormack = false;  // advection of second order in time, limited, in place of semi-Lagrangian
   std::optional<double> time_step = std::nullopt;  // the longest step [s]
-  // The velocity that a point X of the material is given at x, which then does not move by itself; nothing: it is free.
-  // Null: all are.
-  std::function<std::optional<Vec3>(const Vec3& X, const Vec3& x, double time)> held_velocity = nullptr;
+  // Which support holds a point X of the material, below `supports`; -1: it is free. Null: all are.
+  std::function<int(const Vec3& X)> support_of = nullptr;
+  int supports = 0;
+  // The mean velocity that a support gives a point of the material from a time on for dt [s].
+  std::function<Vec3(int support, const Vec3& X, double time, double dt)> support_velocity = nullptr;
   // Forces on the vertices of the surface at a time, to be set [N]; null: none.
   std::function<void(double time, std::vector<Vec3>& forces)> vertex_forces = nullptr;
   // Force per volume of the deformed body at a point of space and a time [N/m^3]; null: none.

@@ -60,24 +60,19 @@ constexpr double kLeastMass = 0.05;
 void SetLeaders(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, ThreadTeam& team,
                 NodalForces& nodes) {
   const std::size_t count = nodes.mass.size();
-  nodes.held.assign(count, 0);
-  nodes.held_velocity.assign(count, Vec3::Zero());
+  nodes.support.assign(count, -1);
   nodes.inside.assign(count, 0);
   for (std::size_t n = 0; n < count; ++n) nodes.inside[n] = nodes.mass[n] > 0 && cells.distance[n] < 0 ? 1 : 0;
-  if (body.held_velocity) {
+  if (body.support_of) {
     team.For(count, 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
-        if (nodes.mass[n] == 0) continue;
-        const Vec3 x = body.grid.NodePosition(body.grid.NodeAt(n));
-        const std::optional<Vec3> velocity = body.held_velocity(state.X[n], x, state.time);
-        nodes.held[n] = velocity ? 1 : 0;
-        nodes.held_velocity[n] = velocity.value_or(Vec3::Zero());
+        if (nodes.mass[n] > 0) nodes.support[n] = body.support_of(state.X[n]);
       }
     });
   }
   nodes.followers.clear();
   for (std::size_t n = 0; n < count; ++n) {
-    if (nodes.mass[n] > 0 && nodes.inside[n] == 0 && nodes.held[n] == 0) nodes.followers.push_back({n, {}});
+    if (nodes.mass[n] > 0 && nodes.inside[n] == 0 && nodes.support[n] < 0) nodes.followers.push_back({n, {}});
   }
   team.For(nodes.followers.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {

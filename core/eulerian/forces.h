@@ -15,9 +15,8 @@ namespace fascicle {
 struct NodalForces {
   std::vector<double> mass;
   std::vector<Vec3> force;
-  std::vector<std::uint8_t> inside;  // of each node: 1 where it is inside and has mass
-  std::vector<std::uint8_t> held;    // of each node: 1 where it is held, inside or not
-  std::vector<Vec3> held_velocity;   // of held nodes [m/s]
+  std::vector<std::uint8_t> inside;   // of each node: 1 where it is inside and has mass
+  std::vector<std::int32_t> support;  // of each node: what holds it, inside or not; -1: nothing
   // Nodes outside that follow others, ascending, and of each node its number among them; -1: it does not follow.
   struct Follower {
     std::size_t node;
@@ -26,7 +25,7 @@ struct NodalForces {
   std::vector<Follower> followers;
   std::vector<std::int32_t> follower_of;
 
-  bool moves(std::size_t node) const { return inside[node] != 0 || held[node] != 0 || follower_of[node] >= 0; }
+  bool moves(std::size_t node) const { return inside[node] != 0 || support[node] >= 0 || follower_of[node] >= 0; }
 };
 
 // The fibre and activation in a cell.

@@ -1,6 +1,7 @@
 #include "core/eulerian/projection.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace fascicle {
 namespace {
@@ -53,7 +54,7 @@ Numbering Number(const NodalForces& nodes, const std::vector<CellFluxes>& fluxes
   Numbering numbers;
   numbers.of_node.assign(nodes.mass.size(), -1);
   for (std::size_t n = 0; n < nodes.mass.size(); ++n) {
-    if (nodes.mass[n] > 0 && nodes.held[n] == 0) numbers.of_node[n] = numbers.nodes++;
+    if (nodes.mass[n] > 0 && nodes.support[n] < 0) numbers.of_node[n] = numbers.nodes++;
   }
   for (const CellFluxes& cell : fluxes) {
     const bool any =
@@ -64,8 +65,8 @@ Numbering Number(const NodalForces& nodes, const std::vector<CellFluxes>& fluxes
 }
 
 // The rows of the volumes; what held nodes do to a volume goes to its right side.
-ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes,
-                          const Numbering& numbers, const std::vector<CellFluxes>& fluxes, double dt,
+ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, const Numbering& numbers,
+                          const std::vector<CellFluxes>& fluxes, const std::vector<Vec3>& velocity, double dt,
                           ThreadTeam& team) {
   ConstraintRows rows;
   rows.b.resize(numbers.rows);
@@ -90,7 +91,7 @@ ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, 
       int place = begin[row];
       for (const NodeFlux& part : fluxes[c]) {
         const int node = numbers.of_node[part.node];
-        if (node < 0) right -= part.flux.dot(nodes.held_velocity[part.node]);
+        if (node < 0) right -= part.flux.dot(velocity[part.node]);
         for (int d = 0; d < 3 && node >= 0; ++d, ++place) {
           column[place] = 3 * node + d;
           value[place] = part.flux[d];
@@ -176,8 +177,8 @@ void SetMasses(const NodalForces& nodes, const Numbering& numbers, const std::ve
 
 }  // namespace
 
-QpReport ProjectVelocity(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes, double dt,
-                         ThreadTeam& team, std::vector<Vec3>& velocity, std::vector<Vec3>& held_impulses) {
+Projection ProjectVelocity(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes, double dt,
+                           ThreadTeam& team, std::vector<Vec3>& velocity) {
   std::vector<CellFluxes> fluxes(cells.solid.size());
   team.For(fluxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) fluxes[c] = FluxesOf(body, cells, nodes, cells.solid[c]);
@@ -185,22 +186,27 @@ QpReport ProjectVelocity(const EulerianBody& body, const EulerianCells& cells, c
   const Numbering numbers = Number(nodes, fluxes);
   QuadraticProgram problem;
   SetMasses(nodes, numbers, velocity, problem);
-  problem.volumes = VolumeRows(body, cells, nodes, numbers, fluxes, dt, team);
+  problem.volumes = VolumeRows(body, cells, numbers, fluxes, velocity, dt, team);
   problem.E = Stabilization(body, cells, numbers);
   problem.groups = Groups(body, cells, numbers);
   QpSolution solution;
-  const QpReport report = SolveQp(problem, {.tolerance = kTolerance, .team = &team}, solution);
-  if (solution.v.size() == 0) return report;
+  Projection result;
+  result.report = SolveQp(problem, {.tolerance = kTolerance, .team = &team}, solution);
+  result.pressure.assign(cells.inside.size(), std::numeric_limits<double>::quiet_NaN());
+  result.held_impulses.assign(velocity.size(), Vec3::Zero());
+  if (solution.v.size() == 0) return result;
   for (std::size_t n = 0; n < velocity.size(); ++n) {
     if (numbers.of_node[n] >= 0) velocity[n] = solution.v.segment<3>(3 * numbers.of_node[n]);
   }
-  for (std::size_t c = 0; c < fluxes.size() && body.held_velocity; ++c) {
+  for (std::size_t c = 0; c < fluxes.size(); ++c) {
     if (numbers.of_cell[c] < 0) continue;
+    const double multiplier = solution.volumes[numbers.of_cell[c]];
+    result.pressure[cells.solid[c]] = multiplier / dt;
     for (const NodeFlux& part : fluxes[c]) {
-      if (nodes.held[part.node] != 0) held_impulses[part.node] += solution.volumes[numbers.of_cell[c]] * part.flux;
+      if (nodes.support[part.node] >= 0) result.held_impulses[part.node] += multiplier * part.flux;
     }
   }
-  return report;
+  return result;
 }
 
 }  // namespace fascicle

@@ -108,28 +108,33 @@ StepProblem EulerianSolver::Prepare(const EulerianState& state, EulerianReport& 
 }
 
 // v: carried velocities; then those at the end of the step, of nodes inside and held ones.
-StepProblem EulerianSolver::Accelerate(double dt, std::vector<Vec3>& v, EulerianReport& report) {
+StepProblem EulerianSolver::Accelerate(const EulerianState& state, double dt, std::vector<Vec3>& v,
+                                       EulerianReport& report) {
   const StageTimer timer(profile_, "constraints");
-  reactions_.assign(v.size(), Vec3::Zero());
+  std::vector<Vec3> impulses(v.size(), Vec3::Zero());  // of the supports
   team_->For(v.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      if (nodes_.held[n] != 0) {
-        reactions_[n] = nodes_.mass[n] * (nodes_.held_velocity[n] - v[n]) - dt * nodes_.force[n];
-        v[n] = nodes_.held_velocity[n];
+      if (nodes_.support[n] >= 0) {
+        const Vec3 given = body_->support_velocity(nodes_.support[n], state.X[n], state.time, dt);
+        impulses[n] = nodes_.mass[n] * (given - v[n]) - dt * nodes_.force[n];
+        v[n] = given;
       } else if (nodes_.inside[n] != 0) {
         v[n] += dt / nodes_.mass[n] * nodes_.force[n];
       }
     }
   });
-  std::vector<Vec3> impulses(v.size(), Vec3::Zero());
   if (body_->volume != VolumeTreatment::kNone) {
-    const QpReport qp = ProjectVelocity(*body_, cells_, nodes_, dt, *team_, v, impulses);
+    const Projection projection = ProjectVelocity(*body_, cells_, nodes_, dt, *team_, v);
+    const QpReport& qp = projection.report;
     report.minres_iterations = qp.minres_iterations.empty() ? 0 : qp.minres_iterations.back();
     if (qp.status != QpStatus::kSolved) return StepProblem::kNotSolved;
+    for (std::size_t n = 0; n < v.size(); ++n) impulses[n] -= projection.held_impulses[n];
+    pressure_ = projection.pressure;
   }
+  reactions_.assign(static_cast<std::size_t>(body_->supports), Vec3::Zero());
   for (std::size_t n = 0; n < v.size(); ++n) {
-    if (nodes_.held[n] != 0) reactions_[n] = (reactions_[n] - impulses[n]) / dt;
-    if ((nodes_.inside[n] | nodes_.held[n]) != 0 && !v[n].allFinite()) return StepProblem::kNotFinite;
+    if (nodes_.support[n] >= 0) reactions_[nodes_.support[n]] += impulses[n] / dt;
+    if ((nodes_.support[n] >= 0 || nodes_.inside[n] != 0) && !v[n].allFinite()) return StepProblem::kNotFinite;
   }
   for (const NodalForces::Follower& follower : nodes_.followers) {
     Vec3 sum = Vec3::Zero();
@@ -200,7 +205,7 @@ EulerianReport EulerianSolver::Step(double end, EulerianState& state) {
     const StageTimer timer(profile_, "advection of velocities");
     Carry(state.v, state.v, state, dt, v);
   }
-  if (report.problem == StepProblem::kNone) report.problem = Accelerate(dt, v, report);
+  if (report.problem == StepProblem::kNone) report.problem = Accelerate(state, dt, v, report);
   if (report.problem == StepProblem::kNone) report.problem = Move(std::move(v), dt, state);
   if (report.problem == StepProblem::kNone && left <= stable) state.time = end;
   return report;

@@ -37,14 +37,17 @@ class EulerianSolver {
   // Of the state before the last step.
   const EulerianCells& cells() const { return cells_; }
   const NodalForces& nodes() const { return nodes_; }
-  // Of each node, the force that holds it, in the mean of the last step [N]; zero where nothing does.
+  // Of each support, its force on the body in the mean of the last step [N].
   const std::vector<Vec3>& reactions() const { return reactions_; }
+  // Of each cell, the pressure that kept its volume in the last step [Pa], compression positive; NaN where there was
+  // none. Empty where volumes are left to the law, and before the first step.
+  const std::vector<double>& pressure() const { return pressure_; }
 
  private:
   StepProblem Prepare(const EulerianState& state, EulerianReport& report);
   double StableStep(const EulerianState& state) const;
   std::vector<std::int64_t> CellsAtSide() const;
-  StepProblem Accelerate(double dt, std::vector<Vec3>& v, EulerianReport& report);
+  StepProblem Accelerate(const EulerianState& state, double dt, std::vector<Vec3>& v, EulerianReport& report);
   void Carry(const std::vector<Vec3>& field, const std::vector<Vec3>& v, const EulerianState& state, double dt,
              std::vector<Vec3>& result);
   StepProblem Move(std::vector<Vec3> v, double dt, EulerianState& state);
@@ -55,6 +58,7 @@ class EulerianSolver {
   EulerianCells cells_;  // scratch
   NodalForces nodes_;
   std::vector<Vec3> reactions_;
+  std::vector<double> pressure_;
 };
 
 }  // namespace fascicle

@@ -217,6 +217,7 @@ Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, s
                     const Selector& selector) {
   Region region;
   region.name = std::move(name);
+  region.selectors = {selector};
   std::visit(Select<Tetrahedra>{{mesh, surface}, region}, selector);
   return region;
 }
@@ -225,13 +226,58 @@ Region SelectRegion(const BrickMesh& mesh, const std::vector<Quad>& surface, std
                     const Selector& selector) {
   Region region;
   region.name = std::move(name);
+  region.selectors = {selector};
   std::visit(Select<Bricks>{{mesh, surface}, region}, selector);
   return region;
 }
 
+struct RegionPoints::Faces {
+  explicit Faces(const Region& region, const std::vector<Vec3>& all) : nodes(all), distance(nodes, region.triangles) {}
+  const std::vector<Vec3> nodes;
+  const TriangleDistance distance;
+};
+
+RegionPoints::RegionPoints(const Region& region, const std::vector<Vec3>& nodes, double slack)
+    : selectors_(region.selectors), slack_(slack) {
+  const bool has_side = std::any_of(selectors_.begin(), selectors_.end(), [](const Selector& selector) {
+    return std::holds_alternative<SideSelector>(selector);
+  });
+  if (has_side && !region.triangles.empty()) faces_ = std::make_shared<const Faces>(region, nodes);
+}
+
+bool RegionPoints::Contain(const Vec3& x) const {
+  struct Test {
+    const RegionPoints& points;
+    const Vec3& x;
+
+    bool operator()(const TagSelector&) const { return false; }
+    bool operator()(const PlaneSelector& plane) const {
+      return (x - plane.point).dot(plane.normal.normalized()) >= -points.slack_;
+    }
+    bool operator()(const BoxSelector& box) const {
+      return ((x - box.min).array() >= -points.slack_).all() && ((box.max - x).array() >= -points.slack_).all();
+    }
+    bool operator()(const SphereSelector& sphere) const {
+      return (x - sphere.center).norm() <= sphere.radius + points.slack_;
+    }
+    bool operator()(const SideSelector& side) const {
+      return points.faces_ && points.faces_->distance.IsWithin(x, side.depth + points.slack_);
+    }
+  };
+  return !selectors_.empty() && std::all_of(selectors_.begin(), selectors_.end(), [&](const Selector& selector) {
+    return std::visit(Test{*this, x}, selector);
+  });
+}
+
 Region Intersection(const Region& first, const Region& second) {
-  return {first.name, Common(first.nodes, second.nodes), Common(first.triangles, second.triangles),
-          Common(first.elements, second.elements), Common(first.quads, second.quads)};
+  std::vector<Selector> selectors = first.selectors;
+  selectors.insert(selectors.end(), second.selectors.begin(), second.selectors.end());
+  return {first.name,
+          Common(first.nodes, second.nodes),
+          Common(first.triangles, second.triangles),
+          Common(first.elements, second.elements),
+          Common(first.quads, second.quads),
+          std::move(selectors)};
 }
 
 }  // namespace fascicle

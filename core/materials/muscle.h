@@ -77,6 +77,7 @@ class Muscle : public LawFunctions<Muscle> {
     AddFibreTangent(F, k, moduli_, fibre.direction, derivatives, terms);
   }
 
+  bool DependsOnRate() const { return max_velocity_ > 0; }
   double ShearModulus() const { return 2 * (moduli_.c1 + moduli_.c2); }
   double BulkModulus() const { return moduli_.bulk; }
   double VolumeModulus() const { return moduli_.bulk; }

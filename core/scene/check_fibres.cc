@@ -19,7 +19,9 @@ void CheckBody(const Body& body, const std::string& path, Problems& problems) {
     }
     return;
   }
-  if (body.fibres.size() != body.elements()) {
+  // A surface without tetrahedra has one direction.
+  const bool one = body.elements() == 0 && !body.surface.triangles.empty();
+  if (body.fibres.size() != (one ? 1 : body.elements())) {
     problems.Add(path, std::to_string(body.fibres.size()) + " fibre directions for " + std::to_string(body.elements()) +
                            " tetrahedra");
     return;

@@ -14,6 +14,7 @@ void CheckScene(const Scene& scene, Problems& problems) {
   scene_checks::CheckFloors(scene, problems);
   scene_checks::CheckMethod(scene, problems);
   scene_checks::CheckVoxels(scene, problems);
+  scene_checks::CheckEulerian(scene, problems);
   scene_checks::CheckOutput(scene, problems);
   // Sums up loads over curves, so only where those are sound.
   if (problems.empty()) scene_checks::CheckSupports(scene, problems);

@@ -21,14 +21,17 @@ Vec3 Resultant(const Body& body, const Load& load) {
 }
 
 double VolumeOf(const Body& body) {
+  if (!body.surface.triangles.empty()) return EnclosedVolume(body.surface);
   const VoxelGrid& grid = body.bricks.grid;
   return TotalVolume(body.mesh) + static_cast<double>(body.bricks.bricks.size()) * grid.spacing.prod();
 }
 
 // Whether the scene asks for places where nothing moves.
 bool IsStatic(const Scene& scene) {
-  return scene.method == Method::kVoxel ? scene.voxel.stepping == VoxelStepping::kStatic || scene.voxel.start_loaded
-                                        : scene.tet.stepping == Stepping::kQuasiStatic;
+  if (scene.method == Method::kVoxel) {
+    return scene.voxel.stepping == VoxelStepping::kStatic || scene.voxel.start_loaded;
+  }
+  return scene.method == Method::kTet && scene.tet.stepping == Stepping::kQuasiStatic;
 }
 
 std::array<bool, 3> HeldAxes(const Body& body) {

@@ -36,6 +36,9 @@ void CheckMethod(const Scene& scene, Problems& problems);
 // What the voxel method has no answer for: other laws than its two, fibres, activation, floors, damping that is not
 // proportional to mass, single axes held across the axes of an image.
 void CheckVoxels(const Scene& scene, Problems& problems);
+// What the eulerian method has no answer for: parts of bodies, tags of supports, single axes, floors, damping that is
+// not proportional to mass; and what no other method has: plasticity, squeezes.
+void CheckEulerian(const Scene& scene, Problems& problems);
 // Probes that follow a node that exists; the number of frames; duration.
 void CheckOutput(const Scene& scene, Problems& problems);
 

@@ -13,6 +13,7 @@
 #include "core/geometry/brick_mesh.h"
 #include "core/geometry/region.h"
 #include "core/geometry/tet_mesh.h"
+#include "core/geometry/triangle_mesh.h"
 #include "core/materials/material.h"
 #include "core/muscle/fibre_field.h"
 
@@ -58,10 +59,18 @@ struct Damping {
   double viscosity = 0;               // [Pa s]
 };
 
+// Plastic flow at constant volume [Fan 2013, 3.5; Bargteil et al. 2007].
+struct Plasticity {
+  double yield_stress = 0;  // von Mises Cauchy stress from which it flows [Pa]
+  // Time in which what is beyond it flows away but for 1/e [s]; 0: at once, whatever the step.
+  double relaxation_time = 0;
+};
+
 struct Body {
   std::string name;
-  TetMesh mesh;           // of the tet method [m]
+  TetMesh mesh;           // of the tet method; of the eulerian one, for its fibres, or empty [m]
   BrickMesh bricks;       // of the voxel method [m]
+  TriangleMesh surface;   // of the eulerian method [m]
   double density = 1060;  // [kg/m^3]
   Material material = NeoHookean(std::array{1e4, 0.3});
   // Materials beside `material`, and which one each element has: 0 for `material`, k for more_materials[k - 1].
@@ -81,11 +90,15 @@ struct Body {
   // Displacement of each node from rest at time 0 [m]; none when empty. May tangle the mesh.
   std::vector<Vec3> initial_displacement;
   Damping damping;
+  std::optional<Plasticity> plasticity;  // of the eulerian method
   // What the user should know of how the body came about; does not change results.
   std::vector<std::string> notes;
 
-  // Of whichever mesh the body has.
-  const std::vector<Vec3>& nodes() const { return mesh.nodes.empty() ? bricks.nodes : mesh.nodes; }
+  // Of what frames show of the body: its surface, or else whichever mesh it has.
+  const std::vector<Vec3>& nodes() const {
+    if (!surface.nodes.empty()) return surface.nodes;
+    return mesh.nodes.empty() ? bricks.nodes : mesh.nodes;
+  }
   std::size_t elements() const { return mesh.tetrahedra.size() + bricks.bricks.size(); }
 };
 
@@ -99,6 +112,15 @@ struct Floor {
   std::string name;
   Vec3 point = Vec3::Zero();    // [m]
   Vec3 normal = Vec3::UnitZ();  // unit, out of the floor
+};
+
+// A force per deformed volume towards a plane.
+struct Squeeze {
+  Vec3 point = Vec3::Zero();    // [m]
+  Vec3 normal = Vec3::UnitX();  // unit
+  double force_density = 0;     // [N/m^3]
+  double width = 0;             // [m]
+  Curve scale = Curve::Constant(1);
 };
 
 enum class Stepping { kExplicit, kMixed, kBackwardEuler, kNewmark, kBdf2, kQuasiStatic };
@@ -146,8 +168,30 @@ struct VoxelMethod {
   bool start_loaded = false;        // in equilibrium with what acts at time 0
 };
 
+enum class VolumeTreatment {
+  kNone,            // the law's own resistance alone
+  kDivergenceFree,  // div v = 0, which drifts
+  kPreserved,       // div v = (1 - J)/(dt J), which does not [Fan 2013, 3.2]
+};
+
+// A box in space [m].
+struct Room {
+  Vec3 lowest, highest;
+};
+
+struct EulerianMethod {
+  double cell_size = 0;      // [m]
+  double margin = 0.5;       // of a body's largest extent
+  std::optional<Room> room;  // in place of the margin
+  VolumeTreatment volume = VolumeTreatment::kPreserved;
+  double stabilization = 0.05;
+  bool implicit_elasticity = false;
+  std::optional<double> time_step;  // the longest [s]
+  bool maccormack = false;
+};
+
 // What steps the scene; the settings of the others are not looked at.
-enum class Method { kTet, kVoxel };
+enum class Method { kTet, kVoxel, kEulerian };
 
 struct Probe {
   std::string name;
@@ -170,7 +214,9 @@ struct Scene {
   Method method = Method::kTet;
   TetMethod tet;
   VoxelMethod voxel;
-  double duration = 0;  // [s]
+  EulerianMethod eulerian;
+  std::vector<Squeeze> squeezes;  // of the eulerian method
+  double duration = 0;            // [s]
   Output output;
 };
 

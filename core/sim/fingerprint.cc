@@ -34,6 +34,15 @@ class Fingerprint {
     Put(scene.voxel.time_step.value_or(0.0));
     Put(scene.voxel.tolerance);
     Put(scene.voxel.start_loaded);
+    Put(scene.eulerian);
+    Put(scene.squeezes.size());
+    for (const Squeeze& squeeze : scene.squeezes) {
+      PutItems(squeeze.point);
+      PutItems(squeeze.normal);
+      Put(squeeze.force_density);
+      Put(squeeze.width);
+      Put(squeeze.scale);
+    }
     Put(scene.bodies.size());
     for (const Body& body : scene.bodies) Put(body);
     Put(scene.output);
@@ -76,6 +85,34 @@ class Fingerprint {
     Put(motion.rotation->angle);
   }
 
+  void Put(const EulerianMethod& method) {
+    Put(method.cell_size);
+    Put(method.margin);
+    Put(method.room.has_value());
+    if (method.room) {
+      PutItems(method.room->lowest);
+      PutItems(method.room->highest);
+    }
+    Put(static_cast<int>(method.volume));
+    Put(method.stabilization);
+    Put(method.implicit_elasticity);
+    Put(method.time_step.value_or(0.0));
+    Put(method.maccormack);
+  }
+
+  void Put(const Selector& selector) {
+    Put(selector.index());
+    if (const auto* tag = std::get_if<TagSelector>(&selector)) Put(tag->tag);
+    if (const auto* plane = std::get_if<PlaneSelector>(&selector)) PutItems(plane->point), PutItems(plane->normal);
+    if (const auto* box = std::get_if<BoxSelector>(&selector)) PutItems(box->min), PutItems(box->max);
+    if (const auto* sphere = std::get_if<SphereSelector>(&selector)) PutItems(sphere->center), Put(sphere->radius);
+    if (const auto* side = std::get_if<SideSelector>(&selector)) {
+      PutItems(side->direction);
+      Put(side->max_angle);
+      Put(side->depth);
+    }
+  }
+
   // A law holds nothing but numbers, which follow from its parameters.
   void Put(const Material& material) {
     Put(material.index());
@@ -100,6 +137,13 @@ class Fingerprint {
     PutItems(body.bricks.bricks);
     PutItems(body.bricks.grid.direction);
     PutItems(body.bricks.grid.stiffness);
+    PutItems(body.surface.nodes);
+    PutItems(body.surface.triangles);
+    Put(body.plasticity.has_value());
+    if (body.plasticity) {
+      Put(body.plasticity->yield_stress);
+      Put(body.plasticity->relaxation_time);
+    }
     Put(body.density);
     Put(body.material);
     Put(body.more_materials.size());
@@ -112,6 +156,8 @@ class Fingerprint {
       PutItems(region.nodes);
       PutItems(region.triangles);
       PutItems(region.quads);
+      Put(region.selectors.size());
+      for (const Selector& selector : region.selectors) Put(selector);
     }
     Put(body.constraints.size());
     for (const Constraint& constraint : body.constraints) {

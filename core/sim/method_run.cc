@@ -1,5 +1,6 @@
 #include "core/sim/method_run.h"
 
+#include "core/sim/eulerian_run.h"
 #include "core/sim/tet_run.h"
 #include "core/sim/voxel_run.h"
 
@@ -7,6 +8,8 @@ namespace fascicle {
 
 std::unique_ptr<MethodRun> MakeMethodRun(const Scene& scene, ThreadTeam& team, Profile* profile) {
   switch (scene.method) {
+    case Method::kEulerian:
+      return MakeEulerianRun(scene, team, profile);
     case Method::kVoxel:
       return MakeVoxelRun(scene, team, profile);
     default:

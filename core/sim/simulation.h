@@ -23,7 +23,8 @@ struct Progress {
   double time_step = 0;  // [s]
 };
 
-// Why a run could not go on. Reasons: INVERTED_ELEMENT STEP_TOO_SMALL NOT_CONVERGED NOT_FINITE STORAGE.
+// Why a run could not go on. Reasons: INVERTED_ELEMENT STEP_TOO_SMALL NOT_CONVERGED NOT_FINITE
+// LEFT_GRID STORAGE.
 struct Failure {
   std::string reason;
   std::string message;

@@ -11,7 +11,7 @@ namespace {
 // The wire is little-endian and packed; so is memory, and encoding is copying.
 static_assert(std::endian::native == std::endian::little);
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Tetrahedron) == 4 * sizeof(std::uint32_t) &&
-              sizeof(Brick) == 8 * sizeof(std::uint32_t));
+              sizeof(Brick) == 8 * sizeof(std::uint32_t) && sizeof(Triangle) == 3 * sizeof(std::uint32_t));
 
 template <class T>
 std::string Bytes(const std::vector<T>& values) {
@@ -39,9 +39,13 @@ v1::Geometry EncodeGeometry(const Scene& scene, const std::vector<SeriesInfo>& s
     v1::BodyGeometry& encoded = *geometry.add_bodies();
     encoded.set_name(body.name);
     encoded.set_positions(Bytes(body.nodes()));
-    encoded.set_tetrahedra(Bytes(body.mesh.tetrahedra));
     encoded.set_bricks(Bytes(body.bricks.bricks));
-    encoded.set_fibres(Bytes(body.fibres));
+    encoded.set_triangles(Bytes(body.surface.triangles));
+    // Of a surface, tetrahedra and their fibres are no more than how it came about.
+    if (body.surface.triangles.empty()) {
+      encoded.set_tetrahedra(Bytes(body.mesh.tetrahedra));
+      encoded.set_fibres(Bytes(body.fibres));
+    }
     for (const std::string& note : body.notes) encoded.add_notes(note);
     for (const Region& region : body.regions) {
       v1::RegionGeometry& nodes = *encoded.add_regions();

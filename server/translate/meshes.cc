@@ -144,26 +144,85 @@ std::optional<TranslatedMesh> TranslateTetrahedra(const v1::Body& body, const st
   return result;
 }
 
+// The boundary of tetrahedra, with the nodes that it has.
+TriangleMesh BoundaryOf(const TetMesh& mesh) {
+  TriangleMesh surface;
+  std::vector<std::int32_t> number(mesh.nodes.size(), -1);
+  for (Triangle triangle : BoundaryTriangles(mesh)) {
+    for (std::int32_t& node : triangle) {
+      std::int32_t& own = number[node];
+      if (own < 0) {
+        own = static_cast<std::int32_t>(surface.nodes.size());
+        surface.nodes.push_back(mesh.nodes[node]);
+      }
+      node = own;
+    }
+    surface.triangles.push_back(triangle);
+  }
+  return surface;
+}
+
+std::optional<TranslatedMesh> TranslateSurface(const v1::Body& body, const std::string& body_path,
+                                               const AssetReader& assets, std::int64_t& budget, Problems& problems) {
+  const std::string path = JoinPath(body_path, "mesh");
+  if (!body.mesh().has_surface()) {
+    auto result = TranslateTetrahedra(body, body_path, assets, budget, problems);
+    if (result) result->surface = BoundaryOf(result->mesh);
+    return result;
+  }
+  const std::string file_path = JoinPath(path, "surface");
+  if (body.unit() == v1::LENGTH_UNIT_UNSPECIFIED) {
+    problems.Add(JoinPath(body_path, "unit"), "is missing: a surface file does not say its unit", "mm, cm or m");
+  }
+  CheckElements(body.mesh(), path, problems);
+  const v1::FileRef& file = body.mesh().surface();
+  const auto bytes = ReadFile(file, file_path, assets, problems);
+  if (!bytes || file.path().empty()) return std::nullopt;
+  Problems own;
+  auto read = ReadSurface(file.path(), *bytes, own);
+  problems.Append(file_path, own);
+  if (!read) return std::nullopt;
+  if (!Spend(static_cast<std::int64_t>(read->triangles.size()), "triangles", budget, file_path,
+             "take a coarser surface", problems)) {
+    return std::nullopt;
+  }
+  TranslatedMesh result;
+  result.surface = std::move(*read);
+  for (Vec3& x : result.surface.nodes) x *= MetresIn(body.unit());
+  return result;
+}
+
+const char* MethodName(Method method) {
+  return method == Method::kVoxel ? "voxel" : method == Method::kEulerian ? "eulerian" : "tet";
+}
+
 }  // namespace
 
 std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, Method method, const std::string& body_path,
                                             const AssetReader& assets, std::int64_t& budget,
                                             std::vector<std::string>& notes, Problems& problems) {
   const std::string path = JoinPath(body_path, "mesh");
-  const bool voxels = method == Method::kVoxel;
   if (!body.has_mesh()) {
     problems.Add(path, "is missing",
-                 voxels ? "give one of: image, box" : "give one of: file, box, fusiform, torus, sphere");
+                 method == Method::kVoxel      ? "give one of: image, box"
+                 : method == Method::kEulerian ? "give one of: surface, file, box, fusiform, torus, sphere"
+                                               : "give one of: file, box, fusiform, torus, sphere");
     return std::nullopt;
   }
   // A mesh without a source is reported with the rules.
   if (body.mesh().source_case() == v1::Mesh::SOURCE_NOT_SET) return std::nullopt;
-  if (voxels) return TranslateVoxels(body, path, assets, budget, notes, problems);
+  if (method == Method::kVoxel) return TranslateVoxels(body, path, assets, budget, notes, problems);
   if (body.mesh().has_image()) {
     problems.Add(
-        JoinPath(path, "image"), "the tet method takes no image",
+        JoinPath(path, "image"), std::string("the ") + MethodName(method) + " method takes no image",
         "`fascicle mesh` fills the labels of an image with tetrahedra, `fascicle segment` makes labels; or use "
         "the voxel method");
+    return std::nullopt;
+  }
+  if (method == Method::kEulerian) return TranslateSurface(body, body_path, assets, budget, problems);
+  if (body.mesh().has_surface()) {
+    problems.Add(JoinPath(path, "surface"), "the tet method needs tetrahedra",
+                 "`fascicle mesh` fills a closed surface with them; or use the eulerian method");
     return std::nullopt;
   }
   return TranslateTetrahedra(body, body_path, assets, budget, problems);

@@ -15,15 +15,20 @@
 namespace fascicle::server {
 
 struct TranslatedMesh {
-  TetMesh mesh;       // [m]; indices in range and coordinates finite
-  BrickMesh bricks;   // of the voxel method, instead [m]
-  bool sound = true;  // CheckMesh found nothing
+  TetMesh mesh;          // [m]; indices in range and coordinates finite
+  BrickMesh bricks;      // of the voxel method, instead [m]
+  TriangleMesh surface;  // of the eulerian method, with the tetrahedra that it is the boundary of, or without [m]
+  bool sound = true;     // CheckMesh found nothing
 
   std::size_t elements() const { return mesh.tetrahedra.size() + bricks.bricks.size(); }
-  const std::vector<Vec3>& nodes() const { return mesh.nodes.empty() ? bricks.nodes : mesh.nodes; }
+  const std::vector<Vec3>& nodes() const {
+    if (mesh.nodes.empty() && bricks.nodes.empty()) return surface.nodes;
+    return mesh.nodes.empty() ? bricks.nodes : mesh.nodes;
+  }
 };
 
-// The mesh of a body (defaults filled in) in metres: tetrahedra, or voxels for the voxel method. `budget` is the number
+// The mesh of a body (defaults filled in) in metres: tetrahedra, or voxels for the voxel method, or a surface for the
+// eulerian one. `budget` is the number
 // of elements that are left for it, and is reduced by those it has. Nothing when there is no mesh that other checks
 // could look at. Adds to `notes` what is noteworthy.
 std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, Method method, const std::string& body_path,

@@ -96,7 +96,8 @@ std::vector<OutputField> TranslateFields(const v1::Scene& scene, Problems& probl
 
 std::int64_t FieldBytes(OutputField field, const Body& body) {
   const auto nodes = static_cast<std::int64_t>(body.nodes().size());
-  const auto elements = static_cast<std::int64_t>(body.elements());
+  // Fields of a surface are at its nodes.
+  const auto elements = body.surface.nodes.empty() ? static_cast<std::int64_t>(body.elements()) : nodes;
   constexpr std::int64_t kDouble = sizeof(double);
   switch (field) {
     case OutputField::kVelocity:
@@ -185,6 +186,45 @@ VoxelMethod TranslateVoxelMethod(const v1::Scene& scene) {
   if (scene.voxel().has_time_step()) method.time_step = scene.voxel().time_step();
   method.tolerance = scene.voxel().tolerance();
   method.start_loaded = scene.voxel().start_loaded();
+  return method;
+}
+
+namespace {
+
+// Where bodies may move; nothing where it is not given, or wrong.
+std::optional<Room> TranslateRoom(const v1::EulerianMethod& method, Problems& problems) {
+  if (method.lowest().empty() && method.highest().empty()) return std::nullopt;
+  for (const auto& [name, size] : {std::pair("lowest", method.lowest_size()), {"highest", method.highest_size()}}) {
+    if (size == 0) problems.Add(JoinPath("eulerian", name), "is missing beside the other corner", "give both, or none");
+  }
+  if (method.lowest_size() != 3 || method.highest_size() != 3) return std::nullopt;
+  const Room room = {ToVec3(method.lowest()), ToVec3(method.highest())};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (room.lowest[axis] < room.highest[axis]) continue;
+    problems.Add(JoinPath("eulerian", IndexPath("lowest", static_cast<std::size_t>(axis))),
+                 "is " + Text(room.lowest[axis]) + ", not below the highest, " + Text(room.highest[axis]),
+                 "exchange lowest and highest");
+    return std::nullopt;
+  }
+  return room;
+}
+
+}  // namespace
+
+EulerianMethod TranslateEulerianMethod(const v1::Scene& scene, Problems& problems) {
+  EulerianMethod method;
+  if (!scene.has_eulerian()) return method;
+  const v1::EulerianMethod& wire = scene.eulerian();
+  method.room = TranslateRoom(wire, problems);
+  if (!ObeysRules(wire)) return method;
+  method.cell_size = wire.cell_size();
+  method.margin = wire.margin();
+  if (wire.volume() == v1::VOLUME_TREATMENT_DIVERGENCE_FREE) method.volume = VolumeTreatment::kDivergenceFree;
+  if (wire.volume() == v1::VOLUME_TREATMENT_NONE) method.volume = VolumeTreatment::kNone;
+  method.stabilization = wire.stabilization();
+  method.implicit_elasticity = wire.elastic_force() == v1::ELASTIC_FORCE_IMPLICIT;
+  if (wire.has_time_step()) method.time_step = wire.time_step();
+  method.maccormack = wire.advection() == v1::ADVECTION_MACCORMACK;
   return method;
 }
 

@@ -19,6 +19,7 @@ Output TranslateOutput(const v1::Scene& scene, const std::vector<Body>& bodies, 
 // How it is stepped. A neutral method stands for a wrong one.
 TetMethod TranslateTetMethod(const v1::Scene& scene);
 VoxelMethod TranslateVoxelMethod(const v1::Scene& scene);
+EulerianMethod TranslateEulerianMethod(const v1::Scene& scene, Problems& problems);
 
 }  // namespace fascicle::server
 

@@ -125,7 +125,12 @@ TranslatedRegions TranslateRegions(const v1::Body& body, const std::string& body
   TranslatedRegions result;
   std::vector<Triangle> triangles;
   std::vector<Quad> quads;
-  if (mesh != nullptr && body.regions_size() > 0) {
+  TetMesh bare;  // the nodes of a surface without tetrahedra
+  const bool is_surface = mesh != nullptr && mesh->mesh.nodes.empty() && !mesh->surface.nodes.empty();
+  if (is_surface) {
+    bare.nodes = mesh->surface.nodes;
+    triangles = mesh->surface.triangles;
+  } else if (mesh != nullptr && body.regions_size() > 0) {
     triangles = BoundaryTriangles(mesh->mesh);
     quads = BoundaryQuads(mesh->bricks);
   }
@@ -133,11 +138,11 @@ TranslatedRegions TranslateRegions(const v1::Body& body, const std::string& body
     const v1::Region& region = body.regions(i);
     const std::string path = JoinPath(body_path, IndexPath("regions", static_cast<std::size_t>(i)));
     result.names.Add(region.name(), JoinPath(path, "name"), problems);
-    result.regions.push_back({region.name(), {}, {}, {}, {}});
+    result.regions.push_back({region.name(), {}, {}, {}, {}, {}});
     const auto selector = TranslateSelector(region, MetresIn(body.unit()), path, problems);
     if (mesh != nullptr && selector) {
       result.regions.back() = mesh->bricks.bricks.empty()
-                                  ? SelectRegion(mesh->mesh, triangles, region.name(), *selector)
+                                  ? SelectRegion(is_surface ? bare : mesh->mesh, triangles, region.name(), *selector)
                                   : SelectRegion(mesh->bricks, quads, region.name(), *selector);
     }
     Problems within;

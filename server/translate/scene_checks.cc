@@ -29,6 +29,8 @@ void CheckEachBody(Scene scene, const std::vector<bool>& complete, Problems& pro
     alone.method = scene.method;
     alone.tet = scene.tet;
     alone.voxel = scene.voxel;
+    alone.eulerian = scene.eulerian;
+    alone.squeezes = scene.squeezes;
     alone.gravity = scene.gravity;
     alone.floors = scene.floors;
     alone.duration = alone.output.frame_interval = 1;  // what is wrong with them has been said

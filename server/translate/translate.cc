@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/eulerian/scene_body.h"
 #include "core/voxel/scene_body.h"
 #include "proto/rules/field_rules.h"
 #include "server/translate/fibres.h"
@@ -41,6 +42,18 @@ struct TranslatedBody {
   bool complete = false;
 };
 
+// A surface has no tetrahedra to have fibres each: one direction holds in all of the body.
+FibreField FibresOfSurface(const v1::Body& wire, const std::string& path, Problems& problems) {
+  const std::string fibres = JoinPath(path, "fibres");
+  if (wire.fibres().has_constant()) {
+    return {ToDirection(wire.fibres().constant().direction(), JoinPath(fibres, "constant.direction"), problems)
+                .normalized()};
+  }
+  problems.Add(fibres, "a surface without tetrahedra takes constant fibres only",
+               "fill it by `fascicle mesh` and give the mesh as a file");
+  return {Vec3::UnitX()};
+}
+
 TranslatedBody TranslateBody(const v1::Body& wire, Method method, const std::string& path, double duration,
                              const AssetReader& assets, std::int64_t& budget, Problems& problems, Profile* profile) {
   TranslatedBody result;
@@ -56,6 +69,14 @@ TranslatedBody TranslateBody(const v1::Body& wire, Method method, const std::str
     return TranslateMesh(wire, method, path, assets, budget, body.notes, structure);
   }();
   TranslatedRegions regions = TranslateRegions(wire, path, mesh ? &*mesh : nullptr, structure);
+  // Fibres are found with the regions of the tetrahedra, all else acts on those of the surface.
+  TranslatedRegions on_surface;
+  if (mesh && method == Method::kEulerian && !mesh->mesh.nodes.empty()) {
+    TranslatedMesh surface;
+    surface.surface = mesh->surface;
+    Problems said;
+    on_surface = TranslateRegions(wire, path, &surface, said);
+  }
   body.constraints = TranslateConstraints(wire, path, regions.names, structure);
   body.loads = TranslateLoads(wire, path, duration, regions.names, structure);
   result.complete = structure.empty() && mesh.has_value() &&
@@ -70,13 +91,20 @@ TranslatedBody TranslateBody(const v1::Body& wire, Method method, const std::str
     if (method == Method::kVoxel && wire.has_fibres()) {
       problems.Add(JoinPath(path, "fibres"), "voxels have no fibres", "leave them out, or use the tet method");
     }
-    body.fibres = TranslateFibres(wire, path, mesh ? &*mesh : nullptr, regions, assets, body.notes, problems);
+    const bool bare = mesh && !mesh->surface.nodes.empty() && mesh->mesh.nodes.empty();
+    body.fibres = bare && wire.has_fibres()
+                      ? FibresOfSurface(wire, path, problems)
+                      : TranslateFibres(wire, path, mesh ? &*mesh : nullptr, regions, assets, body.notes, problems);
   }
   TranslateMaterialParts(wire, path, elements, regions, assets, body, problems);
   TranslateActivations(wire, path, duration, elements, regions, assets, body, problems);
   TranslateInitialDisplacement(wire, path, elements, assets, body, problems);
-  body.regions = std::move(regions.regions);
+  body.regions = std::move(on_surface.regions.empty() ? regions.regions : on_surface.regions);
+  if (wire.has_plasticity() && ObeysRules(wire.plasticity())) {
+    body.plasticity = Plasticity{wire.plasticity().yield_stress(), wire.plasticity().relaxation_time()};
+  }
   if (mesh) {
+    body.surface = std::move(mesh->surface);
     body.mesh = std::move(mesh->mesh);
     body.bricks = std::move(mesh->bricks);
   }
@@ -95,6 +123,7 @@ std::vector<std::string> AssetsOf(const v1::Scene& scene) {
   for (const v1::Body& body : scene.bodies()) {
     add(body.mesh().file());
     add(body.mesh().elements());
+    add(body.mesh().surface());
     add(body.mesh().image().file());
     for (const v1::FileRef& file : body.mesh().image().more_files()) add(file);
     add(body.fibres().file());
@@ -117,11 +146,13 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   auto result = std::make_shared<Scene>();
   result->name = filled.name();
   result->duration = filled.duration();
-  result->method = filled.has_voxel() ? Method::kVoxel : Method::kTet;
+  result->method = filled.has_voxel() ? Method::kVoxel : filled.has_eulerian() ? Method::kEulerian : Method::kTet;
   result->tet = TranslateTetMethod(filled);
   result->voxel = TranslateVoxelMethod(filled);
+  result->eulerian = TranslateEulerianMethod(filled, found);
   result->gravity = TranslateGravity(filled, found);
   result->floors = TranslateFloors(filled, found);
+  result->squeezes = TranslateSqueezes(filled, found);
 
   Names names("body");
   std::vector<bool> complete;
@@ -140,6 +171,10 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   }
   result->output = TranslateOutput(filled, result->bodies, names, limits.max_frame_bytes, found);
 
+  if (result->method == Method::kEulerian && result->eulerian.cell_size > 0) {
+    const StageTimer timer(profile, "surfaces");
+    CheckEulerianBodies(*result, limits.max_elements, found);
+  }
   if (found.empty()) {
     const StageTimer timer(profile, "checks");
     CheckScene(*result, found);

@@ -105,7 +105,7 @@ TEST(EulerianMotion, ABlockHangsAsFarAsItShould) {
     EulerianBody body = MakeSolid(sizes[k], false, kYoung, 0, team);
     body.gravity = Vec3(0, 0, -kGravity);
     body.mass_damping = 70;  // half of critical
-    body.held_velocity = HeldAbove(0.3142 * kSide);
+    HoldAbove(0.3142 * kSide, body);
     const double clamp = 0.31428571 * kSide;  // a row of nodes of both grids
     EulerianSolver solver(body, team);
     EulerianState state = solver.InitialState();

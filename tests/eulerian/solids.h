@@ -68,9 +68,10 @@ inline EulerianBody MakeSolid(int n, bool round, double young, double poisson, T
 }
 
 // Material above a height rests.
-inline auto HeldAbove(double z) {
-  return
-      [z](const Vec3& X, const Vec3&, double) { return X[2] > z ? std::optional<Vec3>(Vec3::Zero()) : std::nullopt; };
+inline void HoldAbove(double z, EulerianBody& body) {
+  body.supports = 1;
+  body.support_of = [z](const Vec3& X) { return X[2] > z ? 0 : -1; };
+  body.support_velocity = [](int, const Vec3&, double, double) { return Vec3(Vec3::Zero()); };
 }
 
 // The volume on the surface, relative to that at rest.

@@ -33,7 +33,7 @@ TEST(EulerianSolver, TheSameBitsForAnyThreadsAndAfterALoad) {
     EulerianBody body = MakeSolid(14, false, 1e4, 0.3, team);
     body.volume = VolumeTreatment::kPreserved;
     body.gravity = Vec3(1, 2, -9);
-    body.held_velocity = HeldAbove(0.3 * kSide);
+    HoldAbove(0.3 * kSide, body);
     EulerianSolver solver(body, team);
     EulerianState state = solver.InitialState();
     for (int k = 0; k < 8; ++k) {

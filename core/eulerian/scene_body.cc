@@ -1,0 +1,188 @@
+#include "core/eulerian/scene_body.h"
+
+#include <Eigen/Geometry>
+
+#include <memory>
+#include <string>
+
+#include "core/eulerian/fibre_samples.h"
+#include "core/scene/rigid_motion.h"
+
+namespace fascicle {
+namespace {
+
+// Cells between a body at rest and the side of its grid.
+constexpr double kLeastRoom = 3;
+
+struct Extent {
+  explicit Extent(const std::vector<Vec3>& nodes) : lowest(nodes.front()), highest(nodes.front()) {
+    for (const Vec3& x : nodes) {
+      lowest = lowest.cwiseMin(x);
+      highest = highest.cwiseMax(x);
+    }
+  }
+  Vec3 lowest, highest;
+};
+
+Room RoomOf(const EulerianMethod& method, const TriangleMesh& surface) {
+  if (method.room) return *method.room;
+  const Extent extent(surface.nodes);
+  const double margin =
+      std::max(method.margin * (extent.highest - extent.lowest).maxCoeff(), (kLeastRoom + 1) * method.cell_size);
+  return {extent.lowest - Vec3::Constant(margin), extent.highest + Vec3::Constant(margin)};
+}
+
+// Numbers of cells as they are, whole or not: they may be too many for a grid.
+Vec3 CellsOf(const Room& room, double cell_size) {
+  const Vec3 first = (room.lowest / cell_size).array().floor(), last = (room.highest / cell_size).array().ceil();
+  return last - first;
+}
+
+Material BesidePressure(const Material& material) {
+  return std::visit(
+      [](const auto& law) -> Material {
+        const double most = 2 * law.ShearModulus();
+        if (law.VolumeModulus() <= most) return law;
+        return law.WithVolumeModulus(most);
+      },
+      material);
+}
+
+void SetSupports(const Body& source, double cell_size, EulerianBody& body) {
+  if (source.constraints.empty()) return;
+  std::vector<RegionPoints> points;
+  for (const Constraint& constraint : source.constraints) {
+    points.emplace_back(source.regions[constraint.region], source.surface.nodes, 0.5 * cell_size);
+  }
+  body.supports = static_cast<int>(points.size());
+  body.support_of = [points](const Vec3& X) {
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (points[k].Contain(X)) return static_cast<int>(k);
+    }
+    return -1;
+  };
+  body.support_velocity = [&source](int support, const Vec3& X, double time, double dt) {
+    const Motion& motion = source.constraints[support].motion;
+    return Vec3((MotionAt(motion, time + dt).PositionOf(X) - MotionAt(motion, time).PositionOf(X)) / dt);
+  };
+}
+
+// What each vertex takes of the load of a region, at scale 1 [N].
+void AddLoad(const Body& source, const Load& load, std::vector<Vec3>& forces) {
+  const Region& region = source.regions[load.region];
+  if (const auto* force = std::get_if<NodalForce>(&load.kind)) {
+    for (const std::int32_t node : region.nodes)
+      forces[node] += force->total / static_cast<double>(region.nodes.size());
+    return;
+  }
+  const std::vector<Vec3>& X = source.surface.nodes;
+  for (const Triangle& t : region.triangles) {
+    const double area = 0.5 * (X[t[1]] - X[t[0]]).cross(X[t[2]] - X[t[0]]).norm();
+    for (const std::int32_t node : t) forces[node] += area / 3 * std::get<Traction>(load.kind).vector;
+  }
+}
+
+void SetLoads(const Body& source, EulerianBody& body) {
+  if (source.loads.empty()) return;
+  std::vector<std::vector<Vec3>> of_loads;
+  for (const Load& load : source.loads) {
+    of_loads.emplace_back(source.surface.nodes.size(), Vec3::Zero());
+    AddLoad(source, load, of_loads.back());
+  }
+  body.vertex_forces = [of_loads, &source](double time, std::vector<Vec3>& forces) {
+    for (std::size_t k = 0; k < of_loads.size(); ++k) {
+      const double scale = source.loads[k].scale.At(time);
+      for (std::size_t v = 0; v < forces.size(); ++v) forces[v] += scale * of_loads[k][v];
+    }
+  };
+}
+
+void SetSqueezes(const Scene& scene, EulerianBody& body) {
+  if (scene.squeezes.empty()) return;
+  body.force = [&scene](const Vec3& x, double time) {
+    Vec3 sum = Vec3::Zero();
+    for (const Squeeze& squeeze : scene.squeezes) {
+      const double away = (x - squeeze.point).dot(squeeze.normal);
+      const double part = squeeze.width > 0 ? std::clamp(away / squeeze.width, -1.0, 1.0) : away < 0 ? -1 : 1;
+      sum -= squeeze.scale.At(time) * squeeze.force_density * part * squeeze.normal;
+    }
+    return sum;
+  };
+}
+
+void SetFibres(const Body& source, EulerianBody& body) {
+  if (source.fibres.empty()) return;
+  const auto samples =
+      std::make_shared<const FibreSamples>(source.mesh, source.fibres, body.shape.MaterialGrid(body.grid.spacing / 2));
+  body.fibre = [samples, &source](const Vec3& X, double time) {
+    return FibreState{samples->At(X), source.activation.At(time)};
+  };
+}
+
+void CheckRoom(const EulerianMethod& method, const TriangleMesh& surface, const std::string& path, Problems& problems) {
+  if (!method.room) return;
+  const Extent extent(surface.nodes);
+  const Vec3 side = Vec3::Constant(kLeastRoom * method.cell_size);
+  if (((extent.lowest - side - method.room->lowest).array() >= 0).all() &&
+      ((method.room->highest - side - extent.highest).array() >= 0).all()) {
+    return;
+  }
+  problems.Add(
+      path, "the body at rest is not within eulerian.lowest and eulerian.highest, or less than three cells from them",
+      "make the room larger, or leave both out");
+}
+
+}  // namespace
+
+EulerianGrid GridOf(const EulerianMethod& method, const TriangleMesh& surface) {
+  const Room room = RoomOf(method, surface);
+  EulerianGrid grid;
+  grid.spacing = method.cell_size;
+  grid.origin = method.cell_size * (room.lowest / method.cell_size).array().floor().matrix();
+  const Vec3 cells = CellsOf(room, method.cell_size);
+  for (int axis = 0; axis < 3; ++axis) grid.cells[axis] = static_cast<std::int32_t>(cells[axis]);
+  return grid;
+}
+
+EulerianBody MakeEulerianBody(const Scene& scene, const Body& source, ThreadTeam& team) {
+  const EulerianMethod& method = scene.eulerian;
+  const bool preserved = method.volume == VolumeTreatment::kPreserved;
+  EulerianBody body{GridOf(method, source.surface), SolidShape(source.surface, method.cell_size / 2, team),
+                    preserved ? BesidePressure(source.material) : source.material};
+  body.density = source.density;
+  body.mass_damping = source.damping.mass_proportional;
+  body.gravity = scene.gravity.acceleration;
+  body.gravity_scale = scene.gravity.scale;
+  body.volume = method.volume;
+  body.stabilization = method.stabilization;
+  body.plasticity = source.plasticity;
+  body.implicit_elasticity = method.implicit_elasticity;
+  body.maccormack = method.maccormack;
+  body.time_step = method.time_step;
+  SetSupports(source, method.cell_size, body);
+  SetLoads(source, body);
+  SetSqueezes(scene, body);
+  SetFibres(source, body);
+  return body;
+}
+
+void CheckEulerianBodies(const Scene& scene, std::int64_t max_cells, Problems& problems) {
+  const EulerianMethod& method = scene.eulerian;
+  double cells = 0;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const TriangleMesh& surface = scene.bodies[i].surface;
+    if (surface.nodes.empty()) continue;
+    const std::string path = JoinPath(IndexPath("bodies", i), "mesh");
+    Problems own;
+    CheckSolidSurface(surface, method.cell_size, own);
+    problems.Append(path, own);
+    CheckRoom(method, surface, path, problems);
+    cells += CellsOf(RoomOf(method, surface), method.cell_size).prod();
+  }
+  if (cells <= static_cast<double>(max_cells)) return;
+  char text[64];
+  std::snprintf(text, sizeof(text), "%.4g cells are too many; at most %.4g", cells, static_cast<double>(max_cells));
+  problems.Add("eulerian.cell_size", text, "take larger cells, or a smaller margin");
+}
+
+}  // namespace fascicle

@@ -1,0 +1,26 @@
+#ifndef FASCICLE_CORE_EULERIAN_SCENE_BODY_H_
+#define FASCICLE_CORE_EULERIAN_SCENE_BODY_H_
+
+#include <cstdint>
+
+#include "core/eulerian/body.h"
+#include "core/scene/scene.h"
+
+namespace fascicle {
+
+// The grid of a body of a scene: nodes at multiples of the cell size, around the room that the scene gives or the
+// margin around the body at rest.
+EulerianGrid GridOf(const EulerianMethod& method, const TriangleMesh& surface);
+
+// The solid that a body of a scene is, with its supports, loads, fibres and activation. Scene and body must outlive it.
+//   Where volumes are preserved, the law keeps no more of its bulk modulus than twice its shear modulus: pressure does
+//   the rest, and waves of pressure, which would shorten the step, are not there.
+EulerianBody MakeEulerianBody(const Scene& scene, const Body& body, ThreadTeam& team);
+
+// What makes bodies unfit for their grids: surfaces that bound no solid, grids of more cells than `max_cells` together,
+// rooms that bodies are not in. Adds to `problems`, each with its path.
+void CheckEulerianBodies(const Scene& scene, std::int64_t max_cells, Problems& problems);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_EULERIAN_SCENE_BODY_H_
