@@ -23,24 +23,23 @@ void ForNeighbours(const EulerianGrid& grid, const GridIndex& at, int reach, con
   }
 }
 
-// The value there of the linear function that fits the field less slope times the position: what ExtrapolationWeights
-// weighs, without the weights.
-Vec3 Fitted(const EulerianGrid& grid, const GridIndex& at, double slope, const std::vector<std::uint8_t>& known,
-            const std::vector<Vec3>& field) {
+// The slope at a node of the linear function that fits the known values around it best, as columns by axes, per cell.
+// value(number, offset): what is fitted. Directions in which known nodes lie flat get none.
+template <class Value>
+Mat3 SlopeAt(const EulerianGrid& grid, const GridIndex& at, const std::vector<std::uint8_t>& known,
+             const Value& value) {
   Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
   Eigen::Matrix<double, 4, 3> b = Eigen::Matrix<double, 4, 3>::Zero();
-  const Vec3 x = grid.NodePosition(at);
   ForNeighbours(grid, at, kReach, [&](std::size_t number, const Vec3& offset) {
     if (known[number] == 0) return;
     const Eigen::Vector4d row(1, offset[0], offset[1], offset[2]);
     const Eigen::Vector4d weighted = row / std::max(offset.squaredNorm(), 0.25);
     A += weighted * row.transpose();
-    b += weighted * (field[number] - slope * (x + grid.spacing * offset)).transpose();
+    b += weighted * value(number, offset).transpose();
   });
   const double total = A(0, 0);
   for (int axis = 1; axis < 4; ++axis) A(axis, axis) += kHair * total;
-  const Eigen::Vector4d value = A.ldlt().solve(Eigen::Vector4d::Unit(0));
-  return slope * x + b.transpose() * value;
+  return A.ldlt().solve(b).bottomRows<3>().transpose();
 }
 
 }  // namespace
@@ -69,15 +68,28 @@ std::vector<NodeWeight> ExtrapolationWeights(const EulerianGrid& grid, const Gri
 
 void Extrapolate(const EulerianGrid& grid, int layers, double slope, ThreadTeam& team, std::vector<std::uint8_t>& known,
                  std::vector<Vec3>& field) {
+  const auto is_unknown = [&](std::size_t n) { return known[n] == 0; };
+  // Known nodes beside unknown ones, with the slope of the field less `slope` times the position there.
   std::vector<std::size_t> front, next;
   for (std::size_t n = 0; n < known.size(); ++n) {
-    if (known[n] != 0) front.push_back(n);
+    if (known[n] == 0) continue;
+    bool is_front = false;
+    ForNeighbours(grid, grid.NodeAt(n), 1, [&](std::size_t other, const Vec3&) { is_front |= is_unknown(other); });
+    if (is_front) front.push_back(n);
   }
+  std::vector<Mat3> slopes(known.size());
+  team.For(front.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      slopes[front[k]] = SlopeAt(grid, grid.NodeAt(front[k]), known, [&](std::size_t number, const Vec3& offset) {
+        return Vec3(field[number] - slope * grid.spacing * offset);
+      });
+    }
+  });
   for (int layer = 0; layer < layers; ++layer) {
     next.clear();
     for (const std::size_t n : front) {
       ForNeighbours(grid, grid.NodeAt(n), 1, [&](std::size_t number, const Vec3&) {
-        if (known[number] != 0) return;
+        if (!is_unknown(number)) return;
         known[number] = 1;  // so that it is found once; not yet known
         next.push_back(number);
       });
@@ -85,7 +97,18 @@ void Extrapolate(const EulerianGrid& grid, int layers, double slope, ThreadTeam&
     for (const std::size_t n : next) known[n] = 0;
     team.For(next.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        field[next[k]] = Fitted(grid, grid.NodeAt(next[k]), slope, known, field);
+        Vec3 value = Vec3::Zero();
+        Mat3 mean = Mat3::Zero();
+        double total = 0;
+        ForNeighbours(grid, grid.NodeAt(next[k]), 1, [&](std::size_t number, const Vec3& offset) {
+          if (is_unknown(number)) return;
+          const double weight = 1 / offset.squaredNorm();
+          value += weight * (field[number] - slopes[number] * offset - slope * grid.spacing * offset);
+          mean += weight * slopes[number];
+          total += weight;
+        });
+        field[next[k]] = value / total;
+        slopes[next[k]] = mean / total;
       }
     });
     for (const std::size_t n : next) known[n] = 1;

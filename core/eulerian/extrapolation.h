@@ -20,8 +20,11 @@ struct NodeWeight {
 std::vector<NodeWeight> ExtrapolationWeights(const EulerianGrid& grid, const GridIndex& at,
                                              const std::vector<std::uint8_t>& known);
 
-// Carries a field less `slope` times the position from the nodes where it is known on into so many layers of nodes
-// around them, layer by layer by ExtrapolationWeights. known: 1 where known, and where it is in the end.
+// Carries a field on from the nodes where it is known into so many layers of nodes around them: each takes the mean of
+// what its neighbours of the layer before say by their slopes, and the mean of these slopes. The slopes of the first
+// are those of linear functions that fit the known nodes within two cells of it best. So linear fields are continued
+// exactly, and others do not grow faster than that however many layers there are. Directions in which known nodes lie
+// flat have the slope `slope`. known: 1 where known, and where it is in the end.
 //   slope  1 for the reference map, 0 for velocities
 void Extrapolate(const EulerianGrid& grid, int layers, double slope, ThreadTeam& team, std::vector<std::uint8_t>& known,
                  std::vector<Vec3>& field);

@@ -10,19 +10,23 @@ constexpr double kTolerance = 1e-7;
 constexpr std::size_t kGrain = 64;
 // Cells along each axis whose pressures are corrected together.
 constexpr std::int32_t kGroup = 4;
+// Cells that are solid by less share their pressure with one that is more: slivers can't be pushed each by itself.
+constexpr double kWhole = 0.5;
+// The most volume that a cell is to gain or lose in a step, of its own: what the map says beyond is made up for later.
+constexpr double kMostGain = 0.1;
 
-// What a node's velocity makes of a cell's volume [m^2].
+// What a node's velocity makes of the volume of a block of cells [m^2].
 struct NodeFlux {
   std::size_t node;
   Vec3 flux;
 };
 using CellFluxes = std::vector<NodeFlux>;  // by rising nodes, each once
 
-// V grad N of the corners of a cell, those that follow others by whom they follow.
-CellFluxes FluxesOf(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes, std::size_t cell) {
+// Adds V grad N of the corners of a cell, in place of those that follow others of whom they follow.
+void AddFluxes(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes, std::size_t cell,
+               CellFluxes& all) {
   const GridIndex at = body.grid.CellAt(cell);
   const double volume = cells.inside[cell] * std::pow(body.grid.spacing, 3);
-  CellFluxes all;
   for (int c = 0; c < 8; ++c) {
     const std::size_t corner = body.grid.Corner(at, c);
     const Vec3 flux = volume * CornerGradient(c, body.grid.spacing);
@@ -31,6 +35,9 @@ CellFluxes FluxesOf(const EulerianBody& body, const EulerianCells& cells, const 
     if (follower < 0) continue;
     for (const NodeWeight& part : nodes.followers[follower].leaders) all.push_back({part.node, part.weight * flux});
   }
+}
+
+CellFluxes Merged(CellFluxes all) {
   std::stable_sort(all.begin(), all.end(), [](const NodeFlux& a, const NodeFlux& b) { return a.node < b.node; });
   CellFluxes merged;
   for (const NodeFlux& part : all) {
@@ -43,10 +50,47 @@ CellFluxes FluxesOf(const EulerianBody& body, const EulerianCells& cells, const 
   return merged;
 }
 
-// The problem's numbering: free nodes with three velocities each, and the solid cells that have any.
+// Cells whose volumes are kept together: one that is solid for the most part, and those beside it that are less.
+using CellBlock = std::vector<std::size_t>;
+
+// The cell that one of little solid belongs to: the most solid one beside it, if that is solid enough; else itself.
+std::size_t RootOf(const EulerianGrid& grid, const EulerianCells& cells, std::size_t cell) {
+  if (cells.inside[cell] >= kWhole) return cell;
+  const GridIndex at = grid.CellAt(cell);
+  std::size_t root = cell;
+  for (int n = 0; n < 27; ++n) {
+    const GridIndex other = {at[0] - 1 + n % 3, at[1] - 1 + n / 3 % 3, at[2] - 1 + n / 9};
+    bool exists = true;
+    for (int axis = 0; axis < 3; ++axis) exists &= other[axis] >= 0 && other[axis] < grid.cells[axis];
+    if (!exists) continue;
+    const std::size_t number = grid.CellNumber(other);
+    if (cells.inside[number] >= kWhole && cells.inside[number] > cells.inside[root]) root = number;
+  }
+  return root;
+}
+
+std::vector<CellBlock> Blocks(const EulerianGrid& grid, const EulerianCells& cells, ThreadTeam& team) {
+  std::vector<std::size_t> roots(cells.solid.size());
+  team.For(roots.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) roots[c] = RootOf(grid, cells, cells.solid[c]);
+  });
+  std::vector<int> block_of(grid.cell_count(), -1);
+  std::vector<CellBlock> blocks;
+  for (std::size_t c = 0; c < roots.size(); ++c) {
+    if (roots[c] != cells.solid[c]) continue;
+    block_of[roots[c]] = static_cast<int>(blocks.size());
+    blocks.push_back({roots[c]});
+  }
+  for (std::size_t c = 0; c < roots.size(); ++c) {
+    if (roots[c] != cells.solid[c]) blocks[block_of[roots[c]]].push_back(cells.solid[c]);
+  }
+  return blocks;
+}
+
+// The problem's numbering: free nodes with three velocities each, and the blocks of cells that have any.
 struct Numbering {
-  std::vector<int> of_node;  // -1: not free
-  std::vector<int> of_cell;  // of cells.solid: its row; -1: none
+  std::vector<int> of_node;   // -1: not free
+  std::vector<int> of_block;  // -1: none
   int nodes = 0, rows = 0;
 };
 
@@ -56,26 +100,33 @@ Numbering Number(const NodalForces& nodes, const std::vector<CellFluxes>& fluxes
   for (std::size_t n = 0; n < nodes.mass.size(); ++n) {
     if (nodes.mass[n] > 0 && nodes.support[n] < 0) numbers.of_node[n] = numbers.nodes++;
   }
-  for (const CellFluxes& cell : fluxes) {
+  for (const CellFluxes& block : fluxes) {
     const bool any =
-        std::any_of(cell.begin(), cell.end(), [&](const NodeFlux& part) { return numbers.of_node[part.node] >= 0; });
-    numbers.of_cell.push_back(any ? numbers.rows++ : -1);
+        std::any_of(block.begin(), block.end(), [&](const NodeFlux& part) { return numbers.of_node[part.node] >= 0; });
+    numbers.of_block.push_back(any ? numbers.rows++ : -1);
   }
   return numbers;
 }
 
+// What a cell is to gain of volume per time [m^3/s].
+double Gain(const EulerianBody& body, const EulerianCells& cells, std::size_t cell, double dt) {
+  if (body.volume != VolumeTreatment::kPreserved) return 0;
+  const double part = std::clamp(1 / cells.J[cell] - 1, -kMostGain, kMostGain);
+  return cells.inside[cell] * std::pow(body.grid.spacing, 3) * part / dt;
+}
+
 // The rows of the volumes; what held nodes do to a volume goes to its right side.
-ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, const Numbering& numbers,
-                          const std::vector<CellFluxes>& fluxes, const std::vector<Vec3>& velocity, double dt,
-                          ThreadTeam& team) {
+ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, const std::vector<CellBlock>& blocks,
+                          const Numbering& numbers, const std::vector<CellFluxes>& fluxes,
+                          const std::vector<Vec3>& velocity, double dt, ThreadTeam& team) {
   ConstraintRows rows;
   rows.b.resize(numbers.rows);
   rows.G.resize(numbers.rows, 3 * numbers.nodes);
   int* const begin = rows.G.outerIndexPtr();
   std::fill(begin, begin + numbers.rows + 1, 0);
   for (std::size_t c = 0; c < fluxes.size(); ++c) {
-    if (numbers.of_cell[c] < 0) continue;
-    for (const NodeFlux& part : fluxes[c]) begin[numbers.of_cell[c] + 1] += numbers.of_node[part.node] >= 0 ? 3 : 0;
+    if (numbers.of_block[c] < 0) continue;
+    for (const NodeFlux& part : fluxes[c]) begin[numbers.of_block[c] + 1] += numbers.of_node[part.node] >= 0 ? 3 : 0;
   }
   for (int r = 0; r < numbers.rows; ++r) begin[r + 1] += begin[r];
   rows.G.resizeNonZeros(begin[numbers.rows]);
@@ -83,11 +134,10 @@ ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, 
   double* const value = rows.G.valuePtr();
   team.For(fluxes.size(), kGrain, [&](std::size_t first, std::size_t last) {
     for (std::size_t c = first; c < last; ++c) {
-      const int row = numbers.of_cell[c];
+      const int row = numbers.of_block[c];
       if (row < 0) continue;
-      const std::size_t cell = cells.solid[c];
-      const double J = cells.J[cell], volume = cells.inside[cell] * std::pow(body.grid.spacing, 3);
-      double right = body.volume == VolumeTreatment::kPreserved ? volume * (1 - J) / (dt * J) : 0;
+      double right = 0;
+      for (const std::size_t cell : blocks[c]) right += Gain(body, cells, cell, dt);
       int place = begin[row];
       for (const NodeFlux& part : fluxes[c]) {
         const int node = numbers.of_node[part.node];
@@ -103,21 +153,21 @@ ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, 
   return rows;
 }
 
-// eps L between solid cells that share a face, as large as the volumes' own matrix there: h/rho times their solid
-// parts.
+// eps L between blocks whose first cells share a face, as large as the volumes' own matrix there: h/rho times their
+// solid parts.
 Eigen::SparseMatrix<double> Stabilization(const EulerianBody& body, const EulerianCells& cells,
-                                          const Numbering& numbers) {
+                                          const std::vector<CellBlock>& blocks, const Numbering& numbers) {
   const EulerianGrid& grid = body.grid;
   std::vector<int> row_of(grid.cell_count(), -1);
-  for (std::size_t c = 0; c < cells.solid.size(); ++c) row_of[cells.solid[c]] = numbers.of_cell[c];
+  for (std::size_t c = 0; c < blocks.size(); ++c) row_of[blocks[c].front()] = numbers.of_block[c];
   const double weight = body.stabilization * grid.spacing / body.density;
   const std::array<std::ptrdiff_t, 3> along = {1, grid.cells[0],
                                                static_cast<std::ptrdiff_t>(grid.cells[0]) * grid.cells[1]};
   std::vector<int> begin = {0}, column;
   std::vector<double> value;
-  for (std::size_t c = 0; c < cells.solid.size(); ++c) {
-    if (numbers.of_cell[c] < 0) continue;
-    const std::size_t cell = cells.solid[c];
+  for (std::size_t c = 0; c < blocks.size(); ++c) {
+    if (numbers.of_block[c] < 0) continue;
+    const std::size_t cell = blocks[c].front();
     const GridIndex at = grid.CellAt(cell);
     double sum = 0;
     std::size_t own = 0;
@@ -133,7 +183,7 @@ Eigen::SparseMatrix<double> Stabilization(const EulerianBody& body, const Euleri
     };
     for (const int axis : {2, 1, 0}) add(axis, -1);
     own = value.size();
-    column.push_back(numbers.of_cell[c]);
+    column.push_back(numbers.of_block[c]);
     value.push_back(0);
     for (const int axis : {0, 1, 2}) add(axis, 1);
     value[own] = sum;
@@ -145,19 +195,18 @@ Eigen::SparseMatrix<double> Stabilization(const EulerianBody& body, const Euleri
 }
 
 // Which block of cells each row belongs to.
-std::vector<int> Groups(const EulerianBody& body, const EulerianCells& cells, const Numbering& numbers) {
+std::vector<int> Groups(const EulerianBody& body, const std::vector<CellBlock>& blocks, const Numbering& numbers) {
   const GridIndex size = body.grid.cells;
-  const auto blocks = [&](int axis) { return (size[axis] + kGroup - 1) / kGroup; };
-  std::vector<int> used(static_cast<std::size_t>(blocks(0)) * blocks(1) * blocks(2), -1);
+  const auto along = [&](int axis) { return static_cast<std::size_t>((size[axis] + kGroup - 1) / kGroup); };
+  std::vector<int> used(along(0) * along(1) * along(2), -1);
   std::vector<int> groups(static_cast<std::size_t>(numbers.rows));
   int count = 0;
-  for (std::size_t c = 0; c < cells.solid.size(); ++c) {
-    if (numbers.of_cell[c] < 0) continue;
-    const GridIndex at = body.grid.CellAt(cells.solid[c]);
-    int& group = used[at[0] / kGroup + static_cast<std::size_t>(blocks(0)) *
-                                           (at[1] / kGroup + static_cast<std::size_t>(blocks(1)) * (at[2] / kGroup))];
+  for (std::size_t c = 0; c < blocks.size(); ++c) {
+    if (numbers.of_block[c] < 0) continue;
+    const GridIndex at = body.grid.CellAt(blocks[c].front());
+    int& group = used[at[0] / kGroup + along(0) * (at[1] / kGroup + along(1) * (at[2] / kGroup))];
     if (group < 0) group = count++;
-    groups[numbers.of_cell[c]] = group;
+    groups[numbers.of_block[c]] = group;
   }
   return groups;
 }
@@ -179,16 +228,21 @@ void SetMasses(const NodalForces& nodes, const Numbering& numbers, const std::ve
 
 Projection ProjectVelocity(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes, double dt,
                            ThreadTeam& team, std::vector<Vec3>& velocity) {
-  std::vector<CellFluxes> fluxes(cells.solid.size());
+  const std::vector<CellBlock> blocks = Blocks(body.grid, cells, team);
+  std::vector<CellFluxes> fluxes(blocks.size());
   team.For(fluxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) fluxes[c] = FluxesOf(body, cells, nodes, cells.solid[c]);
+    for (std::size_t c = begin; c < end; ++c) {
+      CellFluxes all;
+      for (const std::size_t cell : blocks[c]) AddFluxes(body, cells, nodes, cell, all);
+      fluxes[c] = Merged(std::move(all));
+    }
   });
   const Numbering numbers = Number(nodes, fluxes);
   QuadraticProgram problem;
   SetMasses(nodes, numbers, velocity, problem);
-  problem.volumes = VolumeRows(body, cells, numbers, fluxes, velocity, dt, team);
-  problem.E = Stabilization(body, cells, numbers);
-  problem.groups = Groups(body, cells, numbers);
+  problem.volumes = VolumeRows(body, cells, blocks, numbers, fluxes, velocity, dt, team);
+  problem.E = Stabilization(body, cells, blocks, numbers);
+  problem.groups = Groups(body, blocks, numbers);
   QpSolution solution;
   Projection result;
   result.report = SolveQp(problem, {.tolerance = kTolerance, .team = &team}, solution);
@@ -199,9 +253,9 @@ Projection ProjectVelocity(const EulerianBody& body, const EulerianCells& cells,
     if (numbers.of_node[n] >= 0) velocity[n] = solution.v.segment<3>(3 * numbers.of_node[n]);
   }
   for (std::size_t c = 0; c < fluxes.size(); ++c) {
-    if (numbers.of_cell[c] < 0) continue;
-    const double multiplier = solution.volumes[numbers.of_cell[c]];
-    result.pressure[cells.solid[c]] = multiplier / dt;
+    if (numbers.of_block[c] < 0) continue;
+    const double multiplier = solution.volumes[numbers.of_block[c]];
+    for (const std::size_t cell : blocks[c]) result.pressure[cell] = multiplier / dt;
     for (const NodeFlux& part : fluxes[c]) {
       if (nodes.support[part.node] >= 0) result.held_impulses[part.node] += multiplier * part.flux;
     }
