@@ -61,6 +61,7 @@ EulerianState EulerianSolver::InitialState(const std::function<Vec3(const Vec3&)
   std::vector<Vec3> X = state.X;
   Extrapolate(grid, kBand, 1, *team_, state.known, X);
   state.surface = body_->shape.surface().nodes;
+  state.pressure.assign(grid.cell_count(), std::numeric_limits<double>::quiet_NaN());
   CarrySurface(*body_, *team_, state);
   StartPlasticity(*body_, state);
   return state;
@@ -108,9 +109,11 @@ StepProblem EulerianSolver::Prepare(const EulerianState& state, EulerianReport& 
 }
 
 // v: carried velocities; then those at the end of the step, of nodes inside and held ones.
-StepProblem EulerianSolver::Accelerate(const EulerianState& state, double dt, std::vector<Vec3>& v,
+StepProblem EulerianSolver::Accelerate(const EulerianState& state, const StepLength& step, std::vector<Vec3>& v,
                                        EulerianReport& report) {
+  const double dt = step.dt;
   const StageTimer timer(profile_, "constraints");
+  pressure_.assign(state.pressure.size(), std::numeric_limits<double>::quiet_NaN());
   std::vector<Vec3> impulses(v.size(), Vec3::Zero());  // of the supports
   team_->For(v.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
@@ -124,7 +127,7 @@ StepProblem EulerianSolver::Accelerate(const EulerianState& state, double dt, st
     }
   });
   if (body_->volume != VolumeTreatment::kNone) {
-    const Projection projection = ProjectVelocity(*body_, cells_, nodes_, dt, *team_, v);
+    const Projection projection = ProjectVelocity(*body_, cells_, nodes_, step, state.pressure, *team_, v);
     const QpReport& qp = projection.report;
     report.minres_iterations = qp.minres_iterations.empty() ? 0 : qp.minres_iterations.back();
     if (qp.status != QpStatus::kSolved) return StepProblem::kNotSolved;
@@ -186,6 +189,7 @@ StepProblem EulerianSolver::Move(std::vector<Vec3> v, double dt, EulerianState& 
     const StageTimer timer(profile_, "plastic flow");
     FlowPlastically(*body_, dt, *team_, next);
   }
+  next.pressure = pressure_;
   next.step = state.step + 1;
   next.v = std::move(v);
   state = std::move(next);
@@ -205,7 +209,7 @@ EulerianReport EulerianSolver::Step(double end, EulerianState& state) {
     const StageTimer timer(profile_, "advection of velocities");
     Carry(state.v, state.v, state, dt, v);
   }
-  if (report.problem == StepProblem::kNone) report.problem = Accelerate(state, dt, v, report);
+  if (report.problem == StepProblem::kNone) report.problem = Accelerate(state, {dt, stable}, v, report);
   if (report.problem == StepProblem::kNone) report.problem = Move(std::move(v), dt, state);
   if (report.problem == StepProblem::kNone && left <= stable) state.time = end;
   return report;

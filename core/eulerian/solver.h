@@ -39,15 +39,13 @@ class EulerianSolver {
   const NodalForces& nodes() const { return nodes_; }
   // Of each support, its force on the body in the mean of the last step [N].
   const std::vector<Vec3>& reactions() const { return reactions_; }
-  // Of each cell, the pressure that kept its volume in the last step [Pa], compression positive; NaN where there was
-  // none. Empty where volumes are left to the law, and before the first step.
-  const std::vector<double>& pressure() const { return pressure_; }
 
  private:
   StepProblem Prepare(const EulerianState& state, EulerianReport& report);
   double StableStep(const EulerianState& state) const;
   std::vector<std::int64_t> CellsAtSide() const;
-  StepProblem Accelerate(const EulerianState& state, double dt, std::vector<Vec3>& v, EulerianReport& report);
+  StepProblem Accelerate(const EulerianState& state, const StepLength& step, std::vector<Vec3>& v,
+                         EulerianReport& report);
   void Carry(const std::vector<Vec3>& field, const std::vector<Vec3>& v, const EulerianState& state, double dt,
              std::vector<Vec3>& result);
   StepProblem Move(std::vector<Vec3> v, double dt, EulerianState& state);
@@ -58,7 +56,7 @@ class EulerianSolver {
   EulerianCells cells_;  // scratch
   NodalForces nodes_;
   std::vector<Vec3> reactions_;
-  std::vector<double> pressure_;
+  std::vector<double> pressure_;  // of the step that is being made
 };
 
 }  // namespace fascicle

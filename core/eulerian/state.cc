@@ -21,6 +21,7 @@ void EulerianState::Save(ArchiveWriter& archive) const {
   const std::vector<std::int32_t> numbers(known.begin(), known.end());
   archive.PutInts("known", numbers);
   archive.PutVectors("surface", surface);
+  archive.PutDoubles("pressure", pressure);
   archive.PutVectors("plastic", Columns(plastic));
   archive.PutVectors("plastic_places", plastic_places);
 }
@@ -34,6 +35,7 @@ void EulerianState::Load(ArchiveReader& archive) {
   archive.GetInts("known", std::span(numbers));
   for (std::size_t n = 0; n < known.size(); ++n) known[n] = numbers[n] != 0 ? 1 : 0;
   archive.GetVectors("surface", std::span(surface));
+  archive.GetDoubles("pressure", std::span(pressure));
   std::vector<Vec3> columns = Columns(plastic);
   archive.GetVectors("plastic", std::span(columns));
   for (std::size_t k = 0; k < columns.size(); ++k) plastic[k / 3].col(static_cast<Eigen::Index>(k % 3)) = columns[k];

@@ -18,6 +18,8 @@ struct EulerianState {
   std::vector<Vec3> v;              // velocity [m/s]
   std::vector<std::uint8_t> known;  // of each node: whether X and v mean something
   std::vector<Vec3> surface;        // where the vertices of the material surface are [m]
+  // Of each cell, what kept its volume in the last step, compression positive [Pa]; NaN where nothing did.
+  std::vector<double> pressure;
   // At the nodes of PlasticGrid, of bodies that flow plastically: Fp^-1, and where these points of the material are
   // [m].
   std::vector<Mat3> plastic;

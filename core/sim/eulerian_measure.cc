@@ -14,19 +14,16 @@ namespace {
 constexpr double kReach = 2;
 
 // Stress of a cell, with the pressure that kept its volume [Pa].
-Mat3 StressOf(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
-              const EulerianSolver& solver, std::size_t cell) {
+Mat3 StressOf(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, std::size_t cell) {
   const FibreState fibre = FibreOf(body, state, body.grid.CellAt(cell));
   Mat3 sigma = CauchyStress(body, ElasticGradient(body, state, cells, cell), fibre);
-  if (!solver.pressure().empty() && std::isfinite(solver.pressure()[cell])) {
-    sigma -= solver.pressure()[cell] * Mat3::Identity();
-  }
+  if (std::isfinite(state.pressure[cell])) sigma -= state.pressure[cell] * Mat3::Identity();
   return sigma;
 }
 
 // What a field is in a cell, component by component.
 std::vector<double> CellValue(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
-                              const EulerianSolver& solver, OutputField field, std::size_t cell) {
+                              OutputField field, std::size_t cell) {
   const Vec3 along = cells.F[cell] * FibreOf(body, state, body.grid.CellAt(cell)).direction;
   switch (field) {
     case OutputField::kVolumeRatio:
@@ -36,7 +33,7 @@ std::vector<double> CellValue(const EulerianBody& body, const EulerianState& sta
     case OutputField::kFibreDirection:
       return {along[0], along[1], along[2]};
     default:
-      const Mat3 s = StressOf(body, state, cells, solver, cell);
+      const Mat3 s = StressOf(body, state, cells, cell);
       return {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
   }
 }
@@ -103,11 +100,11 @@ std::vector<double> VelocitiesOf(const EulerianBody& body, const EulerianState& 
 }
 
 std::vector<double> FieldValuesOf(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
-                                  const EulerianSolver& solver, OutputField field) {
+                                  OutputField field) {
   if (field == OutputField::kVelocity) return VelocitiesOf(body, state);
   std::vector<std::vector<double>> of_cell(cells.inside.size());
   const auto value_of = [&](std::size_t cell) -> const std::vector<double>& {
-    if (of_cell[cell].empty()) of_cell[cell] = CellValue(body, state, cells, solver, field, cell);
+    if (of_cell[cell].empty()) of_cell[cell] = CellValue(body, state, cells, field, cell);
     return of_cell[cell];
   };
   std::vector<double> values;
@@ -169,14 +166,14 @@ std::vector<double> MeasureEulerianSeries(const Scene& scene, const std::vector<
 }
 
 BodyFrame MeasureEulerianBody(const Scene& scene, const EulerianBody& body, const EulerianState& state,
-                              const EulerianSolver& solver, ThreadTeam& team) {
+                              ThreadTeam& team) {
   BodyFrame frame;
   frame.positions = state.surface;
   if (scene.output.fields.empty()) return frame;
   EulerianCells cells;
   UpdateCells(body, state, team, cells);
   for (const OutputField field : scene.output.fields) {
-    frame.fields.push_back(FieldOf(field, FieldLocation::kNode, FieldValuesOf(body, state, cells, solver, field)));
+    frame.fields.push_back(FieldOf(field, FieldLocation::kNode, FieldValuesOf(body, state, cells, field)));
   }
   return frame;
 }

@@ -22,7 +22,7 @@ std::vector<double> MeasureEulerianSeries(const Scene& scene, const std::vector<
 // Positions of the surface's vertices, and the fields that the scene asks for there: velocities interpolated, all
 // others the mean of the solid cells around a vertex.
 BodyFrame MeasureEulerianBody(const Scene& scene, const EulerianBody& body, const EulerianState& state,
-                              const EulerianSolver& solver, ThreadTeam& team);
+                              ThreadTeam& team);
 
 }  // namespace fascicle
 

@@ -69,7 +69,7 @@ class EulerianRun : public MethodRun {
   std::vector<BodyFrame> MeasureBodies() const override {
     std::vector<BodyFrame> frames;
     for (std::size_t b = 0; b < states_.size(); ++b) {
-      frames.push_back(MeasureEulerianBody(scene_, *bodies_[b], states_[b], solvers_[b], team_));
+      frames.push_back(MeasureEulerianBody(scene_, *bodies_[b], states_[b], team_));
     }
     return frames;
   }
