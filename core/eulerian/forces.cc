@@ -56,13 +56,18 @@ CellForce ForceOf(const EulerianBody& body, const EulerianState& state, const Eu
 // A node has at least that part of the mass of a whole cell, whatever the extrapolation takes away.
 constexpr double kLeastMass = 0.05;
 
+// Nodes nearer to the surface than that are outside [cells]: else round-off would tell for those that a surface along
+// the grid goes through.
+constexpr double kSkin = 1e-3;
+
 // Which nodes are inside, which are held, and whom the others follow.
 void SetLeaders(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, ThreadTeam& team,
                 NodalForces& nodes) {
   const std::size_t count = nodes.mass.size();
   nodes.support.assign(count, -1);
   nodes.inside.assign(count, 0);
-  for (std::size_t n = 0; n < count; ++n) nodes.inside[n] = nodes.mass[n] > 0 && cells.distance[n] < 0 ? 1 : 0;
+  const double skin = -kSkin * body.grid.spacing;
+  for (std::size_t n = 0; n < count; ++n) nodes.inside[n] = nodes.mass[n] > 0 && cells.distance[n] < skin ? 1 : 0;
   if (body.support_of) {
     team.For(count, 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {

@@ -197,31 +197,6 @@ Eigen::SparseMatrix<double> Stabilization(const EulerianBody& body, const Euleri
                                                        column.data(), value.data());
 }
 
-// The pressure of each row's first cell without what alternates: (1, 2, 1)/4 along each axis on which a cell has both
-// neighbours, which leaves linear fields as they are and takes alternating ones away.
-Eigen::VectorXd SmoothPressure(const EulerianGrid& grid, const std::vector<CellBlock>& blocks, const Numbering& numbers,
-                               const std::vector<double>& pressure) {
-  std::vector<double> smooth = pressure;
-  const std::array<std::size_t, 3> along = {1, static_cast<std::size_t>(grid.cells[0]),
-                                            static_cast<std::size_t>(grid.cells[0]) * grid.cells[1]};
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::vector<double> before = smooth;
-    for (const CellBlock& block : blocks) {
-      const std::size_t cell = block.front();
-      const std::int32_t at = grid.CellAt(cell)[axis];
-      if (at == 0 || at + 1 == grid.cells[axis]) continue;
-      const double mean = (before[cell - along[axis]] + 2 * before[cell] + before[cell + along[axis]]) / 4;
-      if (std::isfinite(mean)) smooth[cell] = mean;
-    }
-  }
-  Eigen::VectorXd rows = Eigen::VectorXd::Zero(numbers.rows);
-  for (std::size_t c = 0; c < blocks.size(); ++c) {
-    const double value = smooth[blocks[c].front()];
-    if (numbers.of_block[c] >= 0 && std::isfinite(value)) rows[numbers.of_block[c]] = value;
-  }
-  return rows;
-}
-
 // Which block of cells each row belongs to.
 std::vector<int> Groups(const EulerianBody& body, const std::vector<CellBlock>& blocks, const Numbering& numbers) {
   const GridIndex size = body.grid.cells;
@@ -255,8 +230,7 @@ void SetMasses(const NodalForces& nodes, const Numbering& numbers, const std::ve
 }  // namespace
 
 Projection ProjectVelocity(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes,
-                           const StepLength& step, const std::vector<double>& pressure, ThreadTeam& team,
-                           std::vector<Vec3>& velocity) {
+                           const StepLength& step, ThreadTeam& team, std::vector<Vec3>& velocity) {
   const double dt = step.dt;
   const std::vector<CellBlock> blocks = Blocks(body.grid, cells, team);
   std::vector<CellFluxes> fluxes(blocks.size());
@@ -273,9 +247,6 @@ Projection ProjectVelocity(const EulerianBody& body, const EulerianCells& cells,
   problem.volumes = VolumeRows(body, cells, blocks, numbers, fluxes, velocity, dt, team);
   problem.E = Stabilization(body, cells, blocks, numbers, step);
   problem.groups = Groups(body, blocks, numbers);
-  if (!pressure.empty()) {
-    problem.volumes.b += problem.E * (dt * SmoothPressure(body.grid, blocks, numbers, pressure));
-  }
   QpSolution solution;
   Projection result;
   result.report = SolveQp(problem, {.tolerance = kTolerance, .team = &team}, solution);

@@ -8,10 +8,7 @@ namespace fascicle {
 
 // v = argmin 1/2 (v - v*) . M (v - v*) where the volume of every solid cell changes as body.volume says and held nodes
 // move as they are made to [Fan 2013, 3.2, 3.11]:
-//   sum over nodes of V grad N . v + eps L (p - p') = V (1 - J)/(dt J), or 0,
-// where p' is the pressure of the last step without what alternates from cell to cell: the stabilization takes that
-// away, and leaves pressures alone that are smooth, which would else cost volume where they are large.
-//   pressure  of each cell in the last step [Pa]; NaN or empty: none
+//   sum over nodes of V grad N . v + eps L p = V (1 - J)/(dt J), or 0,
 //   velocity  v* of nodes inside, given velocities of held ones; the result. Others are not read.
 struct StepLength {
   double dt;      // [s]
@@ -23,8 +20,7 @@ struct Projection {
   std::vector<Vec3> held_impulses;  // of held nodes: what keeping volumes pushes them with in the step [N s]
 };
 Projection ProjectVelocity(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes,
-                           const StepLength& step, const std::vector<double>& pressure, ThreadTeam& team,
-                           std::vector<Vec3>& velocity);
+                           const StepLength& step, ThreadTeam& team, std::vector<Vec3>& velocity);
 
 }  // namespace fascicle
 

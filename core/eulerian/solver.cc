@@ -127,7 +127,7 @@ StepProblem EulerianSolver::Accelerate(const EulerianState& state, const StepLen
     }
   });
   if (body_->volume != VolumeTreatment::kNone) {
-    const Projection projection = ProjectVelocity(*body_, cells_, nodes_, step, state.pressure, *team_, v);
+    const Projection projection = ProjectVelocity(*body_, cells_, nodes_, step, *team_, v);
     const QpReport& qp = projection.report;
     report.minres_iterations = qp.minres_iterations.empty() ? 0 : qp.minres_iterations.back();
     if (qp.status != QpStatus::kSolved) return StepProblem::kNotSolved;
@@ -203,7 +203,8 @@ EulerianReport EulerianSolver::Step(double end, EulerianState& state) {
   const double stable = StableStep(state), left = end - state.time;
   const double least = kLeastStep * kCourant * body_->grid.spacing / WaveSpeedAtRest(*body_);
   if (!(stable >= least)) report.problem = StepProblem::kStepTooSmall;
-  const double dt = report.dt = std::min(stable, left);
+  // The last two steps before a frame are equally long: a very short one would upset pressures.
+  const double dt = report.dt = left <= stable ? left : std::min(stable, left / 2);
   std::vector<Vec3> v;
   if (report.problem == StepProblem::kNone) {
     const StageTimer timer(profile_, "advection of velocities");
