@@ -53,8 +53,9 @@ CellForce ForceOf(const EulerianBody& body, const EulerianState& state, const Eu
   return result;
 }
 
-// A node has at least that part of the mass of a whole cell, whatever the extrapolation takes away.
-constexpr double kLeastMass = 0.05;
+// A node keeps at least that part of its own mass, whatever the extrapolation takes away: at edges it takes more than
+// there is.
+constexpr double kLeastMass = 0.3;
 
 // Nodes nearer to the surface than that are outside [cells]: else round-off would tell for those that a surface along
 // the grid goes through.
@@ -91,8 +92,8 @@ void SetLeaders(const EulerianBody& body, const EulerianState& state, const Eule
   }
 }
 
-void HandToInside(const EulerianBody& body, NodalForces& nodes) {
-  const std::size_t count = nodes.mass.size();
+void HandToInside(NodalForces& nodes) {
+  const std::vector<double> own = nodes.mass;
   for (const NodalForces::Follower& follower : nodes.followers) {
     for (const NodeWeight& part : follower.leaders) {
       nodes.mass[part.node] += part.weight * nodes.mass[follower.node];
@@ -101,9 +102,8 @@ void HandToInside(const EulerianBody& body, NodalForces& nodes) {
     nodes.mass[follower.node] = 0;
     nodes.force[follower.node].setZero();
   }
-  const double least = kLeastMass * body.density * std::pow(body.grid.spacing, 3);
-  for (std::size_t n = 0; n < count; ++n) {
-    if (nodes.inside[n] != 0) nodes.mass[n] = std::max(nodes.mass[n], least);
+  for (std::size_t n = 0; n < own.size(); ++n) {
+    if (nodes.inside[n] != 0) nodes.mass[n] = std::max(nodes.mass[n], kLeastMass * own[n]);
   }
 }
 
@@ -191,7 +191,7 @@ void SetForces(const EulerianBody& body, const EulerianState& state, const Euler
   });
   if (body.vertex_forces) AddVertexForces(body, state, nodes);
   SetLeaders(body, state, cells, team, nodes);
-  HandToInside(body, nodes);
+  HandToInside(nodes);
   const Vec3 gravity = body.gravity_scale.At(state.time) * body.gravity;
   team.For(nodes.mass.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
