@@ -37,7 +37,8 @@ constexpr const char* kExamples =
   fascicle render 3f2a --out round.gif --turntable 48 --smooth    the eye goes round the last frame
 
 Styles: surface (shaded; --wireframe adds the edges, --smooth takes the steps of voxels away), wireframe (edges alone),
-volume (rays cast through the body), slices (the outline of the deformed bodies on slices of the scan).
+volume (rays cast through the body), slices (the outline of the deformed bodies on slices of the scan). Bodies of the
+eulerian method are surfaces: they have the styles surface and wireframe, and no --fibres.
 Needs no display: without one it draws on a virtual one (Xvfb).
 )";
 
@@ -140,6 +141,19 @@ PictureOptions PictureOf(const Options& options, const v1::Job& job, const v1::F
   return picture;
 }
 
+// Bodies of the eulerian method come as their surface alone: there is no inside to look into.
+void CheckCanBeSeen(const Options& options, const v1::Geometry& geometry) {
+  const bool inside = options.style == "volume" || options.style == "slices";
+  if (!inside && !options.fibres) return;
+  for (const v1::BodyGeometry& body : geometry.bodies()) {
+    if (body.triangles().empty()) continue;
+    throw CommandError::Invalid((inside ? "--style " + options.style : std::string("--fibres")) + ": the body `" +
+                                body.name() +
+                                "` is a surface, without elements inside; take the style surface or "
+                                "wireframe, and --colour for fields of fibres");
+  }
+}
+
 // The scan with what the bodies of a frame fill of it.
 void DrawOnScan(const Options& options, const v1::Geometry& geometry, const v1::Frame& frame,
                 const PictureOptions& picture) {
@@ -193,6 +207,7 @@ int Render(const Options& options, const Context& context) {
     geometry = followed.geometry;
     frames.push_back(*followed.last_frame);
   }
+  CheckCanBeSeen(options, geometry);
   const PictureOptions picture = PictureOf(options, job, frames.back());
   if (options.style == "slices") {
     DrawOnScan(options, geometry, frames.back(), picture);

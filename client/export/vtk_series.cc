@@ -50,8 +50,9 @@ void SetMesh(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnst
   points->SetData(coordinates);
   grid.SetPoints(points);
   vtkNew<vtkCellArray> cells;
-  cells->AllocateExact(static_cast<vtkIdType>(shape.elements()),
-                       static_cast<vtkIdType>(4 * shape.tetrahedra.size() + 8 * shape.bricks.size() + 3 * shape.triangles.size()));
+  cells->AllocateExact(
+      static_cast<vtkIdType>(shape.elements()),
+      static_cast<vtkIdType>(4 * shape.tetrahedra.size() + 8 * shape.bricks.size() + 3 * shape.triangles.size()));
   for (const auto& t : shape.tetrahedra)
     cells->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}, vtkIdType{t[3]}});
   for (const auto& brick : shape.bricks) {

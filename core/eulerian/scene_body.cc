@@ -166,17 +166,17 @@ EulerianBody MakeEulerianBody(const Scene& scene, const Body& source, ThreadTeam
   return body;
 }
 
-void CheckEulerianBodies(const Scene& scene, std::int64_t max_cells, Problems& problems) {
+void CheckEulerianBodies(const Scene& scene, std::span<const std::string> sources, std::int64_t max_cells,
+                         Problems& problems) {
   const EulerianMethod& method = scene.eulerian;
   double cells = 0;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const TriangleMesh& surface = scene.bodies[i].surface;
     if (surface.nodes.empty()) continue;
-    const std::string path = JoinPath(IndexPath("bodies", i), "mesh");
     Problems own;
     CheckSolidSurface(surface, method.cell_size, own);
-    problems.Append(path, own);
-    CheckRoom(method, surface, path, problems);
+    problems.Append(sources[i], own);
+    CheckRoom(method, surface, sources[i], problems);
     cells += CellsOf(RoomOf(method, surface), method.cell_size).prod();
   }
   if (cells <= static_cast<double>(max_cells)) return;

@@ -2,6 +2,8 @@
 #define FASCICLE_CORE_EULERIAN_SCENE_BODY_H_
 
 #include <cstdint>
+#include <span>
+#include <string>
 
 #include "core/eulerian/body.h"
 #include "core/scene/scene.h"
@@ -19,7 +21,9 @@ EulerianBody MakeEulerianBody(const Scene& scene, const Body& body, ThreadTeam& 
 
 // What makes bodies unfit for their grids: surfaces that bound no solid, grids of more cells than `max_cells` together,
 // rooms that bodies are not in. Adds to `problems`, each with its path.
-void CheckEulerianBodies(const Scene& scene, std::int64_t max_cells, Problems& problems);
+//   sources  paths of what the surface of each body was made of, such as `bodies[0].mesh.box`
+void CheckEulerianBodies(const Scene& scene, std::span<const std::string> sources, std::int64_t max_cells,
+                         Problems& problems);
 
 }  // namespace fascicle
 

@@ -25,6 +25,17 @@ void CheckParts(const Body& body, const std::string& path, Problems& problems) {
   }
 }
 
+// Regions are places in the material here: a tag of the mesh file tells none.
+void CheckPlace(const Body& body, std::int32_t region, const std::string& path, Problems& problems) {
+  if (region < 0 || region >= static_cast<std::int32_t>(body.regions.size())) return;
+  const std::vector<Selector>& selectors = body.regions[region].selectors;
+  if (std::any_of(selectors.begin(), selectors.end(),
+                  [](const Selector& s) { return std::holds_alternative<TagSelector>(s); })) {
+    problems.Add(JoinPath(path, "region"), "a tag does not tell which points of the material are meant",
+                 "select the region by plane, box, sphere or side");
+  }
+}
+
 void CheckBody(const Body& body, const std::string& path, Problems& problems) {
   CheckParts(body, path, problems);
   if (body.damping.stiffness_proportional != 0 || body.damping.viscosity != 0) {
@@ -42,13 +53,10 @@ void CheckBody(const Body& body, const std::string& path, Problems& problems) {
       problems.Add(JoinPath(where, "axes"), "supports of the eulerian method hold all three axes",
                    "leave the axes out, or use the tet method");
     }
-    if (constraint.region < 0 || constraint.region >= static_cast<std::int32_t>(body.regions.size())) continue;
-    const std::vector<Selector>& selectors = body.regions[constraint.region].selectors;
-    if (std::any_of(selectors.begin(), selectors.end(),
-                    [](const Selector& s) { return std::holds_alternative<TagSelector>(s); })) {
-      problems.Add(JoinPath(where, "region"), "a tag does not tell which points of the body it holds",
-                   "select the region by plane, box, sphere or side");
-    }
+    CheckPlace(body, constraint.region, where, problems);
+  }
+  for (std::size_t k = 0; k < body.loads.size(); ++k) {
+    CheckPlace(body, body.loads[k].region, JoinPath(path, IndexPath("loads", k)), problems);
   }
 }
 

@@ -7,6 +7,7 @@ grpc::ServerUnaryReactor* ServerServiceImpl::GetServerInfo(grpc::CallbackServerC
   response->set_version(FASCICLE_VERSION);
   response->add_methods("tet");
   response->add_methods("voxel");
+  response->add_methods("eulerian");
   response->set_workers(context_.settings.workers);
   response->set_default_threads(context_.settings.default_threads);
   response->set_max_asset_size(context_.settings.max_asset_size);

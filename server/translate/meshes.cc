@@ -186,6 +186,8 @@ std::optional<TranslatedMesh> TranslateSurface(const v1::Body& body, const std::
              "take a coarser surface", problems)) {
     return std::nullopt;
   }
+  // Of an unknown size, it would be said to be too large for its grid, or too small.
+  if (body.unit() == v1::LENGTH_UNIT_UNSPECIFIED) return std::nullopt;
   TranslatedMesh result;
   result.surface = std::move(*read);
   for (Vec3& x : result.surface.nodes) x *= MetresIn(body.unit());
@@ -197,6 +199,13 @@ const char* MethodName(Method method) {
 }
 
 }  // namespace
+
+std::string SourcePath(const v1::Mesh& mesh, const std::string& body_path) {
+  const auto* field =
+      mesh.GetReflection()->GetOneofFieldDescriptor(mesh, v1::Mesh::descriptor()->FindOneofByName("source"));
+  const std::string path = JoinPath(body_path, "mesh");
+  return field == nullptr ? path : JoinPath(path, field->name());
+}
 
 std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, Method method, const std::string& body_path,
                                             const AssetReader& assets, std::int64_t& budget,

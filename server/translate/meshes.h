@@ -27,10 +27,12 @@ struct TranslatedMesh {
   }
 };
 
+// The path of the source that a body's mesh names, such as `bodies[0].mesh.box`.
+std::string SourcePath(const v1::Mesh& mesh, const std::string& body_path);
+
 // The mesh of a body (defaults filled in) in metres: tetrahedra, or voxels for the voxel method, or a surface for the
-// eulerian one. `budget` is the number
-// of elements that are left for it, and is reduced by those it has. Nothing when there is no mesh that other checks
-// could look at. Adds to `notes` what is noteworthy.
+// eulerian one. `budget` is the number of elements that are left for it, and is reduced by those it has. Nothing when
+// there is no mesh that other checks could look at. Adds to `notes` what is noteworthy.
 std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, Method method, const std::string& body_path,
                                             const AssetReader& assets, std::int64_t& budget,
                                             std::vector<std::string>& notes, Problems& problems);

@@ -42,9 +42,28 @@ struct TranslatedBody {
   bool complete = false;
 };
 
+// What differs from element to element means nothing to a body of the eulerian method, which has none: each is named,
+// and what is left holds for the whole body.
+v1::Body WithoutParts(v1::Body wire, const std::string& path, Problems& problems) {
+  for (const char* name :
+       {"region_materials", "element_parameters", "region_activations", "activation_scale", "initial_displacement"}) {
+    const auto* field = v1::Body::descriptor()->FindFieldByName(name);
+    const auto& reflection = *wire.GetReflection();
+    if (field->is_repeated() ? reflection.FieldSize(wire, field) == 0 : !reflection.HasField(wire, field)) continue;
+    reflection.ClearField(&wire, field);
+    problems.Add(JoinPath(path, name), "a body of the eulerian method has no elements to differ from each other",
+                 "leave it out, or use the tet method");
+  }
+  return wire;
+}
+
 // A surface has no tetrahedra to have fibres each: one direction holds in all of the body.
 FibreField FibresOfSurface(const v1::Body& wire, const std::string& path, Problems& problems) {
   const std::string fibres = JoinPath(path, "fibres");
+  if (wire.fibres().has_pennation()) {
+    problems.Add(JoinPath(fibres, "pennation"), "a surface without tetrahedra takes constant fibres without pennation",
+                 "turn the constant direction");
+  }
   if (wire.fibres().has_constant()) {
     return {ToDirection(wire.fibres().constant().direction(), JoinPath(fibres, "constant.direction"), problems)
                 .normalized()};
@@ -96,9 +115,10 @@ TranslatedBody TranslateBody(const v1::Body& wire, Method method, const std::str
                       ? FibresOfSurface(wire, path, problems)
                       : TranslateFibres(wire, path, mesh ? &*mesh : nullptr, regions, assets, body.notes, problems);
   }
-  TranslateMaterialParts(wire, path, elements, regions, assets, body, problems);
-  TranslateActivations(wire, path, duration, elements, regions, assets, body, problems);
-  TranslateInitialDisplacement(wire, path, elements, assets, body, problems);
+  const v1::Body parts = method == Method::kEulerian ? WithoutParts(wire, path, problems) : wire;
+  TranslateMaterialParts(parts, path, elements, regions, assets, body, problems);
+  TranslateActivations(parts, path, duration, elements, regions, assets, body, problems);
+  TranslateInitialDisplacement(parts, path, elements, assets, body, problems);
   body.regions = std::move(on_surface.regions.empty() ? regions.regions : on_surface.regions);
   if (wire.has_plasticity() && ObeysRules(wire.plasticity())) {
     body.plasticity = Plasticity{wire.plasticity().yield_stress(), wire.plasticity().relaxation_time()};
@@ -156,6 +176,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
 
   Names names("body");
   std::vector<bool> complete;
+  std::vector<std::string> sources;  // of the surfaces of bodies
   std::int64_t budget = limits.max_elements;
   for (int i = 0; i < filled.bodies_size(); ++i) {
     const std::string path = IndexPath("bodies", static_cast<std::size_t>(i));
@@ -163,6 +184,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     TranslatedBody body =
         TranslateBody(filled.bodies(i), result->method, path, filled.duration(), assets, budget, found, profile);
     complete.push_back(body.complete);
+    sources.push_back(SourcePath(filled.bodies(i).mesh(), path));
     if (!body.body.mesh.curved_edges.empty() && result->tet.element == ElementOrder::kLinear) {
       body.body.notes.push_back(JoinPath(path, "mesh") +
                                 ": linear elements leave out that edges of the mesh are curved");
@@ -173,7 +195,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
 
   if (result->method == Method::kEulerian && result->eulerian.cell_size > 0) {
     const StageTimer timer(profile, "surfaces");
-    CheckEulerianBodies(*result, limits.max_elements, found);
+    CheckEulerianBodies(*result, sources, limits.max_elements, found);
   }
   if (found.empty()) {
     const StageTimer timer(profile, "checks");

@@ -31,7 +31,7 @@ std::vector<std::string> AssetsOf(const v1::Scene& scene);
 
 // What a scene may cost. All bodies together.
 struct TranslateLimits {
-  std::int64_t max_elements = 20'000'000;        // tetrahedra or voxels; about 10 GB while it runs
+  std::int64_t max_elements = 20'000'000;        // tetrahedra, voxels or grid cells; about 10 GB while it runs
   std::int64_t max_frame_bytes = 1'000'000'000;  // a message of Protobuf must stay below 2 GiB
 };
 

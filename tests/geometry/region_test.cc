@@ -77,6 +77,31 @@ TEST_F(RegionTest, IntersectionIsWhatLiesInBoth) {
   EXPECT_TRUE(Intersection(side, Select(PlaneSelector{{0.1, 0, 0}, {-1, 0, 0}})).nodes.empty());
 }
 
+// Points of the material: of a plane those beyond it, of boxes and spheres those inside, of a side those not deeper
+// than its layer; all with a slack.
+TEST_F(RegionTest, PointsAreInWhatItsSelectorsSay) {
+  const auto contains = [&](const Selector& selector, const Vec3& x, double slack = 0.01) {
+    return RegionPoints(Select(selector), mesh_.nodes, slack).Contain(x);
+  };
+  const PlaneSelector plane{{0.6, 0, 0}, {3, 0, 0}};
+  EXPECT_TRUE(contains(plane, {0.8, 0.2, 0.2}));
+  EXPECT_TRUE(contains(plane, {0.595, 0.2, 0.2}));
+  EXPECT_FALSE(contains(plane, {0.58, 0.2, 0.2}));
+  const BoxSelector box{{0, 0, 0}, {0.2, 0.4, 0.4}};
+  EXPECT_TRUE(contains(box, {0.205, 0.1, 0.1}));
+  EXPECT_FALSE(contains(box, {0.22, 0.1, 0.1}));
+  const SphereSelector sphere{{0, 0, 0}, 0.2};
+  EXPECT_TRUE(contains(sphere, {0.1, 0.1, 0.1}));
+  EXPECT_FALSE(contains(sphere, {0.13, 0.13, 0.13}));
+  const SideSelector layer{{1, 0, 0}, 0.1, 0.15};
+  EXPECT_TRUE(contains(layer, {0.755, 0.2, 0.2}));
+  EXPECT_FALSE(contains(layer, {0.735, 0.2, 0.2}));
+  const Region both = Intersection(Select(plane), Select(BoxSelector{{0, 0, 0}, {0.9, 0.4, 0.2}}));
+  EXPECT_TRUE(RegionPoints(both, mesh_.nodes, 0.01).Contain({0.7, 0.2, 0.1}));
+  EXPECT_FALSE(RegionPoints(both, mesh_.nodes, 0.01).Contain({0.7, 0.2, 0.3}));
+  EXPECT_FALSE(RegionPoints(both, mesh_.nodes, 0.01).Contain({0.3, 0.2, 0.1}));
+}
+
 TEST(TriangleDistanceTest, IsThatToTheNearestPoint) {
   const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
   EXPECT_DOUBLE_EQ(SquaredDistance({0.2, 0.2, 0.5}, a, b, c), 0.25);                                 // above the inside

@@ -199,9 +199,10 @@ TEST_F(JobsTest, TheServerTellsAboutItself) {
   v1::ServerInfo info;
   ASSERT_TRUE(stubs_->server->GetServerInfo(&context, {}, &info).ok());
   EXPECT_FALSE(info.version().empty());
-  ASSERT_EQ(info.methods_size(), 2);
+  ASSERT_EQ(info.methods_size(), 3);
   EXPECT_EQ(info.methods(0), "tet");
   EXPECT_EQ(info.methods(1), "voxel");
+  EXPECT_EQ(info.methods(2), "eulerian");
   EXPECT_EQ(info.workers(), 2);
   EXPECT_EQ(info.max_asset_size(), std::int64_t{4} << 30);
 }
