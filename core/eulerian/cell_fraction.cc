@@ -5,6 +5,7 @@
 namespace fascicle {
 namespace {
 
+// Around the diagonal from corner 0 to corner 7.
 constexpr int kTets[6][4] = {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}};
 
 // How much of an edge from a, negative, to b, not negative, is negative.
@@ -26,9 +27,17 @@ double OfTetrahedron(std::array<double, 4> phi) {
 }  // namespace
 
 double NegativeFraction(const std::array<double, 8>& phi) {
+  const bool any_in = std::any_of(phi.begin(), phi.end(), [](double value) { return value < 0; });
+  const bool all_in = std::all_of(phi.begin(), phi.end(), [](double value) { return value < 0; });
+  if (all_in || !any_in) return all_in ? 1 : 0;
+  // Corner c ^ d in place of c turns the other diagonals into this one: the mean favours none.
   double sum = 0;
-  for (const auto& tet : kTets) sum += OfTetrahedron({phi[tet[0]], phi[tet[1]], phi[tet[2]], phi[tet[3]]});
-  return sum / 6;
+  for (int d = 0; d < 4; ++d) {
+    for (const auto& tet : kTets) {
+      sum += OfTetrahedron({phi[tet[0] ^ d], phi[tet[1] ^ d], phi[tet[2] ^ d], phi[tet[3] ^ d]});
+    }
+  }
+  return sum / 24;
 }
 
 }  // namespace fascicle

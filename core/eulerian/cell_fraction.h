@@ -6,7 +6,8 @@
 namespace fascicle {
 
 // The part of a cell where a function is negative, in [0, 1]: exact for one that is linear in each of the six
-// tetrahedra around the diagonal from corner 0 to corner 7. phi: at the corners, numbered as EulerianGrid::Corner does.
+// tetrahedra around a diagonal, in the mean of the four diagonals. phi: at the corners, numbered as
+// EulerianGrid::Corner does.
 double NegativeFraction(const std::array<double, 8>& phi);
 
 }  // namespace fascicle

@@ -4,6 +4,7 @@
 
 #include "core/eulerian/advection.h"
 #include "core/eulerian/extrapolation.h"
+#include "core/eulerian/momentum.h"
 #include "core/eulerian/plasticity.h"
 #include "core/eulerian/surface.h"
 #include "core/eulerian/wave_speed.h"
@@ -196,6 +197,14 @@ StepProblem EulerianSolver::Move(std::vector<Vec3> v, double dt, EulerianState& 
   return StepProblem::kNone;
 }
 
+// Gives a body that nothing holds the momentum that it should have, which is returned.
+Resultant EulerianSolver::Conserve(const EulerianState& state, std::vector<Vec3>& v) const {
+  if (state.momentum_known == 0 || body_->supports > 0) return MomentumOf(body_->grid, nodes_, v);
+  const Resultant wanted = {state.momentum[0], state.momentum[1]};
+  SetMomentum(body_->grid, nodes_, wanted, state.known, v);
+  return wanted;
+}
+
 EulerianReport EulerianSolver::Step(double end, EulerianState& state) {
   EulerianReport report;
   report.problem = Prepare(state, report);
@@ -205,14 +214,20 @@ EulerianReport EulerianSolver::Step(double end, EulerianState& state) {
   if (!(stable >= least)) report.problem = StepProblem::kStepTooSmall;
   // The last two steps before a frame are equally long: a very short one would upset pressures.
   const double dt = report.dt = left <= stable ? left : std::min(stable, left / 2);
-  std::vector<Vec3> v;
+  std::vector<Vec3> v = state.v;
+  const Resultant momentum = Conserve(state, v);
+  const Resultant force = ForceOf(body_->grid, nodes_);
   if (report.problem == StepProblem::kNone) {
     const StageTimer timer(profile_, "advection of velocities");
-    Carry(state.v, state.v, state, dt, v);
+    const std::vector<Vec3> before = v;
+    Carry(before, before, state, dt, v);
   }
   if (report.problem == StepProblem::kNone) report.problem = Accelerate(state, {dt, stable}, v, report);
   if (report.problem == StepProblem::kNone) report.problem = Move(std::move(v), dt, state);
-  if (report.problem == StepProblem::kNone && left <= stable) state.time = end;
+  if (report.problem != StepProblem::kNone) return report;
+  if (left <= stable) state.time = end;
+  state.momentum_known = 1;
+  state.momentum = {momentum.sum + dt * force.sum, momentum.moment + dt * force.moment};
   return report;
 }
 

@@ -4,6 +4,7 @@
 #include "core/base/profile.h"
 #include "core/base/step_problem.h"
 #include "core/eulerian/forces.h"
+#include "core/eulerian/momentum.h"
 #include "core/eulerian/projection.h"
 
 namespace fascicle {
@@ -42,6 +43,7 @@ class EulerianSolver {
 
  private:
   StepProblem Prepare(const EulerianState& state, EulerianReport& report);
+  Resultant Conserve(const EulerianState& state, std::vector<Vec3>& v) const;
   double StableStep(const EulerianState& state) const;
   std::vector<std::int64_t> CellsAtSide() const;
   StepProblem Accelerate(const EulerianState& state, const StepLength& step, std::vector<Vec3>& v,

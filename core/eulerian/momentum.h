@@ -1,0 +1,23 @@
+#ifndef FASCICLE_CORE_EULERIAN_MOMENTUM_H_
+#define FASCICLE_CORE_EULERIAN_MOMENTUM_H_
+
+#include "core/eulerian/forces.h"
+
+namespace fascicle {
+
+// Sums over the nodes of a quantity, and of its moment about the origin of space: of momenta [kg m/s, kg m^2/s], or of
+// forces [N, N m].
+struct Resultant {
+  Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+};
+Resultant MomentumOf(const EulerianGrid& grid, const NodalForces& nodes, const std::vector<Vec3>& v);
+Resultant ForceOf(const EulerianGrid& grid, const NodalForces& nodes);
+
+// Adds the velocities of a rigid body to all known nodes, so that momentum and its moment are what they should be: what
+// advection and the passing of mass from node to node take of them, or add, would else turn a body that nothing turns.
+void SetMomentum(const EulerianGrid& grid, const NodalForces& nodes, const Resultant& wanted,
+                 const std::vector<std::uint8_t>& known, std::vector<Vec3>& v);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_EULERIAN_MOMENTUM_H_
