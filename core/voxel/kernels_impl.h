@@ -117,61 +117,90 @@ struct RunSum {
     }
   }
 
-  // y += the four corners' values of face modes f; only the first `count` lanes are of the run.
+  // y += the four corners' values of face modes f; only the first `count` lanes are of the run. Loops over corners are
+  // of nothing but whole vectors: compilers unroll those, and all stays in registers.
   [[gnu::always_inline]] static void AddFace(const Task& task, const VoxelRun& run, std::int32_t at, std::int32_t count,
                                              const FaceModes<L>& f) {
-    // Beyond the run stand zeros, which do no harm unless another thread is at work there.
-    const bool whole = count >= L::kLanes || run.node[3] + at + L::kLanes <= task.end_node;
+    L p[3][4];
     for (int d = 0; d < 3; ++d) {
       const L near = f.m[d][0] - f.m[d][2], far = f.m[d][0] + f.m[d][2];
       const L near_y = f.m[d][1] - f.m[d][3], far_y = f.m[d][1] + f.m[d][3];
-      const L p[4] = {near - near_y, near + near_y, far - far_y, far + far_y};
+      p[d][0] = near - near_y;
+      p[d][1] = near + near_y;
+      p[d][2] = far - far_y;
+      p[d][3] = far + far_y;
+    }
+    // Beyond the run stand zeros, which do no harm unless another thread is at work there.
+    if (count >= L::kLanes || run.node[3] + at + L::kLanes <= task.end_node) [[likely]] {
+      for (int d = 0; d < 3; ++d) {
+        for (int r = 0; r < 4; ++r) {
+          S* const y = task.y[d] + run.node[r] + at;
+          (L::Load(y) + p[d][r]).Store(y);
+        }
+      }
+      return;
+    }
+    S values[3][4][L::kLanes];
+    for (int d = 0; d < 3; ++d) {
+      for (int r = 0; r < 4; ++r) p[d][r].Store(values[d][r]);
+    }
+    for (int d = 0; d < 3; ++d) {
       for (int r = 0; r < 4; ++r) {
         S* const y = task.y[d] + run.node[r] + at;
-        if (whole) [[likely]] {
-          (L::Load(y) + p[r]).Store(y);
-        } else {
-          for (int k = 0; k < count; ++k) y[k] += p[r][k];
+        for (std::int32_t k = 0; k < count; ++k) y[k] += values[d][r][k];
+      }
+    }
+  }
+
+  // sum: face modes of the forces of bricks at + 0, 1, ..., and of the one before, on the faces on their left. left:
+  // displacements of these faces; carried: forces on the faces on the right. Both become those of the next bricks.
+  [[gnu::always_inline]] static void SumBricks(const Task& task, const VoxelRun& run, std::int32_t at,
+                                               FaceModes<L> (&left)[kFields], FaceModes<L>& carried,
+                                               FaceModes<L>& sum) {
+    FaceModes<L> next[kFields];
+    LoadFaces(task, run, at + L::kLanes, next);
+    L u[kFields][3][8], f[3][8];
+    for (int k = 0; k < kFields; ++k) {
+      for (int d = 0; d < 3; ++d) {
+        for (int m = 0; m < 4; ++m) {
+          const L right = NextLanes(left[k].m[d][m], next[k].m[d][m]);
+          if (m > 0) u[k][d][2 * m] = right + left[k].m[d][m];
+          u[k][d][2 * m + 1] = right - left[k].m[d][m];
         }
+      }
+      left[k] = next[k];
+    }
+    Brick::Forces(task, run, at, u, f);
+    for (int d = 0; d < 3; ++d) {
+      for (int m = 0; m < 4; ++m) {
+        const L odd = f[d][2 * m + 1];
+        const L on_right = m == 0 ? odd : f[d][2 * m] + odd;
+        const L on_left = m == 0 ? -odd : f[d][2 * m] - odd;
+        sum.m[d][m] = on_left + PreviousLanes(carried.m[d][m], on_right);
+        carried.m[d][m] = on_right;
       }
     }
   }
 
   [[gnu::always_inline]] static void AddRun(const Task& task, const VoxelRun& run) {
     const std::int32_t nodes = run.length + 1;
-    FaceModes<L> left[kFields], carried;
+    FaceModes<L> left[kFields], carried, sum;
     LoadFaces(task, run, 0, left);
     for (int d = 0; d < 3; ++d) {
       for (int m = 0; m < 4; ++m) carried.m[d][m] = L(0.0);
     }
-    for (std::int32_t at = 0; at < nodes; at += L::kLanes) {
+    std::int32_t at = 0;
+    for (; at < run.length; at += L::kLanes) {
       // Rows are too short for the processor to see where they lead.
       for (int d = 0; d < 3; ++d) __builtin_prefetch(task.x[d] + run.node[3] + at + kAhead);
-      FaceModes<L> next[kFields];
-      LoadFaces(task, run, at + L::kLanes, next);
-      L u[kFields][3][8], f[3][8];
-      for (int k = 0; k < kFields; ++k) {
-        for (int d = 0; d < 3; ++d) {
-          for (int m = 0; m < 4; ++m) {
-            const L right = NextLanes(left[k].m[d][m], next[k].m[d][m]);
-            if (m > 0) u[k][d][2 * m] = right + left[k].m[d][m];
-            u[k][d][2 * m + 1] = right - left[k].m[d][m];
-          }
-        }
-      }
-      Brick::Forces(task, run, at, u, f);
-      FaceModes<L> sum;
-      for (int d = 0; d < 3; ++d) {
-        for (int m = 0; m < 4; ++m) {
-          const L odd = f[d][2 * m + 1];
-          const L on_right = m == 0 ? odd : f[d][2 * m] + odd;
-          const L on_left = m == 0 ? -odd : f[d][2 * m] - odd;
-          sum.m[d][m] = on_left + PreviousLanes(carried.m[d][m], on_right);
-          carried.m[d][m] = on_right;
-        }
-      }
+      SumBricks(task, run, at, left, carried, sum);
       AddFace(task, run, at, nodes - at, sum);
-      for (int k = 0; k < kFields; ++k) left[k] = next[k];
+    }
+    if (at == nodes - 1) {  // bricks fill the lanes: the last nodes have none on their right
+      for (int d = 0; d < 3; ++d) {
+        for (int m = 0; m < 4; ++m) sum.m[d][m] = PreviousLanes(carried.m[d][m], L(0.0));
+      }
+      AddFace(task, run, at, 1, sum);
     }
   }
 

@@ -136,12 +136,6 @@ struct RotatedForces : TurnedBrick<L> {
 
   [[gnu::always_inline]] static void Forces(const Task& task, const VoxelRun& run, std::int32_t at,
                                             const L (&u)[1][3][8], L (&f)[3][8]) {
-    if (at >= run.length) {  // nothing but the last nodes
-      for (int d = 0; d < 3; ++d) {
-        for (int m = 1; m < 8; ++m) f[d][m] = L(0.0);
-      }
-      return;
-    }
     const auto inside = Base::Inside(run, at);
     L factor[3], x[3][8];
     Base::GradientFactors(task, factor);

@@ -4,12 +4,16 @@
 
 #include "../voxel/voxel_scenes.h"
 #include "ratio.h"
+#include "roofs.h"
 #include "voxel_matrix.h"
 
 namespace fascicle::bench {
 namespace {
 
 constexpr std::int32_t kSide = 64;
+// What a voxel takes in double precision: additions as compiled (82 multiplications can be made meanwhile), and its
+// share of a node: three numbers read, three written after they were read.
+constexpr double kAdditions = 145, kBytes = 72;
 
 // Mvoxels/s, the median of some rounds.
 template <class S>
@@ -24,7 +28,14 @@ void PrintSpeed(const char* name, const VoxelStiffness& stiffness, int threads) 
   std::printf("%s, %d threads: %.0f Mvoxels/s\n", name, threads, 1e-6 * mesh.voxels() / Median(times));
 }
 
+void PrintRoofs() {
+  const double additions = AdditionsPerSecond(), bytes = TriadBytesPerSecond();
+  std::printf("roofs of double, 1 thread: %.1f G additions/s, %.0f Mvoxels/s; memory %.1f GB/s, %.0f Mvoxels/s\n",
+              1e-9 * additions, 1e-6 * additions / kAdditions, 1e-9 * bytes, 1e-6 * bytes / kBytes);
+}
+
 int Main() {
+  PrintRoofs();
   const VoxelMesh mesh(testing::BoxGrid({kSide, kSide, kSide}, Vec3::Constant(1e-3)));
   const VoxelMaterial muscle = {3e4, 0.45};
   const VoxelStiffness stiffness(mesh, {muscle}, Dilatation::kFull);
