@@ -1,6 +1,7 @@
 #include "core/linalg/block_matrix.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace fascicle {
 
@@ -48,8 +49,13 @@ void IsolatePrescribed(const BlockPattern& pattern, const FreeComponents& free, 
 }
 
 void PatternBuilder::AddRow(std::vector<std::int32_t>& columns) {
+  // Repetitions first: there may be ten of each column, and sorting them takes most of the time.
+  const auto row = static_cast<std::int32_t>(pattern_.begin.size());
+  std::erase_if(columns, [&](std::int32_t column) {
+    if (column >= static_cast<std::int32_t>(last_row_.size())) last_row_.resize(column + 1, 0);
+    return std::exchange(last_row_[column], row) == row;
+  });
   std::sort(columns.begin(), columns.end());
-  columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
   pattern_.column.insert(pattern_.column.end(), columns.begin(), columns.end());
   pattern_.begin.push_back(static_cast<std::int32_t>(pattern_.column.size()));
 }

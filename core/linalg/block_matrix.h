@@ -50,11 +50,12 @@ void IsolatePrescribed(const BlockPattern& pattern, const FreeComponents& free, 
 // Builds a pattern row by row from unsorted columns with repetitions.
 class PatternBuilder {
  public:
-  void AddRow(std::vector<std::int32_t>& columns);  // leaves them sorted, each once
-  BlockPattern Take() { return std::move(pattern_); }
+  void AddRow(std::vector<std::int32_t>& columns);     // leaves them sorted, each once
+  BlockPattern Take() { return std::move(pattern_); }  // once, at the end
 
  private:
   BlockPattern pattern_;
+  std::vector<std::int32_t> last_row_;  // that had each column, from 1
 };
 
 template <class NodesOf>
