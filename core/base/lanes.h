@@ -119,7 +119,8 @@ struct Lanes {
   using Mask = LaneMask<typename Bits::Signed, Set, kWidth, kBytes>;
 
   Lanes() = default;
-  Lanes(double x) : v(Vector{} + static_cast<S>(x)) {}  // NOLINT: numbers in formulas are numbers in every lane
+  // x - 0 is x for every x, and takes no operation; 0 + x is not for x = -0.
+  Lanes(double x) : v(static_cast<S>(x) - Vector{}) {}  // NOLINT: numbers in formulas are numbers in every lane
   static Lanes Of(Vector v) {
     Lanes x;
     x.v = v;

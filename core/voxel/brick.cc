@@ -23,11 +23,13 @@ template <class S>
 BrickShape<S> ShapeOf(const Vec3& spacing) {
   BrickShape<S> shape;
   for (int d = 0; d < 3; ++d) {
-    const double a = std::sqrt(spacing.prod()) / (4 * spacing[d]);
+    const double a = std::sqrt(spacing.prod()) / (4 * spacing[d]), q = a / 3;
     shape.a[d] = static_cast<S>(a);
     shape.b[d] = static_cast<S>(a / std::sqrt(3.0));
-    shape.q[d] = static_cast<S>(a / 3);
+    shape.b_square[d] = static_cast<S>(a * a / 3);
+    shape.along[d] = static_cast<S>(q * q);
   }
+  for (int d = 0; d < 3; ++d) shape.across[d] = shape.along[(d + 1) % 3] + shape.along[(d + 2) % 3];
   return shape;
 }
 template BrickShape<double> ShapeOf(const Vec3&);

@@ -22,10 +22,12 @@ struct BrickModuli {
 };
 
 // What the spacing h [m] does: constant gradients a_d = sqrt(V)/(4 h_d), those that vary in one direction b =
-// a/sqrt(3), in two q = a/3 [m^(1/2)].
+// a/sqrt(3) [m^(1/2)], in two q = a/3. Products are here so that kernels need not make them for each voxel.
 template <class S>
 struct BrickShape {
-  S a[3], b[3], q[3];
+  S a[3], b[3];
+  S b_square[3];
+  S along[3], across[3];  // q_d^2, and the sum of the other two [m]
 };
 
 // Forces f of the modes of displacements u: f[component][mode]. Neither is read or written at kModeOne: a translation.
@@ -56,7 +58,7 @@ template <class T, class S>
     const T ug = u[g][kPair[d][g]], uh = u[h][kPair[d][h]];
     const T eg = b[g] * ug, eh = b[h] * uh;
     const T varying = moduli.lambda_out * (eg + eh);
-    const T shear = mu * T(shape.b[d] * shape.b[d]);  // du_g/dx_d, which varies along g alone
+    const T shear = mu * T(shape.b_square[d]);  // du_g/dx_d, which varies along g alone
     f[g][kPair[d][g]] = b[g] * (two_mu * eg + varying) + shear * ug;
     f[h][kPair[d][h]] = b[h] * (two_mu * eh + varying) + shear * uh;
   }
@@ -72,9 +74,7 @@ template <class T, class S>
   }
   const T stiff = two_mu + moduli.lambda_out;
   for (int d = 0; d < 3; ++d) {
-    const int g = (d + 1) % 3, h = (d + 2) % 3;
-    const S along = shape.q[d] * shape.q[d], across = shape.q[g] * shape.q[g] + shape.q[h] * shape.q[h];
-    f[d][kModeXYZ] = (stiff * T(along) + mu * T(across)) * u[d][kModeXYZ];
+    f[d][kModeXYZ] = (stiff * T(shape.along[d]) + mu * T(shape.across[d])) * u[d][kModeXYZ];
   }
 }
 

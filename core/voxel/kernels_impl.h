@@ -16,23 +16,35 @@
 // lanes.
 namespace fascicle {
 
-// Lanes 1, 2, ... of `a`, then the first of `b`.
-template <class L, int... kIndex>
-[[gnu::always_inline]] inline L NextLanesOf(L a, L b, std::integer_sequence<int, kIndex...>) {
-  return L::Of(__builtin_shufflevector(a.v, b.v, (kIndex + 1)...));
+// As many lanes as there are, of those of `a` and then those of `b`, from number kFirst on.
+template <int kFirst, class L, int... kIndex>
+[[gnu::always_inline]] inline L LanesFrom(L a, L b, std::integer_sequence<int, kIndex...>) {
+  return L::Of(__builtin_shufflevector(a.v, b.v, (kIndex + kFirst)...));
 }
+template <int kFirst, class L>
+[[gnu::always_inline]] inline L LanesFrom(L a, L b) {
+#if defined(__AVX512F__)
+  // Compilers take a permutation by numbers in a register, which overwrites one of its inputs.
+  if constexpr (L::kBytes == 64) {
+    const auto low = (__m512i)a.v, high = (__m512i)b.v;
+    if constexpr (sizeof(typename L::Scalar) == 8) {
+      return L::Of((typename L::Vector)_mm512_alignr_epi64(high, low, kFirst));
+    } else {
+      return L::Of((typename L::Vector)_mm512_alignr_epi32(high, low, kFirst));
+    }
+  }
+#endif
+  return LanesFrom<kFirst>(a, b, std::make_integer_sequence<int, L::kLanes>());
+}
+// Lanes 1, 2, ... of `a`, then the first of `b`.
 template <class L>
 [[gnu::always_inline]] inline L NextLanes(L a, L b) {
-  return NextLanesOf(a, b, std::make_integer_sequence<int, L::kLanes>());
+  return LanesFrom<1>(a, b);
 }
 // The last lane of `a`, then those of `b` but its last.
-template <class L, int... kIndex>
-[[gnu::always_inline]] inline L PreviousLanesOf(L a, L b, std::integer_sequence<int, kIndex...>) {
-  return L::Of(__builtin_shufflevector(a.v, b.v, (kIndex + L::kLanes - 1)...));
-}
 template <class L>
 [[gnu::always_inline]] inline L PreviousLanes(L a, L b) {
-  return PreviousLanesOf(a, b, std::make_integer_sequence<int, L::kLanes>());
+  return LanesFrom<L::kLanes - 1>(a, b);
 }
 
 // 0, 1, 2, ...
@@ -191,8 +203,11 @@ struct RunSum {
     }
     std::int32_t at = 0;
     for (; at < run.length; at += L::kLanes) {
-      // Rows are too short for the processor to see where they lead.
-      for (int d = 0; d < 3; ++d) __builtin_prefetch(task.x[d] + run.node[3] + at + kAhead);
+      // Rows are too short for the processor to see where they lead. The other two were read a row ago.
+      for (int d = 0; d < 3; ++d) {
+        __builtin_prefetch(task.x[d] + run.node[1] + at + kAhead);
+        __builtin_prefetch(task.x[d] + run.node[3] + at + kAhead);
+      }
       SumBricks(task, run, at, left, carried, sum);
       AddFace(task, run, at, nodes - at, sum);
     }
