@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_VOXEL_KERNELS_IMPL_H_
 #define FASCICLE_CORE_VOXEL_KERNELS_IMPL_H_
 
+#include <cstddef>
 #include <utility>
 
 #include "core/base/lanes.h"
@@ -113,13 +114,19 @@ struct RunSum {
     return task.x[d];
   }
 
-  [[gnu::always_inline]] static void LoadFaces(const Task& task, const VoxelRun& run, std::int32_t at,
+  // VoxelRun::node, as wide as addresses are: or each address of each step begins with a conversion.
+  struct Rows {
+    explicit Rows(const VoxelRun& run) : node{run.node[0], run.node[1], run.node[2], run.node[3]} {}
+    std::ptrdiff_t node[4];
+  };
+
+  [[gnu::always_inline]] static void LoadFaces(const Task& task, const Rows& rows, std::int32_t at,
                                                FaceModes<L> (&faces)[kFields]) {
     for (int k = 0; k < kFields; ++k) {
       for (int d = 0; d < 3; ++d) {
         const S* const x = ComponentOf(task, k, d) + at;
-        const L p0 = L::Load(x + run.node[0]), p1 = L::Load(x + run.node[1]);
-        const L p2 = L::Load(x + run.node[2]), p3 = L::Load(x + run.node[3]);
+        const L p0 = L::Load(x + rows.node[0]), p1 = L::Load(x + rows.node[1]);
+        const L p2 = L::Load(x + rows.node[2]), p3 = L::Load(x + rows.node[3]);
         const L near = p0 + p1, far = p2 + p3, near_y = p1 - p0, far_y = p3 - p2;
         faces[k].m[d][0] = near + far;
         faces[k].m[d][1] = near_y + far_y;
@@ -131,7 +138,7 @@ struct RunSum {
 
   // y += the four corners' values of face modes f; only the first `count` lanes are of the run. Loops over corners are
   // of nothing but whole vectors: compilers unroll those, and all stays in registers.
-  [[gnu::always_inline]] static void AddFace(const Task& task, const VoxelRun& run, std::int32_t at, std::int32_t count,
+  [[gnu::always_inline]] static void AddFace(const Task& task, const Rows& rows, std::int32_t at, std::int32_t count,
                                              const FaceModes<L>& f) {
     L p[3][4];
     for (int d = 0; d < 3; ++d) {
@@ -143,10 +150,10 @@ struct RunSum {
       p[d][3] = far + far_y;
     }
     // Beyond the run stand zeros, which do no harm unless another thread is at work there.
-    if (count >= L::kLanes || run.node[3] + at + L::kLanes <= task.end_node) [[likely]] {
+    if (count >= L::kLanes || rows.node[3] + at + L::kLanes <= task.end_node) [[likely]] {
       for (int d = 0; d < 3; ++d) {
         for (int r = 0; r < 4; ++r) {
-          S* const y = task.y[d] + run.node[r] + at;
+          S* const y = task.y[d] + rows.node[r] + at;
           (L::Load(y) + p[d][r]).Store(y);
         }
       }
@@ -158,7 +165,7 @@ struct RunSum {
     }
     for (int d = 0; d < 3; ++d) {
       for (int r = 0; r < 4; ++r) {
-        S* const y = task.y[d] + run.node[r] + at;
+        S* const y = task.y[d] + rows.node[r] + at;
         for (std::int32_t k = 0; k < count; ++k) y[k] += values[d][r][k];
       }
     }
@@ -166,11 +173,11 @@ struct RunSum {
 
   // sum: face modes of the forces of bricks at + 0, 1, ..., and of the one before, on the faces on their left. left:
   // displacements of these faces; carried: forces on the faces on the right. Both become those of the next bricks.
-  [[gnu::always_inline]] static void SumBricks(const Task& task, const VoxelRun& run, std::int32_t at,
+  [[gnu::always_inline]] static void SumBricks(const Task& task, const VoxelRun& run, const Rows& rows, std::int32_t at,
                                                FaceModes<L> (&left)[kFields], FaceModes<L>& carried,
                                                FaceModes<L>& sum) {
     FaceModes<L> next[kFields];
-    LoadFaces(task, run, at + L::kLanes, next);
+    LoadFaces(task, rows, at + L::kLanes, next);
     L u[kFields][3][8], f[3][8];
     for (int k = 0; k < kFields; ++k) {
       for (int d = 0; d < 3; ++d) {
@@ -194,10 +201,12 @@ struct RunSum {
     }
   }
 
-  [[gnu::always_inline]] static void AddRun(const Task& task, const VoxelRun& run) {
+  // The run is a copy: what is read of it stays in registers.
+  [[gnu::always_inline]] static void AddRun(const Task& task, const VoxelRun run) {
+    const Rows rows(run);
     const std::int32_t nodes = run.length + 1;
     FaceModes<L> left[kFields], carried, sum;
-    LoadFaces(task, run, 0, left);
+    LoadFaces(task, rows, 0, left);
     for (int d = 0; d < 3; ++d) {
       for (int m = 0; m < 4; ++m) carried.m[d][m] = L(0.0);
     }
@@ -205,17 +214,17 @@ struct RunSum {
     for (; at < run.length; at += L::kLanes) {
       // Rows are too short for the processor to see where they lead. The other two were read a row ago.
       for (int d = 0; d < 3; ++d) {
-        __builtin_prefetch(task.x[d] + run.node[1] + at + kAhead);
-        __builtin_prefetch(task.x[d] + run.node[3] + at + kAhead);
+        __builtin_prefetch(task.x[d] + rows.node[1] + at + kAhead);
+        __builtin_prefetch(task.x[d] + rows.node[3] + at + kAhead);
       }
-      SumBricks(task, run, at, left, carried, sum);
-      AddFace(task, run, at, nodes - at, sum);
+      SumBricks(task, run, rows, at, left, carried, sum);
+      AddFace(task, rows, at, nodes - at, sum);
     }
     if (at == nodes - 1) {  // bricks fill the lanes: the last nodes have none on their right
       for (int d = 0; d < 3; ++d) {
         for (int m = 0; m < 4; ++m) sum.m[d][m] = PreviousLanes(carried.m[d][m], L(0.0));
       }
-      AddFace(task, run, at, 1, sum);
+      AddFace(task, rows, at, 1, sum);
     }
   }
 
