@@ -7,13 +7,7 @@
 namespace fascicle {
 namespace {
 
-// The four patterns of corners that the gradient at the centre does not see: yz, zx, xy and xyz.
-constexpr int kPatterns = 4;
-int Pattern(int a, int c) {
-  const int x = (c & 1) != 0 ? 1 : -1, y = (c & 2) != 0 ? 1 : -1, z = (c & 4) != 0 ? 1 : -1;
-  return a == 0 ? y * z : a == 1 ? z * x : a == 2 ? x * y : x * y * z;
-}
-// Their stiffness: of a shear modulus, for a pattern as steep as a strain.
+// Of a shear modulus, for a pattern as steep as a strain.
 constexpr double kPatternStiffness = 0.1;
 
 // V sigma of a cell [J], its mass [kg], the force on it that is given [N], and what its patterns of the map push with
@@ -29,13 +23,11 @@ struct CellForce {
 // map in place of displacements]; X moves by -F^-1 v dt, so v is pushed by the F^-T of that energy's gradient.
 void SetPatterns(const EulerianBody& body, const EulerianState& state, const GridIndex& cell, const Mat3& F,
                  double volume, CellForce& force) {
-  const double h = body.grid.spacing;
-  const double shear = std::visit([](const auto& law) { return law.ShearModulus(); }, body.material);
   const Mat3 inverse_transpose = F.inverse().transpose();
   for (int a = 0; a < kPatterns; ++a) {
     Vec3 g = Vec3::Zero();
-    for (int c = 0; c < 8; ++c) g += Pattern(a, c) / 8.0 * state.X[body.grid.Corner(cell, c)];
-    force.pattern[a] = kPatternStiffness * shear * volume * 4 / (h * h) / 8 * inverse_transpose * g;
+    for (int c = 0; c < 8; ++c) g += CornerPattern(a, c) / 8.0 * state.X[body.grid.Corner(cell, c)];
+    force.pattern[a] = PatternStiffness(body, volume) / 8 * inverse_transpose * g;
   }
 }
 
@@ -144,6 +136,16 @@ void AddVertexForces(const EulerianBody& body, const EulerianState& state, Nodal
 
 }  // namespace
 
+int CornerPattern(int pattern, int c) {
+  const int x = (c & 1) != 0 ? 1 : -1, y = (c & 2) != 0 ? 1 : -1, z = (c & 4) != 0 ? 1 : -1;
+  return pattern == 0 ? y * z : pattern == 1 ? z * x : pattern == 2 ? x * y : x * y * z;
+}
+
+double PatternStiffness(const EulerianBody& body, double volume) {
+  const double shear = std::visit([](const auto& law) { return law.ShearModulus(); }, body.material);
+  return kPatternStiffness * shear * volume * 4 / (body.grid.spacing * body.grid.spacing);
+}
+
 FibreState FibreOf(const EulerianBody& body, const EulerianState& state, const GridIndex& cell) {
   if (!body.fibre) return {};
   return body.fibre(CentreValue(body.grid, state.X, cell), state.time);
@@ -185,7 +187,7 @@ void SetForces(const EulerianBody& body, const EulerianState& state, const Euler
         const CellForce& f = of_solid[solid];
         nodes.mass[n] += f.mass / 8;
         nodes.force[n] += f.given / 8 - f.stress * CornerGradient(c, grid.spacing);
-        for (int a = 0; a < kPatterns; ++a) nodes.force[n] += Pattern(a, c) * f.pattern[a];
+        for (int a = 0; a < kPatterns; ++a) nodes.force[n] += CornerPattern(a, c) * f.pattern[a];
       }
     }
   });

@@ -36,6 +36,12 @@ Mat3 ElasticGradient(const EulerianBody& body, const EulerianState& state, const
 // sigma = P Fe^T / det Fe [Pa]; without the pressure that preserves volumes.
 Mat3 CauchyStress(const EulerianBody& body, const Mat3& Fe, const FibreState& fibre);
 
+// The four patterns of corners that the gradient at the centre does not see: yz, zx, xy and xyz; +-1 at corner c.
+inline constexpr int kPatterns = 4;
+int CornerPattern(int pattern, int c);
+// Their stiffness k: an energy of 1/2 k |g|^2 for g = 1/8 sum of +-X [N/m].
+double PatternStiffness(const EulerianBody& body, double volume);
+
 // m = sum of rho0/J times an eighth of the solid part of each cell around a node; f = sum of -V sigma grad N, with
 // sigma = P F^T / J of the elastic F and V the solid part, of gravity, of given forces, and of damping [Fan 2013, 3.1].
 void SetForces(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, ThreadTeam& team,

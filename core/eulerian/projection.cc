@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+
+#include "core/eulerian/stiffness.h"
 
 namespace fascicle {
 namespace {
@@ -162,7 +165,7 @@ Eigen::SparseMatrix<double> Stabilization(const EulerianBody& body, const Euleri
   const EulerianGrid& grid = body.grid;
   std::vector<int> row_of(grid.cell_count(), -1);
   for (std::size_t c = 0; c < blocks.size(); ++c) row_of[blocks[c].front()] = numbers.of_block[c];
-  const double longer = step.stable / step.dt;
+  const double longer = step.waves / step.dt;
   const double weight = body.stabilization * longer * longer * grid.spacing / body.density;
   const std::array<std::ptrdiff_t, 3> along = {1, grid.cells[0],
                                                static_cast<std::ptrdiff_t>(grid.cells[0]) * grid.cells[1]};
@@ -229,10 +232,12 @@ void SetMasses(const NodalForces& nodes, const Numbering& numbers, const std::ve
 
 }  // namespace
 
-Projection ProjectVelocity(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes,
-                           const StepLength& step, ThreadTeam& team, std::vector<Vec3>& velocity) {
+Projection ProjectVelocity(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
+                           const NodalForces& nodes, const StepLength& step, ThreadTeam& team,
+                           std::vector<Vec3>& velocity) {
   const double dt = step.dt;
-  const std::vector<CellBlock> blocks = Blocks(body.grid, cells, team);
+  const std::vector<CellBlock> blocks =
+      body.volume == VolumeTreatment::kNone ? std::vector<CellBlock>() : Blocks(body.grid, cells, team);
   std::vector<CellFluxes> fluxes(blocks.size());
   team.For(fluxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
@@ -247,6 +252,15 @@ Projection ProjectVelocity(const EulerianBody& body, const EulerianCells& cells,
   problem.volumes = VolumeRows(body, cells, blocks, numbers, fluxes, velocity, dt, team);
   problem.E = Stabilization(body, cells, blocks, numbers, step);
   problem.groups = Groups(body, blocks, numbers);
+  std::optional<ElasticStiffness> stiffness;
+  if (body.implicit_elasticity) {
+    stiffness.emplace(body, state, cells, nodes, numbers.of_node, dt, team);
+    problem.p -= stiffness->OfHeld(velocity);
+    problem.added_diagonal = stiffness->Diagonal();
+    problem.add_product = [&](const Eigen::VectorXd& v, Eigen::VectorXd& product) {
+      stiffness->AddProduct(v, product);
+    };
+  }
   QpSolution solution;
   Projection result;
   result.report = SolveQp(problem, {.tolerance = kTolerance, .team = &team}, solution);

@@ -16,6 +16,7 @@ constexpr int kBand = 4;  // layers of nodes around the solid where the map is k
 // Velocities reach further than the map, which they carry.
 constexpr int kVelocityBand = kBand + 2;
 constexpr double kCourant = 0.4;       // of a cell, that waves go in a step
+constexpr double kImplicit = 10;       // times that, where elasticity is implicit
 constexpr double kMostTravel = 0.5;    // of a cell, that the solid goes in a step
 constexpr double kLeastStep = 1e-6;    // of that for waves at rest
 constexpr double kMostSurfaceGap = 1;  // cells that the map and its surface may be apart
@@ -68,15 +69,19 @@ EulerianState EulerianSolver::InitialState(const std::function<Vec3(const Vec3&)
   return state;
 }
 
-double EulerianSolver::StableStep(const EulerianState& state) const {
+StepLength EulerianSolver::StableStep(const EulerianState& state) const {
   double fastest = 0;
   for (std::size_t n = 0; n < state.v.size(); ++n) {
     if (nodes_.mass[n] > 0) fastest = std::max(fastest, state.v[n].norm());
   }
   const double h = body_->grid.spacing;
-  double step = body_->time_step.value_or(std::numeric_limits<double>::infinity());
-  if (fastest > 0) step = std::min(step, kMostTravel * h / fastest);
-  return std::min(step, kCourant * h / FastestWave(*body_, state, cells_, *team_));
+  StepLength step;
+  step.waves = kCourant * h / FastestWave(*body_, state, cells_, *team_);
+  step.stable = (body_->implicit_elasticity ? kImplicit : 1) * step.waves;
+  if (body_->time_step) step.stable = std::min(step.stable, *body_->time_step);
+  if (fastest > 0) step.stable = std::min(step.stable, kMostTravel * h / fastest);
+  if (body_->mass_damping > 0) step.stable = std::min(step.stable, 1 / body_->mass_damping);
+  return step;
 }
 
 std::vector<std::int64_t> EulerianSolver::CellsAtSide() const {
@@ -127,8 +132,8 @@ StepProblem EulerianSolver::Accelerate(const EulerianState& state, const StepLen
       }
     }
   });
-  if (body_->volume != VolumeTreatment::kNone) {
-    const Projection projection = ProjectVelocity(*body_, cells_, nodes_, step, *team_, v);
+  if (body_->volume != VolumeTreatment::kNone || body_->implicit_elasticity) {
+    const Projection projection = ProjectVelocity(*body_, state, cells_, nodes_, step, *team_, v);
     const QpReport& qp = projection.report;
     report.minres_iterations = qp.minres_iterations.empty() ? 0 : qp.minres_iterations.back();
     if (qp.status != QpStatus::kSolved) return StepProblem::kNotSolved;
@@ -209,11 +214,12 @@ EulerianReport EulerianSolver::Step(double end, EulerianState& state) {
   EulerianReport report;
   report.problem = Prepare(state, report);
   if (report.problem != StepProblem::kNone) return report;
-  const double stable = StableStep(state), left = end - state.time;
+  StepLength step = StableStep(state);
+  const double stable = step.stable, left = end - state.time;
   const double least = kLeastStep * kCourant * body_->grid.spacing / WaveSpeedAtRest(*body_);
   if (!(stable >= least)) report.problem = StepProblem::kStepTooSmall;
   // The last two steps before a frame are equally long: a very short one would upset pressures.
-  const double dt = report.dt = left <= stable ? left : std::min(stable, left / 2);
+  const double dt = step.dt = report.dt = left <= stable ? left : std::min(stable, left / 2);
   std::vector<Vec3> v = state.v;
   const Resultant momentum = Conserve(state, v);
   const Resultant force = ForceOf(body_->grid, nodes_);
@@ -222,7 +228,7 @@ EulerianReport EulerianSolver::Step(double end, EulerianState& state) {
     const std::vector<Vec3> before = v;
     Carry(before, before, state, dt, v);
   }
-  if (report.problem == StepProblem::kNone) report.problem = Accelerate(state, {dt, stable}, v, report);
+  if (report.problem == StepProblem::kNone) report.problem = Accelerate(state, step, v, report);
   if (report.problem == StepProblem::kNone) report.problem = Move(std::move(v), dt, state);
   if (report.problem != StepProblem::kNone) return report;
   if (left <= stable) state.time = end;

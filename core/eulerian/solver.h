@@ -44,7 +44,7 @@ class EulerianSolver {
  private:
   StepProblem Prepare(const EulerianState& state, EulerianReport& report);
   Resultant Conserve(const EulerianState& state, std::vector<Vec3>& v) const;
-  double StableStep(const EulerianState& state) const;
+  StepLength StableStep(const EulerianState& state) const;
   std::vector<std::int64_t> CellsAtSide() const;
   StepProblem Accelerate(const EulerianState& state, const StepLength& step, std::vector<Vec3>& v,
                          EulerianReport& report);

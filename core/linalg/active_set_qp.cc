@@ -57,12 +57,13 @@ void TakeMultipliers(const KktSystem& system, const KktSystem::Result& result, Q
   }
 }
 
-KktSystem::Result Solve(KktSystem& system, const QpSettings& settings, QpReport& report) {
+KktSystem::Result Solve(const QuadraticProgram& problem, KktSystem& system, const QpSettings& settings,
+                        QpReport& report) {
   KktSystem::Result result;
   if (settings.solver == KktSolver::kMinres) {
     result = system.SolveMinres(settings);
     report.minres_iterations.push_back(result.iterations);
-    if (result.ok || system.size() > kMostFactored) return result;
+    if (result.ok || system.size() > kMostFactored || problem.add_product) return result;
   }
   ++report.factored;
   return system.SolveDirect();
@@ -104,7 +105,7 @@ class Exchange {
 
 void SetResiduals(const QuadraticProgram& problem, const QpSolution& solution, const VectorXd& compliance,
                   QpReport& report) {
-  const VectorXd forces = problem.M * solution.v;
+  const VectorXd forces = problem.Forces(solution.v);
   VectorXd r = forces - problem.p;
   const auto subtract = [&r](const ConstraintRows& rows, const VectorXd& y) {
     if (rows.count() > 0) r -= rows.G.transpose() * y;
@@ -141,7 +142,7 @@ QpReport SolveQp(const QuadraticProgram& problem, const QpSettings& settings, Qp
   QpReport report;
   while (report.active_set_iterations < settings.max_active_set_iterations) {
     KktSystem system(problem, solution.active);
-    KktSystem::Result result = Solve(system, settings, report);
+    KktSystem::Result result = Solve(problem, system, settings, report);
     ++report.active_set_iterations;
     if (result.v.size() == 0) break;
     TakeMultipliers(system, result, solution);

@@ -3,6 +3,7 @@
 
 #include <Eigen/SparseCore>
 
+#include <functional>
 #include <vector>
 
 #include "core/linalg/row_products.h"
@@ -25,7 +26,18 @@ struct ConstraintRows {
 struct QuadraticProgram {
   Eigen::SparseMatrix<double> M;  // n x n, symmetric positive definite
   Eigen::VectorXd p;              // n
+  // Adds A v to a product M v, A symmetric and positive semidefinite, with its diagonal: then M + A stands for M, and
+  // only MINRES solves. Null: nothing.
+  std::function<void(const Eigen::VectorXd& v, Eigen::VectorXd& product)> add_product = nullptr;
+  Eigen::VectorXd added_diagonal = {};
   ConstraintRows equalities, volumes, inequalities;
+  // M v, or (M + A) v.
+  Eigen::VectorXd Forces(const Eigen::VectorXd& v) const {
+    Eigen::VectorXd product = M * v;
+    if (add_product) add_product(v, product);
+    return product;
+  }
+
   Eigen::SparseMatrix<double> E;  // of volumes: symmetric, positive semidefinite (eps L); empty: zero
   // Of volumes, for MINRES: the block of neighbours that each belongs to, counted from 0. Their multipliers are
   // corrected block by block together, so that far rows hear of each other at once [Nicolaides 1987]. Empty: none.

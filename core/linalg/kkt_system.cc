@@ -70,7 +70,9 @@ KktSystem::KktSystem(const QuadraticProgram& problem, const std::vector<bool>& a
     G_ = &stacked_;
     b_ = rows.b();
   }
-  inverse_mass_ = problem.M.diagonal().cwiseInverse();
+  inverse_mass_ = problem.M.diagonal();
+  if (problem.add_product) inverse_mass_ += problem.added_diagonal;
+  inverse_mass_ = inverse_mass_.cwiseInverse().eval();
   schur_ = Eigen::VectorXd::Zero(G_->rows());
   for (Eigen::Index i = 0; i < G_->rows(); ++i) {
     for (RowMatrix::InnerIterator entry(*G_, i); entry; ++entry) {
@@ -89,7 +91,7 @@ Eigen::VectorXd KktSystem::Side() const {
 void KktSystem::Apply(const Eigen::VectorXd& x, double hair_part, Eigen::VectorXd& y) const {
   const Eigen::Index n = problem_->p.size(), m = b_.size();
   y.resize(n + m);
-  y.head(n) = problem_->M * x.head(n) + G_->transpose() * x.tail(m);
+  y.head(n) = problem_->Forces(x.head(n)) + G_->transpose() * x.tail(m);
   y.tail(m) = *G_ * x.head(n);
   if (problem_->E.size() > 0) y.segment(n, volumes_) -= problem_->E * x.segment(n, volumes_);
   const Eigen::Index first = problem_->E.size() > 0 ? volumes_ : 0;
@@ -132,12 +134,13 @@ void KktSystem::Improve(double hair_part, Result& result) {
 }
 
 KktSystem::Result KktSystem::SolveMinres(const QpSettings& settings) const {
-  return IsDiagonal(problem_->M) && b_.size() > 0 ? SolveMultipliers(settings) : SolveWhole(settings);
+  return IsDiagonal(problem_->M) && !problem_->add_product && b_.size() > 0 ? SolveMultipliers(settings)
+                                                                            : SolveWhole(settings);
 }
 
 // transposed: G^T.
 bool KktSystem::IsGood(const Result& result, const RowMatrix& transposed, const QpSettings& settings) const {
-  const Eigen::VectorXd forces = problem_->M * result.v;
+  const Eigen::VectorXd forces = problem_->Forces(result.v);
   Eigen::VectorXd product;
   Product(transposed, result.y, settings.team, product);
   const double left = (forces - problem_->p - product).norm();
