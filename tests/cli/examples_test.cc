@@ -63,14 +63,15 @@ TEST_F(ExampleTest, NoneIsForgotten) {
   for (std::string line; std::getline(list, line);) names.insert(json::parse(line)["example"]);
   // The last four need real anatomy and are run in tests/verification; the isometric spindle takes the demonstration's
   // time.
-  EXPECT_THAT(names,
-              ::testing::UnorderedElementsAre(
-                  "bar_of_two_materials", "bar_tension", "bar_twist", "cantilever_gravity", "fusiform_bipennate",
-                  "fusiform_bspline", "fusiform_quasi_static", "rubber_bending", "graded_bar", "let_go", "mesh_file",
-                  "muscle_lifts", "partial_recruitment", "rubber_stretch", "sphere_hanging", "tendon_pull",
-                  "torus_bounce", "torus_ringing", "twitch", "two_compartments", "fusiform_isometric",
-                  "biceps_isometric", "biceps_femoris_isometric", "biceps_tendon", "triceps_tendon", "voxel_cantilever",
-                  "anconeus_loads", "anconeus_release", "anconeus_stern", "biceps_voxels"));
+  EXPECT_THAT(
+      names, ::testing::UnorderedElementsAre(
+                 "bar_of_two_materials", "bar_tension", "bar_twist", "cantilever_gravity", "fusiform_bipennate",
+                 "fusiform_bspline", "fusiform_quasi_static", "rubber_bending", "graded_bar", "let_go", "mesh_file",
+                 "muscle_lifts", "partial_recruitment", "rubber_stretch", "sphere_hanging", "tendon_pull",
+                 "torus_bounce", "torus_ringing", "twitch", "two_compartments", "fusiform_isometric",
+                 "biceps_isometric", "biceps_femoris_isometric", "biceps_tendon", "triceps_tendon", "voxel_cantilever",
+                 "anconeus_loads", "anconeus_release", "anconeus_stern", "biceps_voxels", "active_block", "ball_swings",
+                 "crushed_cube", "hanging_block", "plastic_block"));
 }
 
 // All values of a series, frame by frame.
@@ -103,6 +104,52 @@ TEST_F(ExampleTest, VoxelCantilever) {
       10 * std::pow(0.08, 3) / (3 * 1e9 * std::pow(0.01, 4) / 12) + 10 * 0.08 / (5.0 / 6 * 1e9 / 2.6 * 1e-4);
   EXPECT_NEAR(Final(summary, "probe/tip/z"), -beam, 0.015 * beam);
   EXPECT_NEAR(Final(summary, "beam/reaction/wall/z"), 10, 1e-5);
+}
+
+// The same block of tetrahedra (quadratic, quasi-static) sinks by 1.269 mm.
+TEST_F(ExampleTest, HangingBlock) {
+  const json summary = RunExample("hanging_block");
+  EXPECT_NEAR(Final(summary, "probe/bottom/z"), -1.269e-3, 0.03 * 1.269e-3);
+  EXPECT_NEAR(Final(summary, "block/reaction/top/z"), 8, 0.02 * 8);
+  EXPECT_NEAR(Final(summary, "block/volume_ratio"), 1.0063, 6e-4);
+}
+
+// The same block of tetrahedra (quadratic, quasi-static) shortens by 25.11 mm.
+TEST_F(ExampleTest, ActiveBlock) {
+  const json summary = RunExample("active_block");
+  EXPECT_NEAR(Final(summary, "probe/end/x"), -25.11e-3, 0.03 * 25.11e-3);
+  EXPECT_NEAR(Final(summary, "muscle/reaction/origin/x"), 0, 0.01);
+  EXPECT_NEAR(Final(summary, "muscle/volume_ratio"), 1, 3e-3);
+}
+
+TEST_F(ExampleTest, BallSwings) {
+  const json summary = RunExample("ball_swings");
+  EXPECT_NEAR(Final(summary, "probe/bottom/x"), 0.03, 1e-3);
+  EXPECT_GT(summary["series"]["probe/bottom/x"]["max"], 0.031) << "it swings beyond";
+  EXPECT_NEAR(Final(summary, "ball/reaction/top/z"), 1000 * 2.59e-4 * 9.81, 0.1);
+  EXPECT_GT(summary["series"]["ball/volume_ratio"]["min"], 0.997);
+  EXPECT_LT(summary["series"]["ball/volume_ratio"]["max"], 1.003);
+}
+
+TEST_F(ExampleTest, PlasticBlock) {
+  const json summary = RunExample("plastic_block");
+  EXPECT_NEAR(Final(summary, "probe/side/x"), -0.011, 0.002);
+  EXPECT_GT(summary["series"]["block/volume_ratio"]["min"], 0.998);
+  EXPECT_LT(summary["series"]["block/volume_ratio"]["max"], 1.002);
+}
+
+// With larger cells: as it is, it takes a minute.
+TEST_F(ExampleTest, CrushedCube) {
+  const std::string out = folder_ / "out";
+  const json summary =
+      RunExample("crushed_cube", {"--out", out, "--set", "eulerian.cell_size=0.0125", "--set", "eulerian.margin=1.2",
+                                  "--set", "bodies[0].mesh.box.divisions=[12, 12, 12]"});
+  EXPECT_GT(summary["series"]["cube/volume_ratio"]["min"], 0.99);
+  EXPECT_LT(summary["series"]["cube/volume_ratio"]["max"], 1.01);
+  // Crushed, and back in its shape.
+  const std::vector<double> energy = SeriesOf(folder_ / "out/series.csv", "energy/elastic");
+  EXPECT_GT(*std::max_element(energy.begin(), energy.end()), 0.1);
+  EXPECT_LT(energy.back(), 0.02 * *std::max_element(energy.begin(), energy.end()));
 }
 
 TEST_F(ExampleTest, AnconeusLoads) {

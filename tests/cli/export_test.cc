@@ -23,6 +23,7 @@ namespace fascicle::client {
 namespace {
 
 namespace fs = std::filesystem;
+using ::fascicle::testing::Bytes;
 using ::fascicle::testing::ReadText;
 using ::fascicle::testing::SampleJob;
 using ::fascicle::testing::ScratchFolder;
@@ -74,6 +75,44 @@ TEST(VtkSeriesWriter, WritesWhatVtkReadsBack) {
   }
 }
 
+// Bodies of the eulerian method: triangles, and every field at the nodes.
+TEST(VtkSeriesWriter, WritesSurfacesAsTriangles) {
+  v1::Geometry geometry;
+  v1::BodyGeometry& body = *geometry.add_bodies();
+  body.set_name("skin");
+  const std::vector<double> positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const std::vector<std::uint32_t> triangles = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
+  body.set_positions(Bytes(positions));
+  body.set_triangles(Bytes(triangles));
+  v1::Frame frame;
+  v1::BodyFrame& of_body = *frame.add_bodies();
+  of_body.set_positions(Bytes(positions));
+  v1::FieldValues& field = *of_body.add_fields();
+  field.set_name("cauchy_stress");
+  field.set_location(v1::FieldValues::LOCATION_NODE);
+  field.set_components(6);
+  field.set_values(Bytes(std::vector<double>(24, 2.5)));
+  const ScratchFolder folder;
+  VtkSeriesWriter writer(geometry, folder.path());
+  writer.Add(frame);
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName((folder / "frames/skin_000000.vtu").c_str());
+  reader->Update();
+  vtkUnstructuredGrid& grid = *reader->GetOutput();
+  EXPECT_EQ(grid.GetNumberOfPoints(), 4);
+  ASSERT_EQ(grid.GetNumberOfCells(), 4);
+  for (vtkIdType c = 0; c < 4; ++c) {
+    ASSERT_EQ(grid.GetCellType(c), 5);  // VTK_TRIANGLE
+    vtkIdType count;
+    const vtkIdType* nodes;
+    grid.GetCellPoints(c, count, nodes);
+    ASSERT_EQ(count, 3);
+    for (int n = 0; n < 3; ++n) EXPECT_EQ(nodes[n], triangles[static_cast<std::size_t>(3 * c + n)]);
+  }
+  ASSERT_NE(grid.GetPointData()->GetArray("cauchy_stress"), nullptr);
+  EXPECT_EQ(grid.GetPointData()->GetArray("cauchy_stress")->GetComponent(3, 5), 2.5);
+}
+
 TEST(VtkSeriesWriter, LeavesNoOtherFiles) {
   const SampleJob job;
   const ScratchFolder folder;
@@ -101,6 +140,9 @@ TEST(Decode, RefusesBytesThatDoNotFit) {
   EXPECT_THROW(DecodeGeometry(geometry), std::runtime_error);
   geometry = job.geometry();
   geometry.mutable_bodies(0)->mutable_fibres()->resize(24);
+  EXPECT_THROW(DecodeGeometry(geometry), std::runtime_error);
+  geometry = job.geometry();
+  geometry.mutable_bodies(0)->set_triangles(Bytes(std::vector<std::uint32_t>{0, 1, 100000}));
   EXPECT_THROW(DecodeGeometry(geometry), std::runtime_error);
   const BodyShape shape = DecodeGeometry(job.geometry())[0];
   v1::Frame frame = job.frame(1);

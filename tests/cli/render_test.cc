@@ -182,6 +182,51 @@ TEST_F(RenderTest, BricksAreDrawnInTheColoursOfTheirField) {
   EXPECT_NE(ReadPng(path).pixels, image.pixels);
 }
 
+// A cube of triangles whose upper side, coloured by its nodes, rises in frame 1.
+struct Triangles {
+  v1::Geometry geometry;
+  v1::Frame frame;
+
+  Triangles() {
+    std::vector<double> positions, moved, values;
+    for (int n = 0; n < 8; ++n) {
+      positions.insert(positions.end(), {0.01 * (n & 1), 0.01 * (n >> 1 & 1), 0.01 * (n >> 2)});
+      moved.insert(moved.end(), {positions[3 * n], positions[3 * n + 1], positions[3 * n + 2] * 1.5});
+      values.push_back(n >> 2);
+    }
+    const std::vector<std::uint32_t> triangles = {0, 3, 1, 0, 2, 3, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                                  2, 7, 3, 2, 6, 7, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+    v1::BodyGeometry& body = *geometry.add_bodies();
+    body.set_name("cube");
+    body.set_positions(Bytes(positions));
+    body.set_triangles(Bytes(triangles));
+    v1::BodyFrame& of_body = *frame.add_bodies();
+    of_body.set_positions(Bytes(moved));
+    v1::FieldValues& field = *of_body.add_fields();
+    field.set_name("volume_ratio");
+    field.set_location(v1::FieldValues::LOCATION_NODE);
+    field.set_components(1);
+    field.set_values(Bytes(values));
+  }
+};
+
+TEST_F(RenderTest, SurfacesAreDrawnInTheColoursOfTheirNodes) {
+  const Triangles cube;
+  PictureOptions options = Small();
+  options.colour = "volume_ratio";
+  const std::string path = folder_ / "triangles.png";
+  DrawPicture(cube.geometry, cube.frame, options, path);
+  const Image image = ReadPng(path);
+  EXPECT_GT(image.Count(IsYellow), 300u);
+  EXPECT_GT(image.Count(IsViolet), 300u);
+  options.surface = false;
+  options.wireframe = true;
+  DrawPicture(cube.geometry, cube.frame, options, path);
+  const Image edges = ReadPng(path);
+  EXPECT_GT(edges.Count(IsYellow), 20u);
+  EXPECT_LT(edges.Count(IsYellow), image.Count(IsYellow) / 2);
+}
+
 TEST_F(RenderTest, PanelsShareEyeAndScale) {
   PictureOptions options = Small();
   options.size = {800, 300};
