@@ -252,6 +252,30 @@ TEST(EulerianSimulationTest, PlasticFlowStays) {
   EXPECT_LT(width(true), 0.045);
 }
 
+// The same equilibrium in fewer steps.
+TEST(EulerianSimulationTest, StiffBodiesTakeLongStepsImplicitly) {
+  Scene scene = Held();
+  scene.bodies[0].material = NeoHookean(std::array{1e5, 0.3});
+  scene.bodies[0].damping.mass_proportional = 200;
+  scene.output.fields.clear();
+  scene.duration = 0.1;
+  scene.output.frame_interval = 0.05;
+  const RunResult explicitly = RunScene(scene);
+  scene.eulerian.implicit_elasticity = true;
+  const RunResult implicitly = RunScene(scene);
+  ASSERT_EQ(explicitly.outcome.kind, Outcome::Kind::kSucceeded) << explicitly.outcome.failure.message;
+  ASSERT_EQ(implicitly.outcome.kind, Outcome::Kind::kSucceeded) << implicitly.outcome.failure.message;
+  EXPECT_LT(4 * implicitly.frames.back().step, explicitly.frames.back().step);
+  const std::vector<Vec3>& rest = scene.bodies[0].surface.nodes;
+  double most = 0, off = 0;
+  for (std::size_t n = 0; n < rest.size(); ++n) {
+    const Vec3& x = explicitly.frames.back().bodies[0].positions[n];
+    most = std::max(most, (x - rest[n]).norm());
+    off = std::max(off, (implicitly.frames.back().bodies[0].positions[n] - x).norm());
+  }
+  EXPECT_LT(off, 0.03 * most);
+}
+
 TEST(EulerianSimulationTest, TheRunEndsWhereNothingMoves) {
   Scene scene = SceneOf({Cube()});
   scene.output.settle_speed = 1e-6;
