@@ -177,7 +177,7 @@ KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const 
   const Eigen::VectorXd side = r;
   result.y = Eigen::VectorXd::Zero(b_.size());
   for (int k = 0; k < kMostRefinements && !result.ok; ++k) {
-    const MinresResult minres = Minres(apply, precondition, r, 0.1 * settings.tolerance,
+    const MinresResult minres = Minres(apply, precondition, r, (k == 0 ? 1 : 0.1) * settings.tolerance,
                                        settings.max_minres_iterations - result.iterations, step);
     result.iterations += minres.iterations;
     result.y += step;
@@ -206,7 +206,7 @@ KktSystem::Result KktSystem::SolveWhole(const QpSettings& settings) const {
   const Eigen::VectorXd side = Side();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n + m), r = side, step, product;
   for (int k = 0; k < kMostRefinements && !result.ok; ++k) {
-    const MinresResult minres = Minres(apply, precondition, r, 0.1 * settings.tolerance,
+    const MinresResult minres = Minres(apply, precondition, r, (k == 0 ? 1 : 0.1) * settings.tolerance,
                                        settings.max_minres_iterations - result.iterations, step);
     result.iterations += minres.iterations;
     x += step;
