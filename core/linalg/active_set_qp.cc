@@ -31,7 +31,7 @@ VectorXd Excess(const ConstraintRows& rows, const VectorXd& v) {
 // The largest of the terms that make constraints, for what "zero" means.
 double TermsOf(const ConstraintRows& rows, const VectorXd& v) {
   if (rows.count() == 0) return 0;
-  return std::max(Largest(rows.b), LargestTerms(rows.G, v));
+  return std::max(Largest(rows.b), LargestTerms(rows.G, v, nullptr));
 }
 
 // Diagonal of G (diag M)^-1 G^T: a multiplier times it is what the multiplier changes its constraint by.
@@ -141,7 +141,7 @@ QpReport SolveQp(const QuadraticProgram& problem, const QpSettings& settings, Qp
   Exchange exchange;
   QpReport report;
   while (report.active_set_iterations < settings.max_active_set_iterations) {
-    KktSystem system(problem, solution.active);
+    KktSystem system(problem, solution.active, settings.team);
     KktSystem::Result result = Solve(problem, system, settings, report);
     ++report.active_set_iterations;
     if (result.v.size() == 0) break;
@@ -154,7 +154,12 @@ QpReport SolveQp(const QuadraticProgram& problem, const QpSettings& settings, Qp
         system.TakeOutHair(result);
         TakeMultipliers(system, result, solution);
       }
-      SetResiduals(problem, solution, compliance, report);
+      if (result.iterations > 0 && inequalities == 0) {
+        report.stationarity = result.stationarity;
+        report.feasibility = result.feasibility;
+      } else {
+        SetResiduals(problem, solution, compliance, report);
+      }
       if (result.ok && report.feasibility <= settings.tolerance) report.status = QpStatus::kSolved;
       break;
     }

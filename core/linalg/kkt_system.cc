@@ -1,5 +1,8 @@
 #include "core/linalg/kkt_system.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "core/linalg/lower_triangle.h"
 #include "core/linalg/minres.h"
 #include "core/linalg/multiplier_preconditioner.h"
@@ -55,7 +58,7 @@ bool IsDiagonal(const Eigen::SparseMatrix<double>& M) {
 
 }  // namespace
 
-KktSystem::KktSystem(const QuadraticProgram& problem, const std::vector<bool>& active)
+KktSystem::KktSystem(const QuadraticProgram& problem, const std::vector<bool>& active, ThreadTeam* team)
     : problem_(&problem), volumes_(problem.volumes.count()) {
   if (problem.equalities.count() == 0 && problem.inequalities.count() == 0 && volumes_ > 0) {
     G_ = &problem.volumes.G;
@@ -74,11 +77,15 @@ KktSystem::KktSystem(const QuadraticProgram& problem, const std::vector<bool>& a
   if (problem.add_product) inverse_mass_ += problem.added_diagonal;
   inverse_mass_ = inverse_mass_.cwiseInverse().eval();
   schur_ = Eigen::VectorXd::Zero(G_->rows());
-  for (Eigen::Index i = 0; i < G_->rows(); ++i) {
-    for (RowMatrix::InnerIterator entry(*G_, i); entry; ++entry) {
-      schur_[i] += entry.value() * entry.value() * inverse_mass_[entry.col()];
+  const auto rows_of_schur = [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
+      for (RowMatrix::InnerIterator entry(*G_, i); entry; ++entry) {
+        schur_[i] += entry.value() * entry.value() * inverse_mass_[entry.col()];
+      }
     }
-  }
+  };
+  const auto count = static_cast<std::size_t>(G_->rows());
+  team != nullptr ? team->For(count, 512, rows_of_schur) : rows_of_schur(0, count);
   hair_ = kHair * schur_;
 }
 
@@ -139,18 +146,23 @@ KktSystem::Result KktSystem::SolveMinres(const QpSettings& settings) const {
 }
 
 // transposed: G^T.
-bool KktSystem::IsGood(const Result& result, const RowMatrix& transposed, const QpSettings& settings) const {
+bool KktSystem::IsGood(Result& result, const RowMatrix& transposed, const QpSettings& settings) const {
   const Eigen::VectorXd forces = problem_->Forces(result.v);
   Eigen::VectorXd product;
   Product(transposed, result.y, settings.team, product);
-  const double left = (forces - problem_->p - product).norm();
-  if (!(left <= settings.tolerance * std::max(problem_->p.norm(), forces.norm()))) return false;
-  if (b_.size() == 0) return true;
-  Product(*G_, result.v, settings.team, product);
-  product -= b_;
-  if (problem_->E.size() > 0) product.head(volumes_) += problem_->E * result.y.head(volumes_);
-  const double terms = std::max(b_.lpNorm<Eigen::Infinity>(), LargestTerms(*G_, result.v));
-  return product.lpNorm<Eigen::Infinity>() <= settings.tolerance * terms;
+  const double left = (forces - problem_->p - product).norm(), size = forces.norm() + problem_->p.norm();
+  result.stationarity = size > 0 ? left / size : 0;
+  const bool balances = left <= settings.tolerance * std::max(problem_->p.norm(), forces.norm());
+  result.feasibility = 0;
+  if (b_.size() > 0) {
+    Product(*G_, result.v, settings.team, product);
+    product -= b_;
+    if (problem_->E.size() > 0) product.head(volumes_) += problem_->E * result.y.head(volumes_);
+    const double terms = std::max(
+        {b_.lpNorm<Eigen::Infinity>(), LargestTerms(*G_, result.v, settings.team), std::numeric_limits<double>::min()});
+    result.feasibility = product.lpNorm<Eigen::Infinity>() / terms;
+  }
+  return balances && result.feasibility <= settings.tolerance;
 }
 
 // (G M^-1 G^T + C) y = b - G M^-1 p, then v = M^-1 (p + G^T y).

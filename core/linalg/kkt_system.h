@@ -13,12 +13,13 @@ namespace fascicle {
 // diagonal of G (diag M)^-1 G^T for that zero, so that rows that depend on others do no harm. For this room alone.
 class KktSystem {
  public:
-  KktSystem(const QuadraticProgram& problem, const std::vector<bool>& active);
+  KktSystem(const QuadraticProgram& problem, const std::vector<bool>& active, ThreadTeam* team);
 
   // Solutions v, and multipliers y of the rows in their order.
   struct Result {
     bool ok = false;
-    int iterations = 0;  // of MINRES
+    int iterations = 0;                        // of MINRES
+    double stationarity = 0, feasibility = 0;  // of MINRES, as QpReport has them
     Eigen::VectorXd v, y;
   };
   // With the hair for C: then multipliers are unique, and their signs tell which inequalities are to be active.
@@ -37,8 +38,8 @@ class KktSystem {
   // M v = p + G^T y together with its multipliers, and v of these alone, where M is diagonal.
   Result SolveWhole(const QpSettings& settings) const;
   Result SolveMultipliers(const QpSettings& settings) const;
-  // Whether forces balance and constraints hold to a tolerance.
-  bool IsGood(const Result& result, const RowMatrix& transposed, const QpSettings& settings) const;
+  // Whether forces balance and constraints hold to a tolerance; sets how well they do.
+  bool IsGood(Result& result, const RowMatrix& transposed, const QpSettings& settings) const;
   // hair_part: 1 with the hair, 0 without.
   void Apply(const Eigen::VectorXd& x, double hair_part, Eigen::VectorXd& y) const;
   // Refines a solution by the factors.

@@ -29,14 +29,16 @@ inline void Product(const RowMatrix& A, const Eigen::Ref<const Eigen::VectorXd>&
 }
 
 // The largest sum over a row of |A_ij x_j|: what the terms of a constraint amount to.
-inline double LargestTerms(const RowMatrix& A, const Eigen::VectorXd& x) {
-  double largest = 0;
-  for (Eigen::Index i = 0; i < A.rows(); ++i) {
-    double sum = 0;
-    for (RowMatrix::InnerIterator entry(A, i); entry; ++entry) sum += std::abs(entry.value() * x[entry.col()]);
-    largest = std::max(largest, sum);
-  }
-  return largest;
+inline double LargestTerms(const RowMatrix& A, const Eigen::VectorXd& x, ThreadTeam* team) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(A.rows());
+  const auto rows = [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
+      for (RowMatrix::InnerIterator entry(A, i); entry; ++entry) sums[i] += std::abs(entry.value() * x[entry.col()]);
+    }
+  };
+  const auto count = static_cast<std::size_t>(A.rows());
+  team != nullptr ? team->For(count, 512, rows) : rows(0, count);
+  return sums.size() == 0 ? 0 : sums.maxCoeff();
 }
 
 }  // namespace fascicle

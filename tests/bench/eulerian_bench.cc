@@ -50,11 +50,15 @@ class Ball {
 };
 
 int Main() {
-  for (const int cells : {32, 64}) {
+  for (const int cells : {32, 64, 128}) {
     Ball two(cells, 2), one(cells, 1);
-    const std::string name = cells == 64 ? "eulerian_threads_2" : "eulerian_threads_2_32";
+    const std::string name = cells == 64 ? "eulerian_threads_2" : "eulerian_threads_2_" + std::to_string(cells);
     MedianRatio(
-        name, cells == 64 ? 3 : kRounds, [&] { two.Run(); }, [&] { one.Run(); }, {two.Kilocells(), "kcells"});
+        name,
+        cells == 32   ? kRounds
+        : cells == 64 ? 5
+                      : 1,
+        [&] { two.Run(); }, [&] { one.Run(); }, {two.Kilocells(), "kcells"});
     one.PrintStages(cells);
     two.PrintStages(cells);
   }
