@@ -5,6 +5,12 @@
 
 namespace fascicle {
 
+double MassOf(const NodalForces& nodes) {
+  double sum = 0;
+  for (const double mass : nodes.mass) sum += mass;
+  return sum;
+}
+
 Resultant MomentumOf(const EulerianGrid& grid, const NodalForces& nodes, const std::vector<Vec3>& v) {
   Resultant result;
   for (std::size_t n = 0; n < v.size(); ++n) {

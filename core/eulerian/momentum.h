@@ -10,6 +10,7 @@ namespace fascicle {
 struct Resultant {
   Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
 };
+double MassOf(const NodalForces& nodes);  // [kg]
 Resultant MomentumOf(const EulerianGrid& grid, const NodalForces& nodes, const std::vector<Vec3>& v);
 Resultant ForceOf(const EulerianGrid& grid, const NodalForces& nodes);
 

@@ -247,6 +247,13 @@ Projection ProjectVelocity(const EulerianBody& body, const EulerianState& state,
     }
   });
   const Numbering numbers = Number(nodes, fluxes);
+  Projection result;
+  result.pressure.assign(cells.inside.size(), std::numeric_limits<double>::quiet_NaN());
+  result.held_impulses.assign(velocity.size(), Vec3::Zero());
+  if (numbers.nodes == 0) {  // supports hold all of the body
+    result.report.status = QpStatus::kSolved;
+    return result;
+  }
   QuadraticProgram problem;
   SetMasses(nodes, numbers, velocity, problem);
   problem.volumes = VolumeRows(body, cells, blocks, numbers, fluxes, velocity, dt, team);
@@ -262,10 +269,7 @@ Projection ProjectVelocity(const EulerianBody& body, const EulerianState& state,
     };
   }
   QpSolution solution;
-  Projection result;
   result.report = SolveQp(problem, {.tolerance = kTolerance, .team = &team}, solution);
-  result.pressure.assign(cells.inside.size(), std::numeric_limits<double>::quiet_NaN());
-  result.held_impulses.assign(velocity.size(), Vec3::Zero());
   if (solution.v.size() == 0) return result;
   for (std::size_t n = 0; n < velocity.size(); ++n) {
     if (numbers.of_node[n] >= 0) velocity[n] = solution.v.segment<3>(3 * numbers.of_node[n]);

@@ -204,8 +204,10 @@ StepProblem EulerianSolver::Move(std::vector<Vec3> v, double dt, EulerianState& 
 
 // Gives a body that nothing holds the momentum that it should have, which is returned.
 Resultant EulerianSolver::Conserve(const EulerianState& state, std::vector<Vec3>& v) const {
-  if (state.momentum_known == 0 || body_->supports > 0) return MomentumOf(body_->grid, nodes_, v);
-  const Resultant wanted = {state.momentum[0], state.momentum[1]};
+  if (state.momentum_mass == 0 || body_->supports > 0) return MomentumOf(body_->grid, nodes_, v);
+  // Masses of cut cells are not exact, and come and go by a thousandth: velocities shall not.
+  const double part = MassOf(nodes_) / state.momentum_mass;
+  const Resultant wanted = {part * state.momentum[0], part * state.momentum[1]};
   SetMomentum(body_->grid, nodes_, wanted, state.known, v);
   return wanted;
 }
@@ -232,7 +234,7 @@ EulerianReport EulerianSolver::Step(double end, EulerianState& state) {
   if (report.problem == StepProblem::kNone) report.problem = Move(std::move(v), dt, state);
   if (report.problem != StepProblem::kNone) return report;
   if (left <= stable) state.time = end;
-  state.momentum_known = 1;
+  state.momentum_mass = MassOf(nodes_);
   state.momentum = {momentum.sum + dt * force.sum, momentum.moment + dt * force.moment};
   return report;
 }

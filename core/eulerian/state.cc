@@ -22,7 +22,7 @@ void EulerianState::Save(ArchiveWriter& archive) const {
   archive.PutInts("known", numbers);
   archive.PutVectors("surface", surface);
   archive.PutDoubles("pressure", pressure);
-  archive.PutInt("momentum_known", momentum_known);
+  archive.PutDouble("momentum_mass", momentum_mass);
   archive.PutVectors("momentum", momentum);
   archive.PutVectors("plastic", Columns(plastic));
   archive.PutVectors("plastic_places", plastic_places);
@@ -38,7 +38,7 @@ void EulerianState::Load(ArchiveReader& archive) {
   for (std::size_t n = 0; n < known.size(); ++n) known[n] = numbers[n] != 0 ? 1 : 0;
   archive.GetVectors("surface", std::span(surface));
   archive.GetDoubles("pressure", std::span(pressure));
-  momentum_known = archive.GetInt("momentum_known");
+  momentum_mass = archive.GetDouble("momentum_mass");
   archive.GetVectors("momentum", std::span(momentum));
   std::vector<Vec3> columns = Columns(plastic);
   archive.GetVectors("plastic", std::span(columns));

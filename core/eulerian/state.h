@@ -18,9 +18,10 @@ struct EulerianState {
   std::vector<Vec3> v;              // velocity [m/s]
   std::vector<std::uint8_t> known;  // of each node: whether X and v mean something
   std::vector<Vec3> surface;        // where the vertices of the material surface are [m]
-  // What the momentum of a body that nothing holds and its moment about the origin should be [kg m/s, kg m^2/s], once a
-  // step was made; 0 before, or after velocities were changed by hand, when it is taken from these.
-  std::int64_t momentum_known = 0;
+  // What the momentum of a body that nothing holds and its moment about the origin should be [kg m/s, kg m^2/s], with
+  // the mass of all nodes that it was found for [kg]: 0 before the first step, or after velocities were changed by
+  // hand, when it is taken from these.
+  double momentum_mass = 0;
   std::vector<Vec3> momentum = {Vec3::Zero(), Vec3::Zero()};
   // Of each cell, what kept its volume in the last step, compression positive [Pa]; NaN where nothing did.
   std::vector<double> pressure;

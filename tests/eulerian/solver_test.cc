@@ -53,6 +53,22 @@ TEST(EulerianSolver, TheSameBitsForAnyThreadsAndAfterALoad) {
   EXPECT_EQ(bits[0], bits[2]);
 }
 
+TEST(EulerianSolver, ABodyThatIsHeldAllOverRests) {
+  ThreadTeam team(1);
+  for (const bool implicit : {false, true}) {
+    EulerianBody body = MakeSolid(14, false, 1e4, 0.3, team);
+    body.volume = VolumeTreatment::kPreserved;
+    body.implicit_elasticity = implicit;
+    body.gravity = Vec3(0, 0, -9);
+    HoldAbove(-1, body);
+    EulerianSolver solver(body, team);
+    EulerianState state = solver.InitialState();
+    for (int k = 0; k < 3; ++k) ASSERT_EQ(solver.Step(1, state).problem, StepProblem::kNone);
+    EXPECT_NEAR(VolumeRatio(body, state), 1, 1e-12);
+    EXPECT_GT(solver.reactions()[0][2], 0.8 * 9);  // of a body of 1 kg
+  }
+}
+
 TEST(EulerianSolver, SaysThatTheSolidLeavesItsGridAndKeepsTheState) {
   ThreadTeam team(1);
   const EulerianBody body = MakeSolid(16, true, 1e4, 0.3, team);

@@ -126,7 +126,7 @@ TEST(EulerianVerification, WhatIsPlasticConvergesAndDoesNotSmear) {
       const Vec3 x = body.grid.NodePosition(body.grid.NodeAt(n));
       state.v[n] = Vec3(0.05, 0, 0) + Vec3(0, 0, 2).cross(x);
     }
-    state.momentum_known = 0;
+    state.momentum_mass = 0;
     body.mass_damping = 0;
     while (state.time < 0.6) ASSERT_EQ(solver.Step(0.6, state).problem, StepProblem::kNone) << state.time;
     EXPECT_TRUE(plastic == state.plastic);
@@ -135,7 +135,7 @@ TEST(EulerianVerification, WhatIsPlasticConvergesAndDoesNotSmear) {
   std::printf("plastic: thickness left %.4f, %.4f, %.4f at 14^3, 20^3, 28^3\n", thickness[0], thickness[1],
               thickness[2]);
   EXPECT_LT(thickness[2], 0.97);
-  for (const double t : thickness) EXPECT_NEAR(t, thickness[2], 0.007);
+  for (const double t : thickness) EXPECT_NEAR(t, thickness[2], 0.01);
 }
 
 }  // namespace
