@@ -8,6 +8,7 @@
 #include "brick_bodies.h"
 #include "core/voxel/dynamic_solver.h"
 #include "core/voxel/scene_body.h"
+#include "same_bits.h"
 #include "tet_scenes.h"
 
 namespace fascicle {
@@ -193,17 +194,8 @@ TEST(VoxelSimulationTest, AnyThreadsAndRestartsGiveTheSameBits) {
     Scene scene = dynamic ? Release() : Bar(LinearElastic(std::array{kYoung, 0.3}));
     scene.duration = 0.02;
     scene.output.frame_interval = 0.004;
-    const RunResult reference = RunScene(scene, 1);
-    ASSERT_EQ(reference.frames.size(), 6u);
-    const RunResult two = RunScene(scene, 2);
-    for (std::size_t f = 0; f < 6; ++f) EXPECT_EQ(two.frames[f].digest, reference.frames[f].digest) << dynamic;
-    Simulation restarted(std::make_shared<Scene>(scene), 2);
-    ASSERT_TRUE(restarted.Restore(reference.checkpoints[2]));
-    EXPECT_EQ(restarted.next_frame(), 3);
-    CollectingSink sink;
-    restarted.Run(sink, {});
-    ASSERT_EQ(sink.frames.size(), 3u);
-    for (std::size_t f = 0; f < 3; ++f) EXPECT_EQ(sink.frames[f].digest, reference.frames[3 + f].digest) << dynamic;
+    SCOPED_TRACE(dynamic);
+    ExpectAnyThreadsAndRestartsGiveTheSameBits(scene, 6);
   }
 }
 
