@@ -179,9 +179,7 @@ void SetForces(const EulerianBody& body, const EulerianState& state, const Euler
       const GridIndex at = grid.NodeAt(n);
       for (int c = 0; c < 8; ++c) {
         const GridIndex cell = {at[0] - (c & 1), at[1] - (c >> 1 & 1), at[2] - (c >> 2)};
-        bool exists = true;
-        for (int axis = 0; axis < 3; ++axis) exists &= cell[axis] >= 0 && cell[axis] < grid.cells[axis];
-        if (!exists) continue;
+        if (!grid.HasCell(cell)) continue;
         const std::int32_t solid = solid_of[grid.CellNumber(cell)];
         if (solid < 0) continue;
         const CellForce& f = of_solid[solid];

@@ -36,6 +36,12 @@ struct EulerianGrid {
     }
     return true;
   }
+  bool HasCell(const GridIndex& at) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (at[axis] < 0 || at[axis] >= cells[axis]) return false;
+    }
+    return true;
+  }
   Vec3 NodePosition(const GridIndex& at) const { return origin + spacing * Vec3(at[0], at[1], at[2]); }
   Vec3 CellCentre(const GridIndex& at) const { return NodePosition(at) + Vec3::Constant(0.5 * spacing); }
   // The eight corners of a cell: bit 0 of c is along x, 1 along y, 2 along z.

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/base/von_mises.h"
 #include "core/eulerian/forces.h"
 #include "core/eulerian/interpolation.h"
 #include "core/eulerian/surface.h"
@@ -14,11 +15,6 @@ namespace {
 
 // Nodes further outside than that are not asked for [spacings].
 constexpr double kReach = 1.8;
-
-double VonMisesOf(const Mat3& sigma) {
-  const Mat3 deviator = sigma - sigma.trace() / 3 * Mat3::Identity();
-  return std::sqrt(1.5) * deviator.norm();
-}
 
 // What flows away of an elastic gradient: V (S / det(S)^(1/3))^-gamma V^T.
 Mat3 FlowOf(const Mat3& Fe, double gamma) {
@@ -54,7 +50,7 @@ void FlowPlastically(const EulerianBody& body, double dt, ThreadTeam& team, Eule
       if (!here || !(here->gradient.determinant() > 0)) continue;
       const Mat3 Fe = here->gradient.inverse() * state.plastic[n];
       const FibreState fibre = body.fibre ? body.fibre(X, state.time) : FibreState{};
-      const double stress = VonMisesOf(CauchyStress(body, Fe, fibre));
+      const double stress = VonMises(CauchyStress(body, Fe, fibre));
       if (!(stress > body.plasticity->yield_stress)) continue;
       const double gamma = (1 - body.plasticity->yield_stress / stress) * part;
       state.plastic[n] = Unimodular(state.plastic[n] * FlowOf(Fe, gamma));

@@ -63,9 +63,7 @@ std::size_t RootOf(const EulerianGrid& grid, const EulerianCells& cells, std::si
   std::size_t root = cell;
   for (int n = 0; n < 27; ++n) {
     const GridIndex other = {at[0] - 1 + n % 3, at[1] - 1 + n / 3 % 3, at[2] - 1 + n / 9};
-    bool exists = true;
-    for (int axis = 0; axis < 3; ++axis) exists &= other[axis] >= 0 && other[axis] < grid.cells[axis];
-    if (!exists) continue;
+    if (!grid.HasCell(other)) continue;
     const std::size_t number = grid.CellNumber(other);
     if (cells.inside[number] >= kWhole && cells.inside[number] > cells.inside[root]) root = number;
   }

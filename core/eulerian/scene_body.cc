@@ -14,26 +14,15 @@ namespace {
 // Cells between a body at rest and the side of its grid.
 constexpr double kLeastRoom = 3;
 
-struct Extent {
-  explicit Extent(const std::vector<Vec3>& nodes) : lowest(nodes.front()), highest(nodes.front()) {
-    for (const Vec3& x : nodes) {
-      lowest = lowest.cwiseMin(x);
-      highest = highest.cwiseMax(x);
-    }
-  }
-  Vec3 lowest, highest;
-};
-
-Room RoomOf(const EulerianMethod& method, const TriangleMesh& surface) {
+Bounds RoomOf(const EulerianMethod& method, const TriangleMesh& surface) {
   if (method.room) return *method.room;
-  const Extent extent(surface.nodes);
-  const double margin =
-      std::max(method.margin * (extent.highest - extent.lowest).maxCoeff(), (kLeastRoom + 1) * method.cell_size);
-  return {extent.lowest - Vec3::Constant(margin), extent.highest + Vec3::Constant(margin)};
+  const Bounds body = BoundsOf(surface.nodes);
+  const double margin = std::max(method.margin * body.extent().maxCoeff(), (kLeastRoom + 1) * method.cell_size);
+  return {body.lowest - Vec3::Constant(margin), body.highest + Vec3::Constant(margin)};
 }
 
 // Numbers of cells as they are, whole or not: they may be too many for a grid.
-Vec3 CellsOf(const Room& room, double cell_size) {
+Vec3 CellsOf(const Bounds& room, double cell_size) {
   const Vec3 first = (room.lowest / cell_size).array().floor(), last = (room.highest / cell_size).array().ceil();
   return last - first;
 }
@@ -121,10 +110,10 @@ void SetFibres(const Body& source, EulerianBody& body) {
 
 void CheckRoom(const EulerianMethod& method, const TriangleMesh& surface, const std::string& path, Problems& problems) {
   if (!method.room) return;
-  const Extent extent(surface.nodes);
+  const Bounds body = BoundsOf(surface.nodes);
   const Vec3 side = Vec3::Constant(kLeastRoom * method.cell_size);
-  if (((extent.lowest - side - method.room->lowest).array() >= 0).all() &&
-      ((method.room->highest - side - extent.highest).array() >= 0).all()) {
+  if (((body.lowest - side - method.room->lowest).array() >= 0).all() &&
+      ((method.room->highest - side - body.highest).array() >= 0).all()) {
     return;
   }
   problems.Add(
@@ -135,7 +124,7 @@ void CheckRoom(const EulerianMethod& method, const TriangleMesh& surface, const 
 }  // namespace
 
 EulerianGrid GridOf(const EulerianMethod& method, const TriangleMesh& surface) {
-  const Room room = RoomOf(method, surface);
+  const Bounds room = RoomOf(method, surface);
   EulerianGrid grid;
   grid.spacing = method.cell_size;
   grid.origin = method.cell_size * (room.lowest / method.cell_size).array().floor().matrix();

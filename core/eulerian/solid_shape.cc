@@ -11,16 +11,6 @@ namespace {
 constexpr double kMargin = 2;      // samples around the surface's box
 constexpr double kLeastCells = 4;  // across
 
-struct Box {
-  explicit Box(const std::vector<Vec3>& nodes) : lowest(nodes[0]), highest(nodes[0]) {
-    for (const Vec3& node : nodes) {
-      lowest = lowest.cwiseMin(node);
-      highest = highest.cwiseMax(node);
-    }
-  }
-  Vec3 lowest, highest;
-};
-
 // Edges that do not have one triangle on either side.
 std::size_t OpenEdges(const TriangleMesh& surface) {
   std::map<std::array<std::int32_t, 2>, int> sides;
@@ -37,10 +27,7 @@ std::size_t OpenEdges(const TriangleMesh& surface) {
 }  // namespace
 
 SolidShape::SolidShape(TriangleMesh surface, double spacing, ThreadTeam& team)
-    : surface_(std::move(surface)), volume_(EnclosedVolume(surface_)) {
-  const Box box(surface_.nodes);
-  lowest_ = box.lowest;
-  highest_ = box.highest;
+    : surface_(std::move(surface)), bounds_(BoundsOf(surface_.nodes)), volume_(EnclosedVolume(surface_)) {
   samples_ = MaterialGrid(spacing);
   const TriangleTree tree(surface_);
   distance_.resize(samples_.node_count());
@@ -53,9 +40,9 @@ SolidShape::SolidShape(TriangleMesh surface, double spacing, ThreadTeam& team)
 EulerianGrid SolidShape::MaterialGrid(double spacing) const {
   EulerianGrid grid;
   grid.spacing = spacing;
-  grid.origin = lowest_ - Vec3::Constant(kMargin * spacing);
+  grid.origin = bounds_.lowest - Vec3::Constant(kMargin * spacing);
   for (int axis = 0; axis < 3; ++axis) {
-    grid.cells[axis] = static_cast<std::int32_t>(std::ceil((highest_[axis] - lowest_[axis]) / spacing + 2 * kMargin));
+    grid.cells[axis] = static_cast<std::int32_t>(std::ceil(bounds_.extent()[axis] / spacing + 2 * kMargin));
   }
   return grid;
 }
@@ -91,8 +78,7 @@ void CheckSolidSurface(const TriangleMesh& surface, double spacing, Problems& pr
     problems.Add("", "the surface cuts through itself at " + std::to_string(cuts) + " pairs of triangles",
                  "repair it first");
   }
-  const Box box(surface.nodes);
-  const double across = (box.highest - box.lowest).minCoeff() / spacing;
+  const double across = BoundsOf(surface.nodes).extent().minCoeff() / spacing;
   if (across < kLeastCells) {
     problems.Add("", "the solid is " + std::to_string(across) + " cells across; 4 are needed at least",
                  "take smaller cells");

@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/base/problems.h"
 #include "core/eulerian/grid.h"
+#include "core/geometry/bounds.h"
 #include "core/geometry/triangle_mesh.h"
 
 namespace fascicle {
@@ -27,7 +28,7 @@ class SolidShape {
 
  private:
   TriangleMesh surface_;
-  Vec3 lowest_, highest_;  // of the surface's nodes
+  Bounds bounds_;  // of the surface's nodes
   EulerianGrid samples_;
   std::vector<double> distance_;  // at the nodes of samples_
   double volume_ = 0;

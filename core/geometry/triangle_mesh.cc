@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/geometry/bounds.h"
 #include "core/geometry/surface_readers.h"
 #include "core/geometry/text_scanner.h"
 
@@ -83,15 +84,7 @@ double Area(const TriangleMesh& surface) {
   return area;
 }
 
-double Diagonal(const std::vector<Vec3>& nodes) {
-  if (nodes.empty()) return 0;
-  Vec3 lowest = nodes[0], highest = nodes[0];
-  for (const Vec3& node : nodes) {
-    lowest = lowest.cwiseMin(node);
-    highest = highest.cwiseMax(node);
-  }
-  return (highest - lowest).norm();
-}
+double Diagonal(const std::vector<Vec3>& nodes) { return BoundsOf(nodes).extent().norm(); }
 
 std::string KnownSurfaceExtensions() { return ".stl, .obj, .ply, .vtp"; }
 

@@ -10,6 +10,7 @@
 
 #include "core/base/curve.h"
 #include "core/base/problems.h"
+#include "core/geometry/bounds.h"
 #include "core/geometry/brick_mesh.h"
 #include "core/geometry/region.h"
 #include "core/geometry/tet_mesh.h"
@@ -174,15 +175,10 @@ enum class VolumeTreatment {
   kPreserved,       // div v = (1 - J)/(dt J), which does not [Fan 2013, 3.2]
 };
 
-// A box in space [m].
-struct Room {
-  Vec3 lowest, highest;
-};
-
 struct EulerianMethod {
-  double cell_size = 0;      // [m]
-  double margin = 0.5;       // of a body's largest extent
-  std::optional<Room> room;  // in place of the margin
+  double cell_size = 0;        // [m]
+  double margin = 0.5;         // of a body's largest extent
+  std::optional<Bounds> room;  // that bodies move in, in place of the margin [m]
   VolumeTreatment volume = VolumeTreatment::kPreserved;
   double stabilization = 0.05;
   bool implicit_elasticity = false;

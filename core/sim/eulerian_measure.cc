@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/base/von_mises.h"
 #include "core/eulerian/interpolation.h"
 #include "core/eulerian/surface.h"
 #include "core/sim/field_info.h"
@@ -47,9 +48,7 @@ std::vector<double> MeanAround(const EulerianGrid& grid, const EulerianCells& ce
   const GridIndex centre = grid.PlaceOf(x).cell;
   for (int n = 0; n < 125; ++n) {
     const GridIndex at = {centre[0] - 2 + n % 5, centre[1] - 2 + n / 5 % 5, centre[2] - 2 + n / 25};
-    bool exists = true;
-    for (int axis = 0; axis < 3; ++axis) exists &= at[axis] >= 0 && at[axis] < grid.cells[axis];
-    if (!exists) continue;
+    if (!grid.HasCell(at)) continue;
     const std::size_t cell = grid.CellNumber(at);
     const double weight = cells.inside[cell] * (kReach - (grid.CellCentre(at) - x).norm() / grid.spacing);
     if (!(weight > 0)) continue;
@@ -61,15 +60,16 @@ std::vector<double> MeanAround(const EulerianGrid& grid, const EulerianCells& ce
   return sum;
 }
 
+Mat3 Tensor(const std::vector<double>& s) {
+  return (Mat3() << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]).finished();
+}
+
 // From the mean tensor or vector of a vertex to the field's values.
 void AddValues(OutputField field, const std::vector<double>& mean, std::vector<double>& values) {
   if (field == OutputField::kVonMisesStress) {
-    const double pressure = (mean[0] + mean[1] + mean[2]) / 3;
-    double sum = 0;
-    for (int k = 0; k < 3; ++k) sum += (mean[k] - pressure) * (mean[k] - pressure) + 2 * mean[3 + k] * mean[3 + k];
-    values.push_back(std::sqrt(1.5 * sum));
+    values.push_back(VonMises(Tensor(mean)));
   } else if (field == OutputField::kPressure) {
-    values.push_back((mean[0] + mean[1] + mean[2]) / 3);
+    values.push_back(Tensor(mean).trace() / 3);
   } else if (field == OutputField::kFibreDirection) {
     const Vec3 direction = Vec3(mean[0], mean[1], mean[2]).normalized();
     values.insert(values.end(), direction.begin(), direction.end());

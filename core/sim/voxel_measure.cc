@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/base/von_mises.h"
 #include "core/materials/rotation.h"
 #include "core/sim/field_info.h"
 #include "core/sim/series.h"
@@ -39,11 +40,6 @@ std::vector<Mat3> StressesOf(const VoxelSceneBody& body, const VoxelField<double
     stresses.push_back(turn * sigma * turn.transpose());
   }
   return stresses;
-}
-
-double VonMises(const Mat3& s) {
-  const Mat3 deviator = s - s.trace() / 3 * Mat3::Identity();
-  return std::sqrt(1.5) * deviator.norm();
 }
 
 template <class Value>

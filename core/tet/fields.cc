@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/base/von_mises.h"
 #include "core/tet/points.h"
 
 namespace fascicle {
@@ -13,11 +14,6 @@ std::vector<double> Velocities(const TetBody& body, const NodalVector& v) {
   for (std::size_t n = body.node_begin; n < body.mesh_node_end; ++n)
     values.insert(values.end(), v[n].begin(), v[n].end());
   return values;
-}
-
-double VonMises(const Mat3& sigma) {
-  const Mat3 deviator = sigma - sigma.trace() / 3 * Mat3::Identity();
-  return std::sqrt(1.5 * deviator.squaredNorm());
 }
 
 // What a field is made of at one point of an element.

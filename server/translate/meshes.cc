@@ -6,6 +6,7 @@
 
 #include "core/geometry/mesh_checks.h"
 #include "core/geometry/mesh_io.h"
+#include "core/geometry/unused_nodes.h"
 #include "server/translate/built_in_shapes.h"
 #include "server/translate/images.h"
 #include "server/translate/values.h"
@@ -146,19 +147,8 @@ std::optional<TranslatedMesh> TranslateTetrahedra(const v1::Body& body, const st
 
 // The boundary of tetrahedra, with the nodes that it has.
 TriangleMesh BoundaryOf(const TetMesh& mesh) {
-  TriangleMesh surface;
-  std::vector<std::int32_t> number(mesh.nodes.size(), -1);
-  for (Triangle triangle : BoundaryTriangles(mesh)) {
-    for (std::int32_t& node : triangle) {
-      std::int32_t& own = number[node];
-      if (own < 0) {
-        own = static_cast<std::int32_t>(surface.nodes.size());
-        surface.nodes.push_back(mesh.nodes[node]);
-      }
-      node = own;
-    }
-    surface.triangles.push_back(triangle);
-  }
+  TriangleMesh surface = {mesh.nodes, BoundaryTriangles(mesh)};
+  DropUnusedNodes(surface.nodes, surface.triangles);
   return surface;
 }
 

@@ -126,17 +126,13 @@ void CheckFrameSize(const Output& output, const std::vector<Body>& bodies, std::
 std::int32_t NearestNode(const std::vector<Vec3>& nodes, const Vec3& point, const std::string& path,
                          Problems& problems) {
   std::int32_t nearest = 0;
-  Vec3 low = nodes.front(), high = low;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const Vec3& x = nodes[i];
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-    if ((x - point).squaredNorm() < (nodes[static_cast<std::size_t>(nearest)] - point).squaredNorm()) {
+    if ((nodes[i] - point).squaredNorm() < (nodes[static_cast<std::size_t>(nearest)] - point).squaredNorm()) {
       nearest = static_cast<std::int32_t>(i);
     }
   }
   const double distance = (nodes[static_cast<std::size_t>(nearest)] - point).norm();
-  if (!(distance <= (high - low).norm())) {
+  if (!(distance <= Diagonal(nodes))) {
     problems.Add(path, "is " + Text(distance) + " m away from the body, further than the body is large",
                  "probe points are in the body's own unit");
   }
@@ -192,13 +188,13 @@ VoxelMethod TranslateVoxelMethod(const v1::Scene& scene) {
 namespace {
 
 // Where bodies may move; nothing where it is not given, or wrong.
-std::optional<Room> TranslateRoom(const v1::EulerianMethod& method, Problems& problems) {
+std::optional<Bounds> TranslateRoom(const v1::EulerianMethod& method, Problems& problems) {
   if (method.lowest().empty() && method.highest().empty()) return std::nullopt;
   for (const auto& [name, size] : {std::pair("lowest", method.lowest_size()), {"highest", method.highest_size()}}) {
     if (size == 0) problems.Add(JoinPath("eulerian", name), "is missing beside the other corner", "give both, or none");
   }
   if (method.lowest_size() != 3 || method.highest_size() != 3) return std::nullopt;
-  const Room room = {ToVec3(method.lowest()), ToVec3(method.highest())};
+  const Bounds room = {ToVec3(method.lowest()), ToVec3(method.highest())};
   for (int axis = 0; axis < 3; ++axis) {
     if (room.lowest[axis] < room.highest[axis]) continue;
     problems.Add(JoinPath("eulerian", IndexPath("lowest", static_cast<std::size_t>(axis))),

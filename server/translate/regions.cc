@@ -72,17 +72,13 @@ std::string TagHint(const TranslatedMesh& translated, bool from_file) {
 
 // The body's extent in its own unit, for a selector that misses it.
 std::string ExtentHint(const TranslatedMesh& mesh, double metres) {
-  Vec3 low = mesh.nodes().front(), high = low;
-  for (const Vec3& x : mesh.nodes()) {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
+  const Bounds bounds = BoundsOf(mesh.nodes());
   const auto corner = [metres](const Vec3& x) {
     char text[96];
     std::snprintf(text, sizeof(text), "[%.6g, %.6g, %.6g]", x[0] / metres, x[1] / metres, x[2] / metres);
     return std::string(text);
   };
-  return "in its own unit, the body reaches from " + corner(low) + " to " + corner(high);
+  return "in its own unit, the body reaches from " + corner(bounds.lowest) + " to " + corner(bounds.highest);
 }
 
 void AddEmptyRegion(const v1::Body& body, const v1::Region& region, const TranslatedMesh& mesh, const std::string& path,
