@@ -16,10 +16,11 @@ enum class StepProblem {
   kNotConverged,  // the linear solve of the damping
   kUnstable,
   kStepTooSmall,
-  kNoEquilibrium,  // Newton's method of implicit and quasi-static steps
-  kNotSolved,      // the linear solve of voxels
-  kLeftGrid,       // a body has come to the side of its grid
-  kStopped         // as asked
+  kNoEquilibrium,       // Newton's method of implicit and quasi-static steps
+  kNotSolved,           // the linear solve of voxels
+  kLeftGrid,            // a body has come to the side of its grid
+  kVelocitiesNotFound,  // the linear solve of volumes, supports and implicit elasticity on grids
+  kStopped              // as asked
 };
 
 // Elements that a step failed at.

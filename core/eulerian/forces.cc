@@ -219,12 +219,4 @@ double KineticEnergy(const EulerianState& state, const NodalForces& nodes) {
   return sum;
 }
 
-Vec3 Momentum(const EulerianState& state, const NodalForces& nodes) {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t n = 0; n < nodes.mass.size(); ++n) {
-    if (nodes.mass[n] > 0) sum += nodes.mass[n] * state.v[n];
-  }
-  return sum;
-}
-
 }  // namespace fascicle

@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_EULERIAN_FORCES_H_
 #define FASCICLE_CORE_EULERIAN_FORCES_H_
 
+#include <algorithm>
 #include <vector>
 
 #include "core/eulerian/cells.h"
@@ -25,8 +26,31 @@ struct NodalForces {
   std::vector<Follower> followers;
   std::vector<std::int32_t> follower_of;
 
+  // Calls body(node, weight) for those whose velocities make that of a node: itself, or whom it follows.
+  template <class Body>
+  void ForMovers(std::size_t node, const Body& body) const {
+    if (mass[node] > 0) body(node, 1.0);
+    if (follower_of[node] < 0) return;
+    for (const NodeWeight& part : followers[follower_of[node]].leaders) body(part.node, part.weight);
+  }
   bool moves(std::size_t node) const { return inside[node] != 0 || support[node] >= 0 || follower_of[node] >= 0; }
 };
+
+// Sorts parts by their nodes and adds those of one node up.
+//   add(sum, part)  adds a part to another of the same node
+template <class Part, class Add>
+void MergeByNode(std::vector<Part>& parts, const Add& add) {
+  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.node < b.node; });
+  std::size_t count = 0;
+  for (const Part& part : parts) {
+    if (count > 0 && parts[count - 1].node == part.node) {
+      add(parts[count - 1], part);
+    } else {
+      parts[count++] = part;
+    }
+  }
+  parts.resize(count);
+}
 
 // The fibre and activation in a cell.
 FibreState FibreOf(const EulerianBody& body, const EulerianState& state, const GridIndex& cell);
@@ -50,7 +74,6 @@ void SetForces(const EulerianBody& body, const EulerianState& state, const Euler
 // Elastic energy of the solid [J].
 double ElasticEnergy(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells);
 double KineticEnergy(const EulerianState& state, const NodalForces& nodes);  // [J]
-Vec3 Momentum(const EulerianState& state, const NodalForces& nodes);         // [kg m/s]
 
 }  // namespace fascicle
 

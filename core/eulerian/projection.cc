@@ -31,26 +31,11 @@ void AddFluxes(const EulerianBody& body, const EulerianCells& cells, const Nodal
   const GridIndex at = body.grid.CellAt(cell);
   const double volume = cells.inside[cell] * std::pow(body.grid.spacing, 3);
   for (int c = 0; c < 8; ++c) {
-    const std::size_t corner = body.grid.Corner(at, c);
     const Vec3 flux = volume * CornerGradient(c, body.grid.spacing);
-    if (nodes.mass[corner] > 0) all.push_back({corner, flux});
-    const std::int32_t follower = nodes.follower_of[corner];
-    if (follower < 0) continue;
-    for (const NodeWeight& part : nodes.followers[follower].leaders) all.push_back({part.node, part.weight * flux});
+    nodes.ForMovers(body.grid.Corner(at, c), [&](std::size_t node, double weight) {
+      all.push_back({node, weight * flux});
+    });
   }
-}
-
-CellFluxes Merged(CellFluxes all) {
-  std::stable_sort(all.begin(), all.end(), [](const NodeFlux& a, const NodeFlux& b) { return a.node < b.node; });
-  CellFluxes merged;
-  for (const NodeFlux& part : all) {
-    if (!merged.empty() && merged.back().node == part.node) {
-      merged.back().flux += part.flux;
-    } else {
-      merged.push_back(part);
-    }
-  }
-  return merged;
 }
 
 // Cells whose volumes are kept together: one that is solid for the most part, and those beside it that are less.
@@ -155,8 +140,8 @@ ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, 
 }
 
 // eps L between blocks whose first cells share a face, as large as the volumes' own matrix there: h/rho times their
-// solid parts. A step that is cut short, so that it ends at a frame, gets more of it: what the stabilization does to
-// the volumes of a body at rest then does not depend on the step.
+// solid parts. The shorter the step beside that of waves, the more of it: what it does to the volumes of a body at rest
+// then does not depend on the step, and a step that a frame cuts short upsets nothing.
 Eigen::SparseMatrix<double> Stabilization(const EulerianBody& body, const EulerianCells& cells,
                                           const std::vector<CellBlock>& blocks, const Numbering& numbers,
                                           const StepLength& step) {
@@ -241,7 +226,8 @@ Projection ProjectVelocity(const EulerianBody& body, const EulerianState& state,
     for (std::size_t c = begin; c < end; ++c) {
       CellFluxes all;
       for (const std::size_t cell : blocks[c]) AddFluxes(body, cells, nodes, cell, all);
-      fluxes[c] = Merged(std::move(all));
+      MergeByNode(all, [](NodeFlux& sum, const NodeFlux& part) { sum.flux += part.flux; });
+      fluxes[c] = std::move(all);
     }
   });
   const Numbering numbers = Number(nodes, fluxes);
@@ -272,6 +258,7 @@ Projection ProjectVelocity(const EulerianBody& body, const EulerianState& state,
   for (std::size_t n = 0; n < velocity.size(); ++n) {
     if (numbers.of_node[n] >= 0) velocity[n] = solution.v.segment<3>(3 * numbers.of_node[n]);
   }
+  if (stiffness) stiffness->AddHeldImpulses(velocity, result.held_impulses);
   for (std::size_t c = 0; c < fluxes.size(); ++c) {
     if (numbers.of_block[c] < 0) continue;
     const double multiplier = solution.volumes[numbers.of_block[c]];

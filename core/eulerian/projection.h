@@ -6,20 +6,23 @@
 
 namespace fascicle {
 
-// v = argmin 1/2 (v - v*) . M (v - v*), with M + dt^2 K for the first M where elasticity is implicit, where the volume
-// of every solid cell changes as body.volume says and held nodes move as they are made to [Fan 2013, 3.2, 3.11]:
-//   sum over nodes of V grad N . v + eps L p = V (1 - J)/(dt J), or 0,
-//   velocity  v* of nodes inside, given velocities of held ones; the result. Others are not read.
 struct StepLength {
   double dt = 0;      // [s]
   double stable = 0;  // what it would be if no frame ended it [s]
   double waves = 0;   // what the fastest wave would allow [s]
 };
+
 struct Projection {
   QpReport report;
   std::vector<double> pressure;     // of each cell, in the mean of the step, compression positive [Pa]; NaN: none
-  std::vector<Vec3> held_impulses;  // of held nodes: what keeping volumes pushes them with in the step [N s]
+  std::vector<Vec3> held_impulses;  // of held nodes: what volumes and implicit elasticity push them with [N s]
 };
+
+// v = argmin 1/2 (v - v*) . M (v - v*), with M + dt^2 K for the first M where elasticity is implicit, where the volume
+// of solid cells changes as body.volume says and held nodes move as they are made to [Fan 2013, 3.2, 3.11]:
+//   sum over nodes of V grad N . v + eps L p = V (1 - J)/(dt J), or 0,
+// summed over the cells of a block: cells of little solid have no pressure of their own.
+//   velocity  v* of nodes inside, given velocities of held ones; the result. Others are not read.
 Projection ProjectVelocity(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
                            const NodalForces& nodes, const StepLength& step, ThreadTeam& team,
                            std::vector<Vec3>& velocity);

@@ -136,7 +136,7 @@ StepProblem EulerianSolver::Accelerate(const EulerianState& state, const StepLen
     const Projection projection = ProjectVelocity(*body_, state, cells_, nodes_, step, *team_, v);
     const QpReport& qp = projection.report;
     report.minres_iterations = qp.minres_iterations.empty() ? 0 : qp.minres_iterations.back();
-    if (qp.status != QpStatus::kSolved) return StepProblem::kNotSolved;
+    if (qp.status != QpStatus::kSolved) return StepProblem::kVelocitiesNotFound;
     for (std::size_t n = 0; n < v.size(); ++n) impulses[n] -= projection.held_impulses[n];
     pressure_ = projection.pressure;
   }
@@ -207,7 +207,7 @@ Resultant EulerianSolver::Conserve(const EulerianState& state, std::vector<Vec3>
   if (state.momentum_mass == 0 || body_->supports > 0) return MomentumOf(body_->grid, nodes_, v);
   // Masses of cut cells are not exact, and come and go by a thousandth: velocities shall not.
   const double part = MassOf(nodes_) / state.momentum_mass;
-  const Resultant wanted = {part * state.momentum[0], part * state.momentum[1]};
+  const Resultant wanted = {part * state.momentum, part * state.moment};
   SetMomentum(body_->grid, nodes_, wanted, state.known, v);
   return wanted;
 }
@@ -217,25 +217,26 @@ EulerianReport EulerianSolver::Step(double end, EulerianState& state) {
   report.problem = Prepare(state, report);
   if (report.problem != StepProblem::kNone) return report;
   StepLength step = StableStep(state);
-  const double stable = step.stable, left = end - state.time;
-  const double least = kLeastStep * kCourant * body_->grid.spacing / WaveSpeedAtRest(*body_);
-  if (!(stable >= least)) report.problem = StepProblem::kStepTooSmall;
-  // The last two steps before a frame are equally long: a very short one would upset pressures.
-  const double dt = step.dt = report.dt = left <= stable ? left : std::min(stable, left / 2);
-  std::vector<Vec3> v = state.v;
-  const Resultant momentum = Conserve(state, v);
-  const Resultant force = ForceOf(body_->grid, nodes_);
-  if (report.problem == StepProblem::kNone) {
-    const StageTimer timer(profile_, "advection of velocities");
-    const std::vector<Vec3> before = v;
-    Carry(before, before, state, dt, v);
+  const double left = end - state.time;
+  if (!(step.stable >= kLeastStep * kCourant * body_->grid.spacing / WaveSpeedAtRest(*body_))) {
+    report.problem = StepProblem::kStepTooSmall;
+    return report;
   }
-  if (report.problem == StepProblem::kNone) report.problem = Accelerate(state, step, v, report);
-  if (report.problem == StepProblem::kNone) report.problem = Move(std::move(v), dt, state);
+  // The last two steps before a frame are equally long: a very short one would upset pressures.
+  step.dt = report.dt = left <= step.stable ? left : std::min(step.stable, left / 2);
+  std::vector<Vec3> now = state.v, v;
+  const Resultant momentum = Conserve(state, now), force = ForceOf(body_->grid, nodes_);
+  {
+    const StageTimer timer(profile_, "advection of velocities");
+    Carry(now, now, state, step.dt, v);
+  }
+  report.problem = Accelerate(state, step, v, report);
+  if (report.problem == StepProblem::kNone) report.problem = Move(std::move(v), step.dt, state);
   if (report.problem != StepProblem::kNone) return report;
-  if (left <= stable) state.time = end;
+  if (left <= step.stable) state.time = end;
   state.momentum_mass = MassOf(nodes_);
-  state.momentum = {momentum.sum + dt * force.sum, momentum.moment + dt * force.moment};
+  state.momentum = momentum.sum + step.dt * force.sum;
+  state.moment = momentum.moment + step.dt * force.moment;
   return report;
 }
 

@@ -31,8 +31,8 @@ class EulerianSolver {
                              const std::function<Vec3(const Vec3&)>& velocity = nullptr) const;
 
   // Makes one step, as long as is stable but not beyond `end` [s]. A step that fails leaves the state as it was.
-  // Problems: kInvertedElement (the map folds), kLeftGrid, kNotSolved (MINRES), kNotFinite, kStepTooSmall (a millionth
-  // of what waves take through a cell at rest).
+  // Problems: kInvertedElement (the map folds), kLeftGrid, kVelocitiesNotFound (MINRES), kNotFinite, kStepTooSmall (a
+  // millionth of what waves take through a cell at rest).
   EulerianReport Step(double end, EulerianState& state);
 
   // Of the state before the last step.

@@ -23,7 +23,8 @@ void EulerianState::Save(ArchiveWriter& archive) const {
   archive.PutVectors("surface", surface);
   archive.PutDoubles("pressure", pressure);
   archive.PutDouble("momentum_mass", momentum_mass);
-  archive.PutVectors("momentum", momentum);
+  archive.PutVectors("momentum", std::span(&momentum, 1));
+  archive.PutVectors("moment", std::span(&moment, 1));
   archive.PutVectors("plastic", Columns(plastic));
   archive.PutVectors("plastic_places", plastic_places);
 }
@@ -39,7 +40,8 @@ void EulerianState::Load(ArchiveReader& archive) {
   archive.GetVectors("surface", std::span(surface));
   archive.GetDoubles("pressure", std::span(pressure));
   momentum_mass = archive.GetDouble("momentum_mass");
-  archive.GetVectors("momentum", std::span(momentum));
+  archive.GetVectors("momentum", std::span(&momentum, 1));
+  archive.GetVectors("moment", std::span(&moment, 1));
   std::vector<Vec3> columns = Columns(plastic);
   archive.GetVectors("plastic", std::span(columns));
   for (std::size_t k = 0; k < columns.size(); ++k) plastic[k / 3].col(static_cast<Eigen::Index>(k % 3)) = columns[k];

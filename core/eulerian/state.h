@@ -22,7 +22,7 @@ struct EulerianState {
   // the mass of all nodes that it was found for [kg]: 0 before the first step, or after velocities were changed by
   // hand, when it is taken from these.
   double momentum_mass = 0;
-  std::vector<Vec3> momentum = {Vec3::Zero(), Vec3::Zero()};
+  Vec3 momentum = Vec3::Zero(), moment = Vec3::Zero();
   // Of each cell, what kept its volume in the last step, compression positive [Pa]; NaN where nothing did.
   std::vector<double> pressure;
   // At the nodes of PlasticGrid, of bodies that flow plastically: Fp^-1, and where these points of the material are

@@ -32,14 +32,20 @@ ElasticStiffness::ElasticStiffness(const EulerianBody& body, const EulerianState
       cells_[c] = MakeCell(body, state, cells, nodes, cells.solid[c], dt);
     }
   });
+  std::vector<int> held_number(number.size(), -1);
+  std::size_t unknown = 0;
   for (std::size_t n = 0; n < number.size(); ++n) {
-    if (number[n] >= 0) unknown_.push_back(n);
+    if (number[n] >= 0) ++unknown;
+    if (nodes.support[n] < 0) continue;
+    held_number[n] = static_cast<int>(held_.size());
+    held_.push_back({n, {}});
   }
-  places_.resize(unknown_.size());
+  places_.resize(unknown);
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     for (std::size_t p = 0; p < cells_[c].parts.size(); ++p) {
-      const int at = number[cells_[c].parts[p].node];
-      if (at >= 0) places_[at].push_back({c, p});
+      const std::size_t node = cells_[c].parts[p].node;
+      if (number[node] >= 0) places_[number[node]].push_back({c, p});
+      if (held_number[node] >= 0) held_[held_number[node]].places.push_back({c, p});
     }
   }
 }
@@ -48,33 +54,21 @@ ElasticStiffness::Cell ElasticStiffness::MakeCell(const EulerianBody& body, cons
                                                   const EulerianCells& cells, const NodalForces& nodes,
                                                   std::size_t cell, double dt) const {
   const GridIndex at = body.grid.CellAt(cell);
-  std::vector<Part> all;
-  for (int c = 0; c < 8; ++c) {
-    Part part;
-    const Vec3 gradient = CornerGradient(c, body.grid.spacing);
-    for (int d = 0; d < 3; ++d) part.weight[d] = gradient[d];
-    for (int a = 0; a < kPatterns; ++a) part.weight[3 + a] = CornerPattern(a, c) / 8.0;
-    const std::size_t corner = body.grid.Corner(at, c);
-    part.node = corner;
-    if (nodes.mass[corner] > 0) all.push_back(part);
-    const std::int32_t follower = nodes.follower_of[corner];
-    if (follower < 0) continue;
-    for (const NodeWeight& leader : nodes.followers[follower].leaders) {
-      Part led = part;
-      led.node = leader.node;
-      for (double& weight : led.weight) weight *= leader.weight;
-      all.push_back(led);
-    }
-  }
-  std::stable_sort(all.begin(), all.end(), [](const Part& a, const Part& b) { return a.node < b.node; });
   Cell result;
-  for (const Part& part : all) {
-    if (result.parts.empty() || result.parts.back().node != part.node) {
+  for (int c = 0; c < 8; ++c) {
+    const Vec3 gradient = CornerGradient(c, body.grid.spacing);
+    std::array<double, kRows> of_corner;
+    for (int d = 0; d < 3; ++d) of_corner[d] = gradient[d];
+    for (int a = 0; a < kPatterns; ++a) of_corner[3 + a] = CornerPattern(a, c) / 8.0;
+    nodes.ForMovers(body.grid.Corner(at, c), [&](std::size_t node, double weight) {
+      Part part = {node, of_corner};
+      for (double& w : part.weight) w *= weight;
       result.parts.push_back(part);
-    } else {
-      for (int r = 0; r < kRows; ++r) result.parts.back().weight[r] += part.weight[r];
-    }
+    });
   }
+  MergeByNode(result.parts, [](Part& sum, const Part& part) {
+    for (int r = 0; r < kRows; ++r) sum.weight[r] += part.weight[r];
+  });
   const double volume = cells.inside[cell] * std::pow(body.grid.spacing, 3);
   const Mat3 Fe = ElasticGradient(body, state, cells, cell);
   result.gradient = SpatialTangent(body, Fe, FibreOf(body, state, at), dt * dt * volume / cells.J[cell]);
@@ -83,9 +77,9 @@ ElasticStiffness::Cell ElasticStiffness::MakeCell(const EulerianBody& body, cons
   return result;
 }
 
-// First what each cell pushes with, then what comes together at each node.
+// What each cell pushes with, for its gradient and its patterns.
 template <class VelocityOf>
-void ElasticStiffness::Add(const VelocityOf& velocity_of, Eigen::VectorXd& product) const {
+std::vector<ElasticStiffness::CellForces> ElasticStiffness::ForcesOf(const VelocityOf& velocity_of) const {
   std::vector<CellForces> forces(cells_.size());
   team_->For(cells_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
@@ -102,14 +96,24 @@ void ElasticStiffness::Add(const VelocityOf& velocity_of, Eigen::VectorXd& produ
       for (int a = 3; a < kRows; ++a) forces[c][a] = cells_[c].pattern * rates[a];
     }
   });
+  return forces;
+}
+
+Vec3 ElasticStiffness::SumAt(const std::vector<Place>& places, const std::vector<CellForces>& forces) const {
+  Vec3 sum = Vec3::Zero();
+  for (const Place& place : places) {
+    const Part& part = cells_[place.cell].parts[place.part];
+    for (int r = 0; r < kRows; ++r) sum += part.weight[r] * forces[place.cell][r];
+  }
+  return sum;
+}
+
+template <class VelocityOf>
+void ElasticStiffness::Add(const VelocityOf& velocity_of, Eigen::VectorXd& product) const {
+  const std::vector<CellForces> forces = ForcesOf(velocity_of);
   team_->For(places_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      Vec3 sum = Vec3::Zero();
-      for (const Place& place : places_[n]) {
-        const Part& part = cells_[place.cell].parts[place.part];
-        for (int r = 0; r < kRows; ++r) sum += part.weight[r] * forces[place.cell][r];
-      }
-      product.segment<3>(static_cast<Eigen::Index>(3 * n)) += sum;
+      product.segment<3>(static_cast<Eigen::Index>(3 * n)) += SumAt(places_[n], forces);
     }
   });
 }
@@ -124,13 +128,19 @@ void ElasticStiffness::AddProduct(const Eigen::VectorXd& v, Eigen::VectorXd& pro
 }
 
 Eigen::VectorXd ElasticStiffness::OfHeld(const std::vector<Vec3>& velocity) const {
-  Eigen::VectorXd product = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * unknown_.size()));
+  Eigen::VectorXd product = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * places_.size()));
   Add([&](std::size_t node) { return nodes_->support[node] >= 0 ? velocity[node] : Vec3(Vec3::Zero()); }, product);
   return product;
 }
 
+void ElasticStiffness::AddHeldImpulses(const std::vector<Vec3>& velocity, std::vector<Vec3>& impulses) const {
+  if (held_.empty()) return;
+  const std::vector<CellForces> forces = ForcesOf([&](std::size_t node) { return velocity[node]; });
+  for (const Held& held : held_) impulses[held.node] -= SumAt(held.places, forces);
+}
+
 Eigen::VectorXd ElasticStiffness::Diagonal() const {
-  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * unknown_.size()));
+  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * places_.size()));
   team_->For(places_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       for (const Place& place : places_[n]) {

@@ -24,6 +24,8 @@ class ElasticStiffness {
   void AddProduct(const Eigen::VectorXd& v, Eigen::VectorXd& product) const;
   // dt^2 K of the velocities of all held nodes, for the unknown ones.
   Eigen::VectorXd OfHeld(const std::vector<Vec3>& velocity) const;
+  // Adds what held nodes are pushed with in the step for all velocities, -dt^2 K v [N s].
+  void AddHeldImpulses(const std::vector<Vec3>& velocity, std::vector<Vec3>& impulses) const;
   // The diagonal of dt^2 K.
   Eigen::VectorXd Diagonal() const;
 
@@ -47,14 +49,23 @@ class ElasticStiffness {
   Cell MakeCell(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
                 const NodalForces& nodes, std::size_t cell, double dt) const;
   template <class VelocityOf>
+  std::vector<CellForces> ForcesOf(const VelocityOf& velocity_of) const;
+  // What comes together at the places of a node.
+  Vec3 SumAt(const std::vector<Place>& places, const std::vector<CellForces>& forces) const;
+  template <class VelocityOf>
   void Add(const VelocityOf& velocity_of, Eigen::VectorXd& product) const;
 
   const NodalForces* nodes_;
   const std::vector<int>* number_;
   ThreadTeam* team_;
   std::vector<Cell> cells_;
-  std::vector<std::size_t> unknown_;        // the nodes, by their numbers
   std::vector<std::vector<Place>> places_;  // of each unknown node, where it has a part
+  // The same of held nodes.
+  struct Held {
+    std::size_t node;
+    std::vector<Place> places;
+  };
+  std::vector<Held> held_;
 };
 
 }  // namespace fascicle

@@ -34,10 +34,11 @@ ProblemText TextOf(StepProblem problem) {
       return {"NOT_CONVERGED", "the linear solve of the damping did not reach its tolerance",
               "use a larger solver_tolerance or less damping"};
     case StepProblem::kNotSolved:
-      return {"NOT_CONVERGED", "the iterations of a linear system did not reach their tolerance",
-              "voxels: use a larger tolerance, a smaller contrast of stiffness, or remove parts that hang on single "
-              "voxels; "
-              "eulerian: use a larger stabilization or a smaller time_step"};
+      return {"NOT_CONVERGED", "the conjugate gradients did not reach their tolerance",
+              "use a larger tolerance, a smaller contrast of stiffness, or remove parts that hang on single voxels"};
+    case StepProblem::kVelocitiesNotFound:
+      return {"NOT_CONVERGED", "no velocities were found that keep the volumes and move as supports do",
+              "use a larger stabilization or a smaller time_step, or an explicit elastic_force"};
     case StepProblem::kLeftGrid:
       return {"LEFT_GRID", "the body has come to the side of its grid",
               "give it a larger margin, or a larger room by lowest and highest"};

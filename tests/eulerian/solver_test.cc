@@ -69,6 +69,28 @@ TEST(EulerianSolver, ABodyThatIsHeldAllOverRests) {
   }
 }
 
+// From rest, momentum is what gravity and the support gave.
+TEST(EulerianSolver, ReactionsBalanceTheMomentum) {
+  ThreadTeam team(2);
+  for (const VolumeTreatment volume : {VolumeTreatment::kNone, VolumeTreatment::kPreserved}) {
+    for (const bool implicit : {false, true}) {
+      EulerianBody body = MakeSolid(14, false, 1e4, 0.3, team);
+      body.volume = volume;
+      body.implicit_elasticity = implicit;
+      body.gravity = Vec3(1, 2, -9);
+      HoldAbove(0.3 * kSide, body);
+      EulerianSolver solver(body, team);
+      EulerianState state = solver.InitialState();
+      const EulerianReport report = solver.Step(1, state);
+      ASSERT_EQ(report.problem, StepProblem::kNone);
+      const Vec3 gained = MomentumOf(body.grid, solver.nodes(), state.v).sum;
+      const Vec3 given = report.dt * (MassOf(solver.nodes()) * body.gravity + solver.reactions()[0]);
+      EXPECT_GT(gained.norm(), 0.1 * report.dt);
+      EXPECT_LT((gained - given).norm(), 1e-5 * gained.norm()) << implicit;
+    }
+  }
+}
+
 TEST(EulerianSolver, SaysThatTheSolidLeavesItsGridAndKeepsTheState) {
   ThreadTeam team(1);
   const EulerianBody body = MakeSolid(16, true, 1e4, 0.3, team);
