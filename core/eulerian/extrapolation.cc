@@ -71,11 +71,15 @@ void Extrapolate(const EulerianGrid& grid, int layers, double slope, ThreadTeam&
   const auto is_unknown = [&](std::size_t n) { return known[n] == 0; };
   // Known nodes beside unknown ones, with the slope of the field less `slope` times the position there.
   std::vector<std::size_t> front, next;
+  std::vector<std::uint8_t> is_front(known.size(), 0);
+  team.For(known.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      if (known[n] == 0) continue;
+      ForNeighbours(grid, grid.NodeAt(n), 1, [&](std::size_t other, const Vec3&) { is_front[n] |= is_unknown(other); });
+    }
+  });
   for (std::size_t n = 0; n < known.size(); ++n) {
-    if (known[n] == 0) continue;
-    bool is_front = false;
-    ForNeighbours(grid, grid.NodeAt(n), 1, [&](std::size_t other, const Vec3&) { is_front |= is_unknown(other); });
-    if (is_front) front.push_back(n);
+    if (is_front[n] != 0) front.push_back(n);
   }
   std::vector<Mat3> slopes(known.size());
   team.For(front.size(), 64, [&](std::size_t begin, std::size_t end) {

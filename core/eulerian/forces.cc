@@ -60,7 +60,9 @@ void SetLeaders(const EulerianBody& body, const EulerianState& state, const Eule
   nodes.support.assign(count, -1);
   nodes.inside.assign(count, 0);
   const double skin = -kSkin * body.grid.spacing;
-  for (std::size_t n = 0; n < count; ++n) nodes.inside[n] = nodes.mass[n] > 0 && cells.distance[n] < skin ? 1 : 0;
+  team.For(count, 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) nodes.inside[n] = nodes.mass[n] > 0 && cells.distance[n] < skin ? 1 : 0;
+  });
   if (body.support_of) {
     team.For(count, 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {

@@ -168,7 +168,7 @@ bool KktSystem::IsGood(Result& result, const RowMatrix& transposed, const QpSett
 // (G M^-1 G^T + C) y = b - G M^-1 p, then v = M^-1 (p + G^T y).
 KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const {
   Result result;
-  const MultiplierPreconditioner preconditioner(*problem_, *G_, volumes_, inverse_mass_, schur_, hair_);
+  const MultiplierPreconditioner preconditioner(*problem_, *G_, volumes_, inverse_mass_, schur_, hair_, settings.team);
   if (!preconditioner.ok()) return result;
   const RowMatrix transposed = G_->transpose();
   const RowMatrix E = problem_->E;  // symmetric: the same by rows
@@ -206,7 +206,7 @@ KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const 
 KktSystem::Result KktSystem::SolveWhole(const QpSettings& settings) const {
   const Eigen::Index n = problem_->p.size(), m = b_.size();
   Result result;
-  const MultiplierPreconditioner of_multipliers(*problem_, *G_, volumes_, inverse_mass_, schur_, hair_);
+  const MultiplierPreconditioner of_multipliers(*problem_, *G_, volumes_, inverse_mass_, schur_, hair_, settings.team);
   if (!of_multipliers.ok()) return result;
   const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     z.resize(n + m);

@@ -13,17 +13,19 @@ namespace fascicle {
 // itself, factored. Symmetric and positive definite. For this room alone.
 class MultiplierPreconditioner {
  public:
+  // Shares the work with `team`, if there is one.
   // G: rows of volumes first, then others. `hair`: of each row, added to its diagonal where C has none.
   MultiplierPreconditioner(const QuadraticProgram& problem, const RowMatrix& G, Eigen::Index volumes,
                            const Eigen::VectorXd& inverse_mass, const Eigen::VectorXd& schur,
-                           const Eigen::VectorXd& hair);
+                           const Eigen::VectorXd& hair, ThreadTeam* team);
 
   bool ok() const { return ok_; }
   // z = P r, of all multipliers.
   void Apply(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> z) const;
 
  private:
-  bool FactorGroups(const QuadraticProgram& problem, const RowMatrix& G, const Eigen::VectorXd& inverse_mass);
+  bool FactorGroups(const QuadraticProgram& problem, const RowMatrix& G, const Eigen::VectorXd& inverse_mass,
+                    ThreadTeam* team);
   bool FactorOthers(const RowMatrix& G, const Eigen::VectorXd& inverse_mass, const Eigen::VectorXd& hair);
 
   Eigen::Index volumes_, others_;

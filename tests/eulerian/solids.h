@@ -54,14 +54,14 @@ inline TriangleMesh CubeSurface(double side, int n, bool round = false) {
 
 inline constexpr double kSide = 0.1;  // [m]
 
-// Neo-Hookean, in a box of 2.2 sides of n^3 cells around it.
-inline EulerianBody MakeSolid(int n, bool round, double young, double poisson, ThreadTeam& team) {
+// Neo-Hookean, in a box of 2.2 sides of n^3 cells around it; its surface in so many squares a side.
+inline EulerianBody MakeSolid(int n, bool round, double young, double poisson, ThreadTeam& team, int squares = 12) {
   EulerianGrid grid;
   grid.cells = {n, n, n};
   grid.spacing = 2.2 * kSide / n;
   grid.origin = Vec3::Constant(-1.1 * kSide);
   const std::array<double, 2> values = {young, poisson};
-  EulerianBody body{grid, SolidShape(CubeSurface(kSide, 12, round), grid.spacing / 2, team), NeoHookean(values)};
+  EulerianBody body{grid, SolidShape(CubeSurface(kSide, squares, round), grid.spacing / 2, team), NeoHookean(values)};
   body.density = 1000;
   body.volume = VolumeTreatment::kNone;
   return body;
