@@ -2,6 +2,9 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
+#include <atomic>
+
 namespace fascicle {
 namespace {
 
@@ -25,13 +28,12 @@ void ForNeighbours(const EulerianGrid& grid, const GridIndex& at, int reach, con
 
 // The slope at a node of the linear function that fits the known values around it best, as columns by axes, per cell.
 // value(number, offset): what is fitted. Directions in which known nodes lie flat get none.
-template <class Value>
-Mat3 SlopeAt(const EulerianGrid& grid, const GridIndex& at, const std::vector<std::uint8_t>& known,
-             const Value& value) {
+template <class IsKnown, class Value>
+Mat3 SlopeAt(const EulerianGrid& grid, const GridIndex& at, const IsKnown& is_known, const Value& value) {
   Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
   Eigen::Matrix<double, 4, 3> b = Eigen::Matrix<double, 4, 3>::Zero();
   ForNeighbours(grid, at, kReach, [&](std::size_t number, const Vec3& offset) {
-    if (known[number] == 0) return;
+    if (!is_known(number)) return;
     const Eigen::Vector4d row(1, offset[0], offset[1], offset[2]);
     const Eigen::Vector4d weighted = row / std::max(offset.squaredNorm(), 0.25);
     A += weighted * row.transpose();
@@ -40,6 +42,21 @@ Mat3 SlopeAt(const EulerianGrid& grid, const GridIndex& at, const std::vector<st
   const double total = A(0, 0);
   for (int axis = 1; axis < 4; ++axis) A(axis, axis) += kHair * total;
   return A.ldlt().solve(b).bottomRows<3>().transpose();
+}
+
+// What find(k, found) finds for each k below `count`, in the order of k.
+template <class Find>
+std::vector<std::size_t> Gather(std::size_t count, ThreadTeam& team, const Find& find) {
+  constexpr std::size_t kBlock = 512;
+  std::vector<std::vector<std::size_t>> found((count + kBlock - 1) / kBlock);
+  team.For(found.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      for (std::size_t k = b * kBlock; k < std::min(count, (b + 1) * kBlock); ++k) find(k, found[b]);
+    }
+  });
+  std::vector<std::size_t> all;
+  for (const std::vector<std::size_t>& part : found) all.insert(all.end(), part.begin(), part.end());
+  return all;
 }
 
 }  // namespace
@@ -66,58 +83,86 @@ std::vector<NodeWeight> ExtrapolationWeights(const EulerianGrid& grid, const Gri
   return weights;
 }
 
-void Extrapolate(const EulerianGrid& grid, int layers, double slope, ThreadTeam& team, std::vector<std::uint8_t>& known,
-                 std::vector<Vec3>& field) {
-  const auto is_unknown = [&](std::size_t n) { return known[n] == 0; };
-  // Known nodes beside unknown ones, with the slope of the field less `slope` times the position there.
-  std::vector<std::size_t> front, next;
-  std::vector<std::uint8_t> is_front(known.size(), 0);
-  team.For(known.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      if (known[n] == 0) continue;
-      ForNeighbours(grid, grid.NodeAt(n), 1, [&](std::size_t other, const Vec3&) { is_front[n] |= is_unknown(other); });
-    }
-  });
-  for (std::size_t n = 0; n < known.size(); ++n) {
-    if (is_front[n] != 0) front.push_back(n);
+Band::Band(const EulerianGrid& grid, const std::vector<std::uint8_t>& known, int layers, ThreadTeam& team)
+    : grid_(&grid), layer_(known) {
+  places_.push_back(Front(team));
+  for (int layer = 1; layer <= layers; ++layer) places_.push_back(Beside(places_.back(), layer, team));
+  number_of_.resize(layer_.size());
+  int count = 0;
+  for (const Places& places : places_) {
+    for (const std::size_t n : places) number_of_[n] = count++;
   }
-  std::vector<Mat3> slopes(known.size());
+}
+
+std::vector<std::uint8_t> Band::Known(int layers) const {
+  std::vector<std::uint8_t> known(layer_.size());
+  for (std::size_t n = 0; n < known.size(); ++n) known[n] = layer_[n] != 0 && layer_[n] <= 1 + layers ? 1 : 0;
+  return known;
+}
+
+// Known nodes beside others.
+Band::Places Band::Front(ThreadTeam& team) const {
+  return Gather(layer_.size(), team, [&](std::size_t n, Places& found) {
+    if (layer_[n] == 0) return;
+    bool is_front = false;
+    ForNeighbours(*grid_, grid_->NodeAt(n), 1, [&](std::size_t other, const Vec3&) { is_front |= layer_[other] == 0; });
+    if (is_front) found.push_back(n);
+  });
+}
+
+// Nodes of no layer that are beside those of the one before. Who finds a node first is chance: so is their order, which
+// nothing depends on.
+Band::Places Band::Beside(const Places& before, int layer, ThreadTeam& team) {
+  return Gather(before.size(), team, [&](std::size_t k, Places& found) {
+    ForNeighbours(*grid_, grid_->NodeAt(before[k]), 1, [&](std::size_t other, const Vec3&) {
+      const std::atomic_ref<std::uint8_t> place(layer_[other]);
+      std::uint8_t none = 0;
+      const bool is_first =
+          place.load(std::memory_order_relaxed) == 0 &&
+          place.compare_exchange_strong(none, static_cast<std::uint8_t>(1 + layer), std::memory_order_relaxed);
+      if (is_first) found.push_back(other);
+    });
+  });
+}
+
+void Band::Extend(int layers, double slope, ThreadTeam& team, std::vector<Vec3>& field) const {
+  // Less `slope` times the position.
+  std::vector<Mat3> slopes(NodeCount(layers));
+  const Places& front = places_.front();
+  const double own = slope * grid_->spacing;
   team.For(front.size(), 64, [&](std::size_t begin, std::size_t end) {
+    const auto is_known = [&](std::size_t n) { return layer_[n] == 1; };
     for (std::size_t k = begin; k < end; ++k) {
-      slopes[front[k]] = SlopeAt(grid, grid.NodeAt(front[k]), known, [&](std::size_t number, const Vec3& offset) {
-        return Vec3(field[number] - slope * grid.spacing * offset);
-      });
+      slopes[k] = SlopeAt(*grid_, grid_->NodeAt(front[k]), is_known,
+                          [&](std::size_t number, const Vec3& offset) { return Vec3(field[number] - own * offset); });
     }
   });
-  for (int layer = 0; layer < layers; ++layer) {
-    next.clear();
-    for (const std::size_t n : front) {
-      ForNeighbours(grid, grid.NodeAt(n), 1, [&](std::size_t number, const Vec3&) {
-        if (!is_unknown(number)) return;
-        known[number] = 1;  // so that it is found once; not yet known
-        next.push_back(number);
-      });
-    }
-    for (const std::size_t n : next) known[n] = 0;
-    team.For(next.size(), 64, [&](std::size_t begin, std::size_t end) {
+  for (int layer = 1; layer <= layers; ++layer) {
+    const Places& places = places_[layer];
+    team.For(places.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         Vec3 value = Vec3::Zero();
         Mat3 mean = Mat3::Zero();
         double total = 0;
-        ForNeighbours(grid, grid.NodeAt(next[k]), 1, [&](std::size_t number, const Vec3& offset) {
-          if (is_unknown(number)) return;
+        ForNeighbours(*grid_, grid_->NodeAt(places[k]), 1, [&](std::size_t other, const Vec3& offset) {
+          if (layer_[other] == 0 || layer_[other] > layer) return;
           const double weight = 1 / offset.squaredNorm();
-          value += weight * (field[number] - slopes[number] * offset - slope * grid.spacing * offset);
-          mean += weight * slopes[number];
+          const Mat3& there = slopes[number_of_[other]];
+          value += weight * (field[other] - there * offset - own * offset);
+          mean += weight * there;
           total += weight;
         });
-        field[next[k]] = value / total;
-        slopes[next[k]] = mean / total;
+        field[places[k]] = value / total;
+        slopes[number_of_[places[k]]] = mean / total;
       }
     });
-    for (const std::size_t n : next) known[n] = 1;
-    std::swap(front, next);
   }
+}
+
+std::size_t Band::NodeCount(int layers) const {
+  std::size_t count = 0;
+  for (int layer = 0; layer <= layers; ++layer) count += places_[layer].size();
+  return count;
 }
 
 }  // namespace fascicle

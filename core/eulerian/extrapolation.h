@@ -20,14 +20,35 @@ struct NodeWeight {
 std::vector<NodeWeight> ExtrapolationWeights(const EulerianGrid& grid, const GridIndex& at,
                                              const std::vector<std::uint8_t>& known);
 
-// Carries a field on from the nodes where it is known into so many layers of nodes around them: each takes the mean of
-// what its neighbours of the layer before say by their slopes, and the mean of these slopes. The slopes of the first
-// are those of linear functions that fit the known nodes within two cells of it best. So linear fields are continued
-// exactly, and others do not grow faster than that however many layers there are. Directions in which known nodes lie
-// flat have the slope `slope`. known: 1 where known, and where it is in the end.
-//   slope  1 for the reference map, 0 for velocities
-void Extrapolate(const EulerianGrid& grid, int layers, double slope, ThreadTeam& team, std::vector<std::uint8_t>& known,
-                 std::vector<Vec3>& field);
+// Layers of nodes around those where fields are known, each of the nodes beside the layer before. Const, it may be used
+// by several threads.
+class Band {
+ public:
+  // known: of each node, 1 where fields are known. `grid` must outlive it.
+  Band(const EulerianGrid& grid, const std::vector<std::uint8_t>& known, int layers, ThreadTeam& team);
+
+  // Of each node, 1 where fields are known or in the first so many layers.
+  std::vector<std::uint8_t> Known(int layers) const;
+
+  // Carries a field on into the first so many layers: each node takes the mean of what its neighbours of the layer
+  // before say by their slopes, and the mean of these slopes. The slopes of the first are those of linear functions
+  // that fit the known nodes within two cells of it best. So linear fields are continued exactly, and others do not
+  // grow faster than that however many layers there are. Directions in which known nodes lie flat have the slope
+  // `slope`.
+  //   slope  1 for the reference map, 0 for velocities
+  void Extend(int layers, double slope, ThreadTeam& team, std::vector<Vec3>& field) const;
+
+ private:
+  using Places = std::vector<std::size_t>;  // nodes
+  Places Front(ThreadTeam& team) const;
+  Places Beside(const Places& before, int layer, ThreadTeam& team);
+  std::size_t NodeCount(int layers) const;
+
+  const EulerianGrid* grid_;
+  std::vector<std::uint8_t> layer_;  // of each node: 1 + its layer, 1 where it is known, 0 beyond
+  std::vector<Places> places_;       // of each layer; the first: known nodes beside others
+  std::vector<int> number_of_;       // of each node in places_: its number there
+};
 
 }  // namespace fascicle
 

@@ -86,8 +86,8 @@ void SetLeaders(const EulerianBody& body, const EulerianState& state, const Eule
   }
 }
 
-void HandToInside(NodalForces& nodes) {
-  const std::vector<double> own = nodes.mass;
+void HandToInside(ThreadTeam& team, NodalForces& nodes) {
+  nodes.own_mass = nodes.mass;
   for (const NodalForces::Follower& follower : nodes.followers) {
     for (const NodeWeight& part : follower.leaders) {
       nodes.mass[part.node] += part.weight * nodes.mass[follower.node];
@@ -96,9 +96,11 @@ void HandToInside(NodalForces& nodes) {
     nodes.mass[follower.node] = 0;
     nodes.force[follower.node].setZero();
   }
-  for (std::size_t n = 0; n < own.size(); ++n) {
-    if (nodes.inside[n] != 0) nodes.mass[n] = std::max(nodes.mass[n], kLeastMass * own[n]);
-  }
+  team.For(nodes.mass.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      if (nodes.inside[n] != 0) nodes.mass[n] = std::max(nodes.mass[n], kLeastMass * nodes.own_mass[n]);
+    }
+  });
 }
 
 // What a force at a point acts on: the nodes with mass at the corners of its cell, by its place in there; where there
@@ -174,10 +176,12 @@ void SetForces(const EulerianBody& body, const EulerianState& state, const Euler
   });
   std::vector<std::int32_t> solid_of(grid.cell_count(), -1);
   for (std::size_t c = 0; c < of_solid.size(); ++c) solid_of[cells.solid[c]] = static_cast<std::int32_t>(c);
-  nodes.mass.assign(grid.node_count(), 0);
-  nodes.force.assign(grid.node_count(), Vec3::Zero());
+  nodes.mass.resize(grid.node_count());
+  nodes.force.resize(grid.node_count());
   team.For(grid.node_count(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
+      nodes.mass[n] = 0;
+      nodes.force[n].setZero();
       const GridIndex at = grid.NodeAt(n);
       for (int c = 0; c < 8; ++c) {
         const GridIndex cell = {at[0] - (c & 1), at[1] - (c >> 1 & 1), at[2] - (c >> 2)};
@@ -193,7 +197,7 @@ void SetForces(const EulerianBody& body, const EulerianState& state, const Euler
   });
   if (body.vertex_forces) AddVertexForces(body, state, nodes);
   SetLeaders(body, state, cells, team, nodes);
-  HandToInside(nodes);
+  HandToInside(team, nodes);
   const Vec3 gravity = body.gravity_scale.At(state.time) * body.gravity;
   team.For(nodes.mass.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {

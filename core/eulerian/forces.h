@@ -15,6 +15,7 @@ namespace fascicle {
 // [Badia, Verdugo & Martin 2018, the aggregated unfitted finite element method].
 struct NodalForces {
   std::vector<double> mass;
+  std::vector<double> own_mass;  // before others follow [kg]
   std::vector<Vec3> force;
   std::vector<std::uint8_t> inside;   // of each node: 1 where it is inside and has mass
   std::vector<std::int32_t> support;  // of each node: what holds it, inside or not; -1: nothing
@@ -40,7 +41,10 @@ struct NodalForces {
 //   add(sum, part)  adds a part to another of the same node
 template <class Part, class Add>
 void MergeByNode(std::vector<Part>& parts, const Add& add) {
-  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.node < b.node; });
+  const auto is_before = [](const Part& a, const Part& b) { return a.node < b.node; };
+  const auto is_not_after = [](const Part& a, const Part& b) { return a.node <= b.node; };
+  if (std::is_sorted(parts.begin(), parts.end(), is_not_after)) return;  // ascending, each once
+  std::stable_sort(parts.begin(), parts.end(), is_before);
   std::size_t count = 0;
   for (const Part& part : parts) {
     if (count > 0 && parts[count - 1].node == part.node) {

@@ -10,14 +10,14 @@ namespace fascicle {
 struct Resultant {
   Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
 };
-double MassOf(const NodalForces& nodes);  // [kg]
-Resultant MomentumOf(const EulerianGrid& grid, const NodalForces& nodes, const std::vector<Vec3>& v);
-Resultant ForceOf(const EulerianGrid& grid, const NodalForces& nodes);
+double MassOf(const NodalForces& nodes, ThreadTeam& team);  // [kg]
+Resultant MomentumOf(const EulerianGrid& grid, const NodalForces& nodes, const std::vector<Vec3>& v, ThreadTeam& team);
+Resultant ForceOf(const EulerianGrid& grid, const NodalForces& nodes, ThreadTeam& team);
 
 // Adds the velocities of a rigid body to all known nodes, so that momentum and its moment are what they should be: what
 // advection and the passing of mass from node to node take of them, or add, would else turn a body that nothing turns.
 void SetMomentum(const EulerianGrid& grid, const NodalForces& nodes, const Resultant& wanted,
-                 const std::vector<std::uint8_t>& known, std::vector<Vec3>& v);
+                 const std::vector<std::uint8_t>& known, ThreadTeam& team, std::vector<Vec3>& v);
 
 }  // namespace fascicle
 

@@ -1,8 +1,9 @@
 #include "core/eulerian/projection.h"
 
 #include <algorithm>
-#include <limits>
+#include <numeric>
 #include <optional>
+#include <span>
 
 #include "core/eulerian/stiffness.h"
 
@@ -25,6 +26,16 @@ struct NodeFlux {
 };
 using CellFluxes = std::vector<NodeFlux>;  // by rising nodes, each once
 
+// The fluxes of blocks, one block after the other.
+struct BlockFluxes {
+  std::vector<NodeFlux> parts;
+  std::vector<std::size_t> begin;  // of each block, in `parts`
+  std::vector<std::size_t> size;   // of each block
+
+  std::size_t count() const { return size.size(); }
+  std::span<const NodeFlux> operator[](std::size_t block) const { return {&parts[begin[block]], size[block]}; }
+};
+
 // Adds V grad N of the corners of a cell, in place of those that follow others of whom they follow.
 void AddFluxes(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes, std::size_t cell,
                CellFluxes& all) {
@@ -38,8 +49,18 @@ void AddFluxes(const EulerianBody& body, const EulerianCells& cells, const Nodal
   }
 }
 
-// Cells whose volumes are kept together: one that is solid for the most part, and those beside it that are less.
-using CellBlock = std::vector<std::size_t>;
+// Cells whose volumes are kept together, block by block: one that is solid for the most part, then those beside it that
+// are less.
+struct CellBlocks {
+  std::vector<std::size_t> cells;
+  std::vector<std::size_t> begin = {0};  // of each block, in `cells`, and the end
+
+  std::size_t count() const { return begin.size() - 1; }
+  std::size_t First(std::size_t block) const { return cells[begin[block]]; }
+  std::span<const std::size_t> operator[](std::size_t block) const {
+    return {&cells[begin[block]], begin[block + 1] - begin[block]};
+  }
+};
 
 // The cell that one of little solid belongs to: the most solid one beside it, if that is solid enough; else itself.
 std::size_t RootOf(const EulerianGrid& grid, const EulerianCells& cells, std::size_t cell) {
@@ -55,41 +76,88 @@ std::size_t RootOf(const EulerianGrid& grid, const EulerianCells& cells, std::si
   return root;
 }
 
-std::vector<CellBlock> Blocks(const EulerianGrid& grid, const EulerianCells& cells, ThreadTeam& team) {
+CellBlocks Blocks(const EulerianGrid& grid, const EulerianCells& cells, ThreadTeam& team) {
   std::vector<std::size_t> roots(cells.solid.size());
   team.For(roots.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) roots[c] = RootOf(grid, cells, cells.solid[c]);
   });
-  std::vector<int> block_of(grid.cell_count(), -1);
-  std::vector<CellBlock> blocks;
+  std::vector<int> block_of(grid.cell_count(), -1);  // of roots
+  CellBlocks blocks;
   for (std::size_t c = 0; c < roots.size(); ++c) {
     if (roots[c] != cells.solid[c]) continue;
-    block_of[roots[c]] = static_cast<int>(blocks.size());
-    blocks.push_back({roots[c]});
+    block_of[roots[c]] = static_cast<int>(blocks.count());
+    blocks.begin.push_back(0);
+  }
+  for (const std::size_t root : roots) ++blocks.begin[block_of[root] + 1];
+  for (std::size_t b = 0; b < blocks.count(); ++b) blocks.begin[b + 1] += blocks.begin[b];
+  // Roots come first, whatever their numbers.
+  blocks.cells.resize(roots.size());
+  std::vector<std::size_t> place(blocks.begin);
+  for (std::size_t c = 0; c < roots.size(); ++c) {
+    if (roots[c] == cells.solid[c]) blocks.cells[place[block_of[roots[c]]]++] = roots[c];
   }
   for (std::size_t c = 0; c < roots.size(); ++c) {
-    if (roots[c] != cells.solid[c]) blocks[block_of[roots[c]]].push_back(cells.solid[c]);
+    if (roots[c] != cells.solid[c]) blocks.cells[place[block_of[roots[c]]]++] = cells.solid[c];
   }
   return blocks;
 }
 
+// The most nodes that a block's fluxes can name.
+std::size_t MostNodes(const EulerianGrid& grid, const NodalForces& nodes, std::span<const std::size_t> block) {
+  std::size_t count = 0;
+  for (const std::size_t cell : block) {
+    const GridIndex at = grid.CellAt(cell);
+    for (int c = 0; c < 8; ++c) nodes.ForMovers(grid.Corner(at, c), [&](std::size_t, double) { ++count; });
+  }
+  return count;
+}
+
+BlockFluxes Fluxes(const EulerianBody& body, const EulerianCells& cells, const NodalForces& nodes,
+                   const CellBlocks& blocks, ThreadTeam& team) {
+  BlockFluxes fluxes;
+  fluxes.size.resize(blocks.count());
+  team.For(blocks.count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) fluxes.size[b] = MostNodes(body.grid, nodes, blocks[b]);
+  });
+  fluxes.begin.resize(blocks.count());
+  std::exclusive_scan(fluxes.size.begin(), fluxes.size.end(), fluxes.begin.begin(), std::size_t{0});
+  fluxes.parts.resize(blocks.count() == 0 ? 0 : fluxes.begin.back() + fluxes.size.back());
+  team.For(blocks.count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    CellFluxes own;
+    for (std::size_t b = begin; b < end; ++b) {
+      own.clear();
+      for (const std::size_t cell : blocks[b]) AddFluxes(body, cells, nodes, cell, own);
+      MergeByNode(own, [](NodeFlux& sum, const NodeFlux& part) { sum.flux += part.flux; });
+      fluxes.size[b] = own.size();
+      std::copy(own.begin(), own.end(), fluxes.parts.begin() + static_cast<std::ptrdiff_t>(fluxes.begin[b]));
+    }
+  });
+  return fluxes;
+}
+
 // The problem's numbering: free nodes with three velocities each, and the blocks of cells that have any.
 struct Numbering {
-  std::vector<int> of_node;   // -1: not free
-  std::vector<int> of_block;  // -1: none
+  std::vector<int> of_node;     // -1: not free
+  std::vector<int> free_nodes;  // of each block, how many
+  std::vector<int> of_block;    // -1: it has none
   int nodes = 0, rows = 0;
 };
 
-Numbering Number(const NodalForces& nodes, const std::vector<CellFluxes>& fluxes) {
+Numbering Number(const NodalForces& nodes, const BlockFluxes& fluxes, ThreadTeam& team) {
   Numbering numbers;
   numbers.of_node.assign(nodes.mass.size(), -1);
   for (std::size_t n = 0; n < nodes.mass.size(); ++n) {
     if (nodes.mass[n] > 0 && nodes.support[n] < 0) numbers.of_node[n] = numbers.nodes++;
   }
-  for (const CellFluxes& block : fluxes) {
-    const bool any =
-        std::any_of(block.begin(), block.end(), [&](const NodeFlux& part) { return numbers.of_node[part.node] >= 0; });
-    numbers.of_block.push_back(any ? numbers.rows++ : -1);
+  numbers.of_block.resize(fluxes.count());
+  numbers.free_nodes.resize(fluxes.count());
+  team.For(fluxes.count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      for (const NodeFlux& part : fluxes[b]) numbers.free_nodes[b] += numbers.of_node[part.node] >= 0 ? 1 : 0;
+    }
+  });
+  for (std::size_t b = 0; b < fluxes.count(); ++b) {
+    numbers.of_block[b] = numbers.free_nodes[b] > 0 ? numbers.rows++ : -1;
   }
   return numbers;
 }
@@ -102,23 +170,22 @@ double Gain(const EulerianBody& body, const EulerianCells& cells, std::size_t ce
 }
 
 // The rows of the volumes; what held nodes do to a volume goes to its right side.
-ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, const std::vector<CellBlock>& blocks,
-                          const Numbering& numbers, const std::vector<CellFluxes>& fluxes,
-                          const std::vector<Vec3>& velocity, double dt, ThreadTeam& team) {
+ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, const CellBlocks& blocks,
+                          const Numbering& numbers, const BlockFluxes& fluxes, const std::vector<Vec3>& velocity,
+                          double dt, ThreadTeam& team) {
   ConstraintRows rows;
   rows.b.resize(numbers.rows);
   rows.G.resize(numbers.rows, 3 * numbers.nodes);
   int* const begin = rows.G.outerIndexPtr();
-  std::fill(begin, begin + numbers.rows + 1, 0);
-  for (std::size_t c = 0; c < fluxes.size(); ++c) {
-    if (numbers.of_block[c] < 0) continue;
-    for (const NodeFlux& part : fluxes[c]) begin[numbers.of_block[c] + 1] += numbers.of_node[part.node] >= 0 ? 3 : 0;
+  begin[0] = 0;
+  for (std::size_t c = 0; c < fluxes.count(); ++c) {
+    const int row = numbers.of_block[c];
+    if (row >= 0) begin[row + 1] = begin[row] + 3 * numbers.free_nodes[c];
   }
-  for (int r = 0; r < numbers.rows; ++r) begin[r + 1] += begin[r];
   rows.G.resizeNonZeros(begin[numbers.rows]);
   int* const column = rows.G.innerIndexPtr();
   double* const value = rows.G.valuePtr();
-  team.For(fluxes.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  team.For(fluxes.count(), kGrain, [&](std::size_t first, std::size_t last) {
     for (std::size_t c = first; c < last; ++c) {
       const int row = numbers.of_block[c];
       if (row < 0) continue;
@@ -143,20 +210,19 @@ ConstraintRows VolumeRows(const EulerianBody& body, const EulerianCells& cells, 
 // solid parts. The shorter the step beside that of waves, the more of it: what it does to the volumes of a body at rest
 // then does not depend on the step, and a step that a frame cuts short upsets nothing.
 Eigen::SparseMatrix<double> Stabilization(const EulerianBody& body, const EulerianCells& cells,
-                                          const std::vector<CellBlock>& blocks, const Numbering& numbers,
-                                          const StepLength& step) {
+                                          const CellBlocks& blocks, const Numbering& numbers, const StepLength& step) {
   const EulerianGrid& grid = body.grid;
   std::vector<int> row_of(grid.cell_count(), -1);
-  for (std::size_t c = 0; c < blocks.size(); ++c) row_of[blocks[c].front()] = numbers.of_block[c];
+  for (std::size_t c = 0; c < blocks.count(); ++c) row_of[blocks.First(c)] = numbers.of_block[c];
   const double longer = step.waves / step.dt;
   const double weight = body.stabilization * longer * longer * grid.spacing / body.density;
   const std::array<std::ptrdiff_t, 3> along = {1, grid.cells[0],
                                                static_cast<std::ptrdiff_t>(grid.cells[0]) * grid.cells[1]};
   std::vector<int> begin = {0}, column;
   std::vector<double> value;
-  for (std::size_t c = 0; c < blocks.size(); ++c) {
+  for (std::size_t c = 0; c < blocks.count(); ++c) {
     if (numbers.of_block[c] < 0) continue;
-    const std::size_t cell = blocks[c].front();
+    const std::size_t cell = blocks.First(c);
     const GridIndex at = grid.CellAt(cell);
     double sum = 0;
     std::size_t own = 0;
@@ -184,15 +250,15 @@ Eigen::SparseMatrix<double> Stabilization(const EulerianBody& body, const Euleri
 }
 
 // Which block of cells each row belongs to.
-std::vector<int> Groups(const EulerianBody& body, const std::vector<CellBlock>& blocks, const Numbering& numbers) {
+std::vector<int> Groups(const EulerianBody& body, const CellBlocks& blocks, const Numbering& numbers) {
   const GridIndex size = body.grid.cells;
   const auto along = [&](int axis) { return static_cast<std::size_t>((size[axis] + kGroup - 1) / kGroup); };
   std::vector<int> used(along(0) * along(1) * along(2), -1);
   std::vector<int> groups(static_cast<std::size_t>(numbers.rows));
   int count = 0;
-  for (std::size_t c = 0; c < blocks.size(); ++c) {
+  for (std::size_t c = 0; c < blocks.count(); ++c) {
     if (numbers.of_block[c] < 0) continue;
-    const GridIndex at = body.grid.CellAt(blocks[c].front());
+    const GridIndex at = body.grid.CellAt(blocks.First(c));
     int& group = used[at[0] / kGroup + along(0) * (at[1] / kGroup + along(1) * (at[2] / kGroup))];
     if (group < 0) group = count++;
     groups[numbers.of_block[c]] = group;
@@ -200,16 +266,18 @@ std::vector<int> Groups(const EulerianBody& body, const std::vector<CellBlock>& 
   return groups;
 }
 
-void SetMasses(const NodalForces& nodes, const Numbering& numbers, const std::vector<Vec3>& velocity,
+void SetMasses(const NodalForces& nodes, const Numbering& numbers, const std::vector<Vec3>& velocity, ThreadTeam& team,
                QuadraticProgram& problem) {
   problem.p.resize(3 * numbers.nodes);
   Eigen::VectorXd mass(3 * numbers.nodes);
-  for (std::size_t n = 0; n < nodes.mass.size(); ++n) {
-    const int number = numbers.of_node[n];
-    if (number < 0) continue;
-    mass.segment<3>(3 * number).setConstant(nodes.mass[n]);
-    problem.p.segment<3>(3 * number) = nodes.mass[n] * velocity[n];
-  }
+  team.For(nodes.mass.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const int number = numbers.of_node[n];
+      if (number < 0) continue;
+      mass.segment<3>(3 * number).setConstant(nodes.mass[n]);
+      problem.p.segment<3>(3 * number) = nodes.mass[n] * velocity[n];
+    }
+  });
   problem.M = Eigen::SparseMatrix<double>(mass.asDiagonal());
 }
 
@@ -217,29 +285,19 @@ void SetMasses(const NodalForces& nodes, const Numbering& numbers, const std::ve
 
 Projection ProjectVelocity(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
                            const NodalForces& nodes, const StepLength& step, ThreadTeam& team,
-                           std::vector<Vec3>& velocity) {
+                           std::vector<Vec3>& velocity, std::vector<double>& pressure) {
   const double dt = step.dt;
-  const std::vector<CellBlock> blocks =
-      body.volume == VolumeTreatment::kNone ? std::vector<CellBlock>() : Blocks(body.grid, cells, team);
-  std::vector<CellFluxes> fluxes(blocks.size());
-  team.For(fluxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      CellFluxes all;
-      for (const std::size_t cell : blocks[c]) AddFluxes(body, cells, nodes, cell, all);
-      MergeByNode(all, [](NodeFlux& sum, const NodeFlux& part) { sum.flux += part.flux; });
-      fluxes[c] = std::move(all);
-    }
-  });
-  const Numbering numbers = Number(nodes, fluxes);
+  const CellBlocks blocks = body.volume == VolumeTreatment::kNone ? CellBlocks() : Blocks(body.grid, cells, team);
+  const BlockFluxes fluxes = Fluxes(body, cells, nodes, blocks, team);
+  const Numbering numbers = Number(nodes, fluxes, team);
   Projection result;
-  result.pressure.assign(cells.inside.size(), std::numeric_limits<double>::quiet_NaN());
-  result.held_impulses.assign(velocity.size(), Vec3::Zero());
+  result.held_impulses.assign(body.supports > 0 ? velocity.size() : 0, Vec3::Zero());
   if (numbers.nodes == 0) {  // supports hold all of the body
     result.report.status = QpStatus::kSolved;
     return result;
   }
   QuadraticProgram problem;
-  SetMasses(nodes, numbers, velocity, problem);
+  SetMasses(nodes, numbers, velocity, team, problem);
   problem.volumes = VolumeRows(body, cells, blocks, numbers, fluxes, velocity, dt, team);
   problem.E = Stabilization(body, cells, blocks, numbers, step);
   problem.groups = Groups(body, blocks, numbers);
@@ -255,15 +313,17 @@ Projection ProjectVelocity(const EulerianBody& body, const EulerianState& state,
   QpSolution solution;
   result.report = SolveQp(problem, {.tolerance = kTolerance, .team = &team}, solution);
   if (solution.v.size() == 0) return result;
-  for (std::size_t n = 0; n < velocity.size(); ++n) {
-    if (numbers.of_node[n] >= 0) velocity[n] = solution.v.segment<3>(3 * numbers.of_node[n]);
-  }
-  if (stiffness) stiffness->AddHeldImpulses(velocity, result.held_impulses);
-  for (std::size_t c = 0; c < fluxes.size(); ++c) {
+  team.For(velocity.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      if (numbers.of_node[n] >= 0) velocity[n] = solution.v.segment<3>(3 * numbers.of_node[n]);
+    }
+  });
+  if (stiffness && body.supports > 0) stiffness->AddHeldImpulses(velocity, result.held_impulses);
+  for (std::size_t c = 0; c < fluxes.count(); ++c) {
     if (numbers.of_block[c] < 0) continue;
     const double multiplier = solution.volumes[numbers.of_block[c]];
-    for (const std::size_t cell : blocks[c]) result.pressure[cell] = multiplier / dt;
-    for (const NodeFlux& part : fluxes[c]) {
+    for (const std::size_t cell : blocks[c]) pressure[cell] = multiplier / dt;
+    for (const NodeFlux& part : body.supports > 0 ? fluxes[c] : std::span<const NodeFlux>()) {
       if (nodes.support[part.node] >= 0) result.held_impulses[part.node] += multiplier * part.flux;
     }
   }

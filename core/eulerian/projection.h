@@ -14,8 +14,8 @@ struct StepLength {
 
 struct Projection {
   QpReport report;
-  std::vector<double> pressure;     // of each cell, in the mean of the step, compression positive [Pa]; NaN: none
-  std::vector<Vec3> held_impulses;  // of held nodes: what volumes and implicit elasticity push them with [N s]
+  std::vector<Vec3> held_impulses;  // of nodes, if any are held: what volumes and implicit elasticity
+                                    // push held ones with [N s]
 };
 
 // v = argmin 1/2 (v - v*) . M (v - v*), with M + dt^2 K for the first M where elasticity is implicit, where the volume
@@ -23,9 +23,10 @@ struct Projection {
 //   sum over nodes of V grad N . v + eps L p = V (1 - J)/(dt J), or 0,
 // summed over the cells of a block: cells of little solid have no pressure of their own.
 //   velocity  v* of nodes inside, given velocities of held ones; the result. Others are not read.
+//   pressure  of each cell: set in those that have one, in the mean of the step, compression positive [Pa]
 Projection ProjectVelocity(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
                            const NodalForces& nodes, const StepLength& step, ThreadTeam& team,
-                           std::vector<Vec3>& velocity);
+                           std::vector<Vec3>& velocity, std::vector<double>& pressure);
 
 }  // namespace fascicle
 

@@ -1,6 +1,7 @@
 #include "core/eulerian/solver.h"
 
 #include <limits>
+#include <optional>
 
 #include "core/eulerian/advection.h"
 #include "core/eulerian/extrapolation.h"
@@ -58,10 +59,7 @@ EulerianState EulerianSolver::InitialState(const std::function<Vec3(const Vec3&)
     state.X.push_back(map ? map(x) : x);
     state.v.push_back(velocity ? velocity(x) : Vec3::Zero());
   }
-  state.known = NodesInside(*body_, state.X);
-  // Given everywhere: only how far it counts is to be found.
-  std::vector<Vec3> X = state.X;
-  Extrapolate(grid, kBand, 1, *team_, state.known, X);
+  state.known = Band(grid, NodesInside(*body_, state.X), kBand, *team_).Known(kBand);
   state.surface = body_->shape.surface().nodes;
   state.pressure.assign(grid.cell_count(), std::numeric_limits<double>::quiet_NaN());
   CarrySurface(*body_, *team_, state);
@@ -114,13 +112,12 @@ StepProblem EulerianSolver::Prepare(const EulerianState& state, EulerianReport& 
   return StepProblem::kNone;
 }
 
-// v: carried velocities; then those at the end of the step, of nodes inside and held ones.
-StepProblem EulerianSolver::Accelerate(const EulerianState& state, const StepLength& step, std::vector<Vec3>& v,
-                                       EulerianReport& report) {
+// From carried velocities to those at the end of the step, of nodes inside and held ones; and pressures.
+StepProblem EulerianSolver::Accelerate(const EulerianState& state, const StepLength& step, EulerianReport& report) {
   const double dt = step.dt;
+  std::vector<Vec3>& v = next_.v;
   const StageTimer timer(profile_, "constraints");
-  pressure_.assign(state.pressure.size(), std::numeric_limits<double>::quiet_NaN());
-  std::vector<Vec3> impulses(v.size(), Vec3::Zero());  // of the supports
+  std::vector<Vec3> impulses(body_->supports > 0 ? v.size() : 0, Vec3::Zero());  // of the supports
   team_->For(v.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       if (nodes_.support[n] >= 0) {
@@ -132,19 +129,19 @@ StepProblem EulerianSolver::Accelerate(const EulerianState& state, const StepLen
       }
     }
   });
+  next_.pressure.assign(body_->grid.cell_count(), std::numeric_limits<double>::quiet_NaN());
   if (body_->volume != VolumeTreatment::kNone || body_->implicit_elasticity) {
-    const Projection projection = ProjectVelocity(*body_, state, cells_, nodes_, step, *team_, v);
+    const Projection projection = ProjectVelocity(*body_, state, cells_, nodes_, step, *team_, v, next_.pressure);
     const QpReport& qp = projection.report;
     report.minres_iterations = qp.minres_iterations.empty() ? 0 : qp.minres_iterations.back();
     if (qp.status != QpStatus::kSolved) return StepProblem::kVelocitiesNotFound;
-    for (std::size_t n = 0; n < v.size(); ++n) impulses[n] -= projection.held_impulses[n];
-    pressure_ = projection.pressure;
+    for (std::size_t n = 0; n < projection.held_impulses.size(); ++n) impulses[n] -= projection.held_impulses[n];
   }
   reactions_.assign(static_cast<std::size_t>(body_->supports), Vec3::Zero());
-  for (std::size_t n = 0; n < v.size(); ++n) {
+  for (std::size_t n = 0; n < impulses.size(); ++n) {
     if (nodes_.support[n] >= 0) reactions_[nodes_.support[n]] += impulses[n] / dt;
-    if ((nodes_.support[n] >= 0 || nodes_.inside[n] != 0) && !v[n].allFinite()) return StepProblem::kNotFinite;
   }
+  if (!AllFinite(v)) return StepProblem::kNotFinite;
   for (const NodalForces::Follower& follower : nodes_.followers) {
     Vec3 sum = Vec3::Zero();
     for (const NodeWeight& part : follower.leaders) sum += part.weight * v[part.node];
@@ -153,62 +150,67 @@ StepProblem EulerianSolver::Accelerate(const EulerianState& state, const StepLen
   return StepProblem::kNone;
 }
 
+// Of nodes inside and held ones.
+bool EulerianSolver::AllFinite(const std::vector<Vec3>& v) const {
+  return team_->Sum(v.size(), [&](std::size_t begin, std::size_t end) {
+    int wrong = 0;
+    for (std::size_t n = begin; n < end; ++n) {
+      if ((nodes_.support[n] >= 0 || nodes_.inside[n] != 0) && !v[n].allFinite()) ++wrong;
+    }
+    return static_cast<double>(wrong);
+  }) == 0;
+}
+
 void EulerianSolver::Carry(const std::vector<Vec3>& field, const std::vector<Vec3>& v, const EulerianState& state,
                            double dt, std::vector<Vec3>& result) {
   const Flow flow = {&body_->grid, &state.known, &v, dt};
   body_->maccormack ? AdvectMacCormack(flow, field, *team_, result) : Advect(flow, field, *team_, result);
 }
 
-// The map, the surface and what is plastic, with velocities v of the nodes inside, held ones and those that follow.
-StepProblem EulerianSolver::Move(std::vector<Vec3> v, double dt, EulerianState& state) {
+// The map, the surface and what is plastic, with the velocities of nodes inside, held ones and those that follow.
+StepProblem EulerianSolver::Move(const EulerianState& state, double dt) {
   const EulerianGrid& grid = body_->grid;
-  EulerianState next;
-  // The map of nodes outside that follow is their own: it goes with the volumes that their velocities were chosen for.
-  next.known.resize(v.size());
-  for (std::size_t n = 0; n < v.size(); ++n) {
-    next.known[n] = nodes_.moves(n) ? 1 : 0;
-  }
+  std::vector<Vec3>& v = next_.v;
+  std::optional<Band> band;
   {
     const StageTimer timer(profile_, "extrapolation of velocities");
-    std::vector<std::uint8_t> moving = next.known;
-    Extrapolate(grid, kVelocityBand, 0, *team_, moving, v);
+    std::vector<std::uint8_t> moves(v.size());
+    for (std::size_t n = 0; n < v.size(); ++n) moves[n] = nodes_.moves(n) ? 1 : 0;
+    band.emplace(grid, moves, kVelocityBand, *team_);
+    band->Extend(kVelocityBand, 0, *team_, v);
   }
   {
     const StageTimer timer(profile_, "advection of the map");
-    Carry(state.X, v, state, dt, next.X);
+    Carry(state.X, v, state, dt, next_.X);
   }
   {
     const StageTimer timer(profile_, "extrapolation of the map");
-    Extrapolate(grid, kBand, 1, *team_, next.known, next.X);
+    band->Extend(kBand, 1, *team_, next_.X);
+    next_.known = band->Known(kBand);
   }
   {
     const StageTimer timer(profile_, "surface");
-    next.surface = state.surface;
-    next.plastic = state.plastic;
-    next.plastic_places = state.plastic_places;
-    Drift(grid, {&v, &state.known}, dt, *team_, next.surface);
-    Drift(grid, {&v, &state.known}, dt, *team_, next.plastic_places);
-    if (!(CarrySurface(*body_, *team_, next) < kMostSurfaceGap * grid.spacing)) return StepProblem::kInvertedElement;
+    next_.surface = state.surface;
+    next_.plastic = state.plastic;
+    next_.plastic_places = state.plastic_places;
+    Drift(grid, {&v, &state.known}, dt, *team_, next_.surface);
+    Drift(grid, {&v, &state.known}, dt, *team_, next_.plastic_places);
+    if (!(CarrySurface(*body_, *team_, next_) < kMostSurfaceGap * grid.spacing)) return StepProblem::kInvertedElement;
   }
-  next.time = state.time + dt;
   if (body_->plasticity) {
     const StageTimer timer(profile_, "plastic flow");
-    FlowPlastically(*body_, dt, *team_, next);
+    FlowPlastically(*body_, dt, *team_, next_);
   }
-  next.pressure = pressure_;
-  next.step = state.step + 1;
-  next.v = std::move(v);
-  state = std::move(next);
   return StepProblem::kNone;
 }
 
 // Gives a body that nothing holds the momentum that it should have, which is returned.
 Resultant EulerianSolver::Conserve(const EulerianState& state, std::vector<Vec3>& v) const {
-  if (state.momentum_mass == 0 || body_->supports > 0) return MomentumOf(body_->grid, nodes_, v);
+  if (state.momentum_mass == 0 || body_->supports > 0) return MomentumOf(body_->grid, nodes_, v, *team_);
   // Masses of cut cells are not exact, and come and go by a thousandth: velocities shall not.
-  const double part = MassOf(nodes_) / state.momentum_mass;
+  const double part = MassOf(nodes_, *team_) / state.momentum_mass;
   const Resultant wanted = {part * state.momentum, part * state.moment};
-  SetMomentum(body_->grid, nodes_, wanted, state.known, v);
+  SetMomentum(body_->grid, nodes_, wanted, state.known, *team_, v);
   return wanted;
 }
 
@@ -224,19 +226,21 @@ EulerianReport EulerianSolver::Step(double end, EulerianState& state) {
   }
   // The last two steps before a frame are equally long: a very short one would upset pressures.
   step.dt = report.dt = left <= step.stable ? left : std::min(step.stable, left / 2);
-  std::vector<Vec3> now = state.v, v;
-  const Resultant momentum = Conserve(state, now), force = ForceOf(body_->grid, nodes_);
+  next_.time = left <= step.stable ? end : state.time + step.dt;
+  next_.step = state.step + 1;
+  now_ = state.v;
+  const Resultant momentum = Conserve(state, now_), force = ForceOf(body_->grid, nodes_, *team_);
   {
     const StageTimer timer(profile_, "advection of velocities");
-    Carry(now, now, state, step.dt, v);
+    Carry(now_, now_, state, step.dt, next_.v);
   }
-  report.problem = Accelerate(state, step, v, report);
-  if (report.problem == StepProblem::kNone) report.problem = Move(std::move(v), step.dt, state);
+  report.problem = Accelerate(state, step, report);
+  if (report.problem == StepProblem::kNone) report.problem = Move(state, step.dt);
   if (report.problem != StepProblem::kNone) return report;
-  if (left <= step.stable) state.time = end;
-  state.momentum_mass = MassOf(nodes_);
-  state.momentum = momentum.sum + step.dt * force.sum;
-  state.moment = momentum.moment + step.dt * force.moment;
+  next_.momentum_mass = MassOf(nodes_, *team_);
+  next_.momentum = momentum.sum + step.dt * force.sum;
+  next_.moment = momentum.moment + step.dt * force.moment;
+  std::swap(state, next_);
   return report;
 }
 

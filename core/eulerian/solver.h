@@ -46,11 +46,11 @@ class EulerianSolver {
   Resultant Conserve(const EulerianState& state, std::vector<Vec3>& v) const;
   StepLength StableStep(const EulerianState& state) const;
   std::vector<std::int64_t> CellsAtSide() const;
-  StepProblem Accelerate(const EulerianState& state, const StepLength& step, std::vector<Vec3>& v,
-                         EulerianReport& report);
+  StepProblem Accelerate(const EulerianState& state, const StepLength& step, EulerianReport& report);
+  bool AllFinite(const std::vector<Vec3>& v) const;
   void Carry(const std::vector<Vec3>& field, const std::vector<Vec3>& v, const EulerianState& state, double dt,
              std::vector<Vec3>& result);
-  StepProblem Move(std::vector<Vec3> v, double dt, EulerianState& state);
+  StepProblem Move(const EulerianState& state, double dt);
 
   const EulerianBody* body_;
   ThreadTeam* team_;
@@ -58,7 +58,8 @@ class EulerianSolver {
   EulerianCells cells_;  // scratch
   NodalForces nodes_;
   std::vector<Vec3> reactions_;
-  std::vector<double> pressure_;  // of the step that is being made
+  std::vector<Vec3> now_;  // velocities at the start of the step, with the momentum that they should have
+  EulerianState next_;     // that is being made: its memory is used again in the next step
 };
 
 }  // namespace fascicle

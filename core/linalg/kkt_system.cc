@@ -170,12 +170,12 @@ KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const 
   Result result;
   const MultiplierPreconditioner preconditioner(*problem_, *G_, volumes_, inverse_mass_, schur_, hair_, settings.team);
   if (!preconditioner.ok()) return result;
-  const RowMatrix transposed = G_->transpose();
+  const RowMatrix transposed = Transposed(*G_, settings.team);
   const RowMatrix E = problem_->E;  // symmetric: the same by rows
   Eigen::VectorXd v, of_volumes;
   const auto apply = [&](const Eigen::VectorXd& y, Eigen::VectorXd& product) {
-    Product(transposed, y, settings.team, v);
-    v.array() *= inverse_mass_.array();
+    ProductWith(
+        transposed, y, settings.team, [&](Eigen::Index i, double sum) { return inverse_mass_[i] * sum; }, v);
     Product(*G_, v, settings.team, product);
     if (E.size() == 0) return;
     Product(E, y.head(volumes_), settings.team, of_volumes);
@@ -185,8 +185,10 @@ KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const 
     z.resize(r.size());
     preconditioner.Apply(r, z);
   };
-  Eigen::VectorXd r = b_ - *G_ * inverse_mass_.cwiseProduct(problem_->p), step, product;
-  const Eigen::VectorXd side = r;
+  Eigen::VectorXd r, step, product;
+  Product(*G_, inverse_mass_.cwiseProduct(problem_->p), settings.team, product);
+  const Eigen::VectorXd side = b_ - product;
+  r = side;
   result.y = Eigen::VectorXd::Zero(b_.size());
   for (int k = 0; k < kMostRefinements && !result.ok; ++k) {
     const MinresResult minres = Minres(apply, precondition, r, (k == 0 ? 1 : 0.1) * settings.tolerance,
@@ -195,8 +197,9 @@ KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const 
     result.y += step;
     apply(result.y, product);
     r = side - product;
-    Product(transposed, result.y, settings.team, v);
-    result.v = inverse_mass_.cwiseProduct(problem_->p + v);
+    ProductWith(
+        transposed, result.y, settings.team,
+        [&](Eigen::Index i, double sum) { return inverse_mass_[i] * (problem_->p[i] + sum); }, result.v);
     result.ok = IsGood(result, transposed, settings);
     if (!minres.converged && minres.iterations == 0) break;
   }
@@ -213,7 +216,7 @@ KktSystem::Result KktSystem::SolveWhole(const QpSettings& settings) const {
     z.head(n) = inverse_mass_.cwiseProduct(r.head(n));
     of_multipliers.Apply(r.tail(m), z.tail(m));
   };
-  const RowMatrix transposed = G_->transpose();
+  const RowMatrix transposed = Transposed(*G_, settings.team);
   const auto apply = [this](const Eigen::VectorXd& x, Eigen::VectorXd& y) { Apply(x, 0, y); };
   const Eigen::VectorXd side = Side();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n + m), r = side, step, product;

@@ -12,20 +12,28 @@ namespace fascicle {
 
 using RowMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-// y = A x, rows in parallel where there is a team; the same bits without.
-inline void Product(const RowMatrix& A, const Eigen::Ref<const Eigen::VectorXd>& x, ThreadTeam* team,
-                    Eigen::VectorXd& y) {
+// y_i = value(i, (A x)_i), rows in parallel where there is a team; the same bits without.
+template <class Value>
+void ProductWith(const RowMatrix& A, const Eigen::Ref<const Eigen::VectorXd>& x, ThreadTeam* team, const Value& value,
+                 Eigen::VectorXd& y) {
   y.resize(A.rows());
   const auto rows = [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
       double sum = 0;
       for (RowMatrix::InnerIterator entry(A, i); entry; ++entry) sum += entry.value() * x[entry.col()];
-      y[i] = sum;
+      y[i] = value(i, sum);
     }
   };
   const auto count = static_cast<std::size_t>(A.rows());
   constexpr std::size_t kGrain = 512;
   team != nullptr ? team->For(count, kGrain, rows) : rows(0, count);
+}
+
+// y = A x.
+inline void Product(const RowMatrix& A, const Eigen::Ref<const Eigen::VectorXd>& x, ThreadTeam* team,
+                    Eigen::VectorXd& y) {
+  ProductWith(
+      A, x, team, [](Eigen::Index, double sum) { return sum; }, y);
 }
 
 // The largest sum over a row of |A_ij x_j|: what the terms of a constraint amount to.
@@ -40,6 +48,9 @@ inline double LargestTerms(const RowMatrix& A, const Eigen::VectorXd& x, ThreadT
   team != nullptr ? team->For(count, 512, rows) : rows(0, count);
   return sums.size() == 0 ? 0 : sums.maxCoeff();
 }
+
+// A^T, each row's entries in the order of A's rows; shared among the threads of a team, if there is one.
+RowMatrix Transposed(const RowMatrix& A, ThreadTeam* team);
 
 }  // namespace fascicle
 

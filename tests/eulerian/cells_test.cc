@@ -84,7 +84,9 @@ TEST(Extrapolation, CarriesLinearFieldsOn) {
     field[n] = field_at(grid.NodePosition(at));
   }
   ThreadTeam team(2);
-  Extrapolate(grid, 2, 1, team, known, field);
+  const Band band(grid, known, 3, team);
+  band.Extend(2, 1, team, field);
+  known = band.Known(2);
   std::size_t count = 0;
   for (std::size_t n = 0; n < grid.node_count(); ++n) {
     if (known[n] == 0) continue;

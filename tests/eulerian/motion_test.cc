@@ -25,7 +25,7 @@ TEST(EulerianMotion, FliesFreely) {
   EulerianState state = solver.InitialState(nullptr, [&](const Vec3&) { return velocity; });
   const double end = 3 * body.grid.spacing / 0.5;
   ASSERT_EQ(solver.Step(end, state).problem, StepProblem::kNone);
-  const Vec3 momentum = MomentumOf(body.grid, solver.nodes(), state.v).sum;
+  const Vec3 momentum = MomentumOf(body.grid, solver.nodes(), state.v, team).sum;
   while (state.time < end) {
     ASSERT_EQ(solver.Step(end, state).problem, StepProblem::kNone);
   }
@@ -38,7 +38,7 @@ TEST(EulerianMotion, FliesFreely) {
   EXPECT_LT(farthest, 0.05 * body.grid.spacing);
   EXPECT_NEAR(VolumeRatio(body, state), 1, 1e-3);
   solver.Step(2 * end, state);
-  EXPECT_LT((MomentumOf(body.grid, solver.nodes(), state.v).sum - momentum).norm(), 0.01 * momentum.norm());
+  EXPECT_LT((MomentumOf(body.grid, solver.nodes(), state.v, team).sum - momentum).norm(), 0.01 * momentum.norm());
 }
 
 // A ball stretched by 1.1 and let go, its volume kept: on the surface within 0.1 %. Cells gain and lose energy as the
@@ -59,7 +59,7 @@ TEST(EulerianMotion, AStretchedBallKeepsItsVolume) {
       const double energy = EnergyOf(body, state, team);
       if (state.step == 1) first = energy;
       most = std::max(most, energy);
-      push = std::max(push, MomentumOf(body.grid, solver.nodes(), state.v).sum.norm());
+      push = std::max(push, MomentumOf(body.grid, solver.nodes(), state.v, team).sum.norm());
       double length = 0;
       for (const Vec3& x : state.surface) length = std::max(length, x[0]);
       least_length = std::min(least_length, 2 * length / kSide);

@@ -83,8 +83,8 @@ TEST(EulerianSolver, ReactionsBalanceTheMomentum) {
       EulerianState state = solver.InitialState();
       const EulerianReport report = solver.Step(1, state);
       ASSERT_EQ(report.problem, StepProblem::kNone);
-      const Vec3 gained = MomentumOf(body.grid, solver.nodes(), state.v).sum;
-      const Vec3 given = report.dt * (MassOf(solver.nodes()) * body.gravity + solver.reactions()[0]);
+      const Vec3 gained = MomentumOf(body.grid, solver.nodes(), state.v, team).sum;
+      const Vec3 given = report.dt * (MassOf(solver.nodes(), team) * body.gravity + solver.reactions()[0]);
       EXPECT_GT(gained.norm(), 0.1 * report.dt);
       EXPECT_LT((gained - given).norm(), 1e-5 * gained.norm()) << implicit;
     }
