@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/eulerian/fibre_samples.h"
+#include "core/geometry/triangle_tree.h"
 #include "core/scene/rigid_motion.h"
 
 namespace fascicle {
@@ -108,6 +109,30 @@ void SetFibres(const Body& source, EulerianBody& body) {
   };
 }
 
+// Whether a support holds a node of the grid in the body at rest, or of a cell at its surface.
+bool HoldsNode(const EulerianGrid& grid, const Body& body, const TriangleTree& tree, const Region& region) {
+  const RegionPoints points(region, body.surface.nodes, 0.5 * grid.spacing);
+  for (std::size_t n = 0; n < grid.node_count(); ++n) {
+    const Vec3 x = grid.NodePosition(grid.NodeAt(n));
+    if (points.Contain(x) && tree.SignedDistance(x) < grid.spacing) return true;
+  }
+  return false;
+}
+
+// Regions are volumes of the body here: a support needs no vertex of the surface.
+void CheckSupports(const EulerianGrid& grid, const Body& body, const std::string& path, Problems& problems) {
+  if (body.constraints.empty()) return;
+  const TriangleTree tree(body.surface);
+  for (std::size_t k = 0; k < body.constraints.size(); ++k) {
+    const std::int32_t region = body.constraints[k].region;
+    if (region < 0 || region >= static_cast<std::int32_t>(body.regions.size())) continue;
+    if (HoldsNode(grid, body, tree, body.regions[region])) continue;
+    problems.Add(JoinPath(path, IndexPath("constraints", k) + ".region"),
+                 "region `" + body.regions[region].name + "` holds no node of the body's grid",
+                 "supports hold what is within half a cell of their regions: make it larger, or take smaller cells");
+  }
+}
+
 void CheckRoom(const EulerianMethod& method, const TriangleMesh& surface, const std::string& path, Problems& problems) {
   if (!method.room) return;
   const Bounds body = BoundsOf(surface.nodes);
@@ -168,7 +193,14 @@ void CheckEulerianBodies(const Scene& scene, std::span<const std::string> source
     CheckRoom(method, surface, sources[i], problems);
     cells += CellsOf(RoomOf(method, surface), method.cell_size).prod();
   }
-  if (cells <= static_cast<double>(max_cells)) return;
+  if (cells <= static_cast<double>(max_cells)) {
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+      const Body& body = scene.bodies[i];
+      if (!body.surface.nodes.empty())
+        CheckSupports(GridOf(method, body.surface), body, IndexPath("bodies", i), problems);
+    }
+    return;
+  }
   char text[64];
   std::snprintf(text, sizeof(text), "%.4g cells are too many; at most %.4g", cells, static_cast<double>(max_cells));
   problems.Add("eulerian.cell_size", text, "take larger cells, or a smaller margin");

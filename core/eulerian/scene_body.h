@@ -20,7 +20,7 @@ EulerianGrid GridOf(const EulerianMethod& method, const TriangleMesh& surface);
 EulerianBody MakeEulerianBody(const Scene& scene, const Body& body, ThreadTeam& team);
 
 // What makes bodies unfit for their grids: surfaces that bound no solid, grids of more cells than `max_cells` together,
-// rooms that bodies are not in. Adds to `problems`, each with its path.
+// rooms that bodies are not in, supports that hold no node. Adds to `problems`, each with its path.
 //   sources  paths of what the surface of each body was made of, such as `bodies[0].mesh.box`
 void CheckEulerianBodies(const Scene& scene, std::span<const std::string> sources, std::int64_t max_cells,
                          Problems& problems);

@@ -25,7 +25,8 @@ bool Agree(const Constraint& a, const Constraint& b, int axis) {
          SameRotation(a.motion.rotation, b.motion.rotation);
 }
 
-void CheckBody(const Body& body, const std::string& path, Problems& problems) {
+//   volumes  whether regions are volumes of the body, which may have no nodes of its own
+void CheckBody(const Body& body, bool volumes, const std::string& path, Problems& problems) {
   std::map<std::pair<std::int32_t, int>, std::size_t> holder;  // the first constraint on a node and axis
   for (std::size_t k = 0; k < body.constraints.size(); ++k) {
     const Constraint& constraint = body.constraints[k];
@@ -35,7 +36,9 @@ void CheckBody(const Body& body, const std::string& path, Problems& problems) {
       continue;
     }
     const Region& region = body.regions[constraint.region];
-    if (region.nodes.empty()) problems.Add(JoinPath(where, "region"), "region `" + region.name + "` has no nodes");
+    if (region.nodes.empty() && !volumes) {
+      problems.Add(JoinPath(where, "region"), "region `" + region.name + "` has no nodes");
+    }
     bool reported = false;
     for (const std::int32_t node : region.nodes) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -55,7 +58,9 @@ void CheckBody(const Body& body, const std::string& path, Problems& problems) {
 }  // namespace
 
 void CheckConstraints(const Scene& scene, Problems& problems) {
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) CheckBody(scene.bodies[i], IndexPath("bodies", i), problems);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    CheckBody(scene.bodies[i], scene.method == Method::kEulerian, IndexPath("bodies", i), problems);
+  }
 }
 
 }  // namespace fascicle::scene_checks

@@ -145,7 +145,10 @@ TranslatedRegions TranslateRegions(const v1::Body& body, const std::string& body
     Restrict(region, path, result, within);
     problems.Append("", within);
     if (mesh == nullptr || !selector || !within.empty()) continue;
-    if (result.regions.back().nodes.empty()) AddEmptyRegion(body, region, *mesh, path, problems);
+    // Within a surface there are no nodes: whether what the region is for finds any of the grid, or of the surface, is
+    // checked there.
+    const bool may_be_inside = is_surface && !region.has_physical_tag() && !region.has_side();
+    if (result.regions.back().nodes.empty() && !may_be_inside) AddEmptyRegion(body, region, *mesh, path, problems);
   }
   return result;
 }

@@ -129,6 +129,21 @@ TEST(EulerianScene, ASurfaceFileIsEnough) {
   EXPECT_EQ(body.fibres[0], Vec3::UnitZ());
 }
 
+TEST(EulerianScene, ASupportMayBeInside) {
+  Files files;
+  v1::Scene wire = SurfaceScene(files);
+  ASSERT_TRUE(google::protobuf::TextFormat::MergeFromString(
+      R"(regions { name: "core" sphere { center: [30, 30, 30] radius: 12 } } constraints { region: "core" })",
+      wire.mutable_bodies(0)));
+  const auto scene = Translate(wire, files);
+  ASSERT_NE(scene, nullptr);
+  ThreadTeam team(1);
+  const EulerianBody body = MakeEulerianBody(*scene, scene->bodies[0], team);
+  EXPECT_EQ(body.support_of(Vec3(0.03, 0.03, 0.03)), 1);
+  EXPECT_EQ(body.support_of(Vec3(0.03, 0.03, 0.05)), -1);
+  EXPECT_EQ(body.support_of(Vec3(0.03, 0.03, 0)), 0);
+}
+
 TEST(EulerianScene, FibresOfTetrahedraStay) {
   v1::Scene wire = BlockScene();
   ASSERT_TRUE(google::protobuf::TextFormat::MergeFromString(
