@@ -59,7 +59,7 @@ bool IsDiagonal(const Eigen::SparseMatrix<double>& M) {
 }  // namespace
 
 KktSystem::KktSystem(const QuadraticProgram& problem, const std::vector<bool>& active, ThreadTeam* team)
-    : problem_(&problem), volumes_(problem.volumes.count()) {
+    : problem_(&problem), volumes_(problem.volumes.count()), team_(team) {
   if (problem.equalities.count() == 0 && problem.inequalities.count() == 0 && volumes_ > 0) {
     G_ = &problem.volumes.G;
     b_ = problem.volumes.b;
@@ -73,6 +73,7 @@ KktSystem::KktSystem(const QuadraticProgram& problem, const std::vector<bool>& a
     G_ = &stacked_;
     b_ = rows.b();
   }
+  transposed_ = Transposed(*G_, team);
   inverse_mass_ = problem.M.diagonal();
   if (problem.add_product) inverse_mass_ += problem.added_diagonal;
   inverse_mass_ = inverse_mass_.cwiseInverse().eval();
@@ -97,9 +98,12 @@ Eigen::VectorXd KktSystem::Side() const {
 
 void KktSystem::Apply(const Eigen::VectorXd& x, double hair_part, Eigen::VectorXd& y) const {
   const Eigen::Index n = problem_->p.size(), m = b_.size();
+  Eigen::VectorXd product;
   y.resize(n + m);
-  y.head(n) = problem_->Forces(x.head(n)) + G_->transpose() * x.tail(m);
-  y.tail(m) = *G_ * x.head(n);
+  Product(transposed_, x.tail(m), team_, product);
+  y.head(n) = problem_->Forces(x.head(n)) + product;
+  Product(*G_, x.head(n), team_, product);
+  y.tail(m) = product;
   if (problem_->E.size() > 0) y.segment(n, volumes_) -= problem_->E * x.segment(n, volumes_);
   const Eigen::Index first = problem_->E.size() > 0 ? volumes_ : 0;
   y.tail(m - first) -= hair_part * hair_.tail(m - first).cwiseProduct(x.tail(m - first));
@@ -145,21 +149,20 @@ KktSystem::Result KktSystem::SolveMinres(const QpSettings& settings) const {
                                                                             : SolveWhole(settings);
 }
 
-// transposed: G^T.
-bool KktSystem::IsGood(Result& result, const RowMatrix& transposed, const QpSettings& settings) const {
+bool KktSystem::IsGood(Result& result, const QpSettings& settings) const {
   const Eigen::VectorXd forces = problem_->Forces(result.v);
   Eigen::VectorXd product;
-  Product(transposed, result.y, settings.team, product);
+  Product(transposed_, result.y, team_, product);
   const double left = (forces - problem_->p - product).norm(), size = forces.norm() + problem_->p.norm();
   result.stationarity = size > 0 ? left / size : 0;
   const bool balances = left <= settings.tolerance * std::max(problem_->p.norm(), forces.norm());
   result.feasibility = 0;
   if (b_.size() > 0) {
-    Product(*G_, result.v, settings.team, product);
+    Product(*G_, result.v, team_, product);
     product -= b_;
     if (problem_->E.size() > 0) product.head(volumes_) += problem_->E * result.y.head(volumes_);
     const double terms = std::max(
-        {b_.lpNorm<Eigen::Infinity>(), LargestTerms(*G_, result.v, settings.team), std::numeric_limits<double>::min()});
+        {b_.lpNorm<Eigen::Infinity>(), LargestTerms(*G_, result.v, team_), std::numeric_limits<double>::min()});
     result.feasibility = product.lpNorm<Eigen::Infinity>() / terms;
   }
   return balances && result.feasibility <= settings.tolerance;
@@ -168,17 +171,16 @@ bool KktSystem::IsGood(Result& result, const RowMatrix& transposed, const QpSett
 // (G M^-1 G^T + C) y = b - G M^-1 p, then v = M^-1 (p + G^T y).
 KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const {
   Result result;
-  const MultiplierPreconditioner preconditioner(*problem_, *G_, volumes_, inverse_mass_, schur_, hair_, settings.team);
+  const MultiplierPreconditioner preconditioner(*problem_, *G_, volumes_, inverse_mass_, schur_, hair_, team_);
   if (!preconditioner.ok()) return result;
-  const RowMatrix transposed = Transposed(*G_, settings.team);
   const RowMatrix E = problem_->E;  // symmetric: the same by rows
   Eigen::VectorXd v, of_volumes;
   const auto apply = [&](const Eigen::VectorXd& y, Eigen::VectorXd& product) {
     ProductWith(
-        transposed, y, settings.team, [&](Eigen::Index i, double sum) { return inverse_mass_[i] * sum; }, v);
-    Product(*G_, v, settings.team, product);
+        transposed_, y, team_, [&](Eigen::Index i, double sum) { return inverse_mass_[i] * sum; }, v);
+    Product(*G_, v, team_, product);
     if (E.size() == 0) return;
-    Product(E, y.head(volumes_), settings.team, of_volumes);
+    Product(E, y.head(volumes_), team_, of_volumes);
     product.head(volumes_) += of_volumes;
   };
   const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
@@ -186,7 +188,7 @@ KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const 
     preconditioner.Apply(r, z);
   };
   Eigen::VectorXd r, step, product;
-  Product(*G_, inverse_mass_.cwiseProduct(problem_->p), settings.team, product);
+  Product(*G_, inverse_mass_.cwiseProduct(problem_->p), team_, product);
   const Eigen::VectorXd side = b_ - product;
   r = side;
   result.y = Eigen::VectorXd::Zero(b_.size());
@@ -198,9 +200,9 @@ KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const 
     apply(result.y, product);
     r = side - product;
     ProductWith(
-        transposed, result.y, settings.team,
+        transposed_, result.y, team_,
         [&](Eigen::Index i, double sum) { return inverse_mass_[i] * (problem_->p[i] + sum); }, result.v);
-    result.ok = IsGood(result, transposed, settings);
+    result.ok = IsGood(result, settings);
     if (!minres.converged && minres.iterations == 0) break;
   }
   return result;
@@ -209,14 +211,13 @@ KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const 
 KktSystem::Result KktSystem::SolveWhole(const QpSettings& settings) const {
   const Eigen::Index n = problem_->p.size(), m = b_.size();
   Result result;
-  const MultiplierPreconditioner of_multipliers(*problem_, *G_, volumes_, inverse_mass_, schur_, hair_, settings.team);
+  const MultiplierPreconditioner of_multipliers(*problem_, *G_, volumes_, inverse_mass_, schur_, hair_, team_);
   if (!of_multipliers.ok()) return result;
   const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     z.resize(n + m);
     z.head(n) = inverse_mass_.cwiseProduct(r.head(n));
     of_multipliers.Apply(r.tail(m), z.tail(m));
   };
-  const RowMatrix transposed = Transposed(*G_, settings.team);
   const auto apply = [this](const Eigen::VectorXd& x, Eigen::VectorXd& y) { Apply(x, 0, y); };
   const Eigen::VectorXd side = Side();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n + m), r = side, step, product;
@@ -229,7 +230,7 @@ KktSystem::Result KktSystem::SolveWhole(const QpSettings& settings) const {
     r = side - product;
     result.v = x.head(n);
     result.y = -x.tail(m);
-    result.ok = IsGood(result, transposed, settings);
+    result.ok = IsGood(result, settings);
     if (!minres.converged && minres.iterations == 0) break;
   }
   return result;

@@ -39,7 +39,7 @@ class KktSystem {
   Result SolveWhole(const QpSettings& settings) const;
   Result SolveMultipliers(const QpSettings& settings) const;
   // Whether forces balance and constraints hold to a tolerance; sets how well they do.
-  bool IsGood(Result& result, const RowMatrix& transposed, const QpSettings& settings) const;
+  bool IsGood(Result& result, const QpSettings& settings) const;
   // hair_part: 1 with the hair, 0 without.
   void Apply(const Eigen::VectorXd& x, double hair_part, Eigen::VectorXd& y) const;
   // Refines a solution by the factors.
@@ -49,6 +49,8 @@ class KktSystem {
   Eigen::Index volumes_;  // the first rows
   RowMatrix stacked_;     // rows of more than volumes
   const RowMatrix* G_;    // m x n
+  RowMatrix transposed_;  // G^T
+  ThreadTeam* team_;      // shares the products, if there is one
   Eigen::VectorXd b_;
   Eigen::VectorXd inverse_mass_;  // of diag M
   Eigen::VectorXd schur_;         // diagonal of G (diag M)^-1 G^T
