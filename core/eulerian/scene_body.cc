@@ -193,17 +193,17 @@ void CheckEulerianBodies(const Scene& scene, std::span<const std::string> source
     CheckRoom(method, surface, sources[i], problems);
     cells += CellsOf(RoomOf(method, surface), method.cell_size).prod();
   }
-  if (cells <= static_cast<double>(max_cells)) {
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-      const Body& body = scene.bodies[i];
-      if (!body.surface.nodes.empty())
-        CheckSupports(GridOf(method, body.surface), body, IndexPath("bodies", i), problems);
-    }
+  if (cells > static_cast<double>(max_cells)) {
+    char text[64];
+    std::snprintf(text, sizeof(text), "%.4g cells are too many; at most %.4g", cells, static_cast<double>(max_cells));
+    problems.Add("eulerian.cell_size", text, "take larger cells, or a smaller margin");
     return;
   }
-  char text[64];
-  std::snprintf(text, sizeof(text), "%.4g cells are too many; at most %.4g", cells, static_cast<double>(max_cells));
-  problems.Add("eulerian.cell_size", text, "take larger cells, or a smaller margin");
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (body.surface.nodes.empty()) continue;
+    CheckSupports(GridOf(method, body.surface), body, IndexPath("bodies", i), problems);
+  }
 }
 
 }  // namespace fascicle
