@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "core/eulerian/cell_blocks.h"
 #include "core/eulerian/stiffness.h"
 
 namespace fascicle {
@@ -14,8 +15,6 @@ constexpr double kTolerance = 1e-7;
 constexpr std::size_t kGrain = 64;
 // Cells along each axis whose pressures are corrected together.
 constexpr std::int32_t kGroup = 4;
-// Cells that are solid by less share their pressure with one that is more: slivers can't be pushed each by itself.
-constexpr double kWhole = 0.5;
 // The most volume that a cell is to gain or lose in a step, of its own: what the map says beyond is made up for later.
 constexpr double kMostGain = 0.1;
 
@@ -33,7 +32,9 @@ struct BlockFluxes {
   std::vector<std::size_t> size;   // of each block
 
   std::size_t count() const { return size.size(); }
-  std::span<const NodeFlux> operator[](std::size_t block) const { return {&parts[begin[block]], size[block]}; }
+  std::span<const NodeFlux> operator[](std::size_t block) const {
+    return std::span(parts).subspan(begin[block], size[block]);
+  }
 };
 
 // Adds V grad N of the corners of a cell, in place of those that follow others of whom they follow.
@@ -47,59 +48,6 @@ void AddFluxes(const EulerianBody& body, const EulerianCells& cells, const Nodal
       all.push_back({node, weight * flux});
     });
   }
-}
-
-// Cells whose volumes are kept together, block by block: one that is solid for the most part, then those beside it that
-// are less.
-struct CellBlocks {
-  std::vector<std::size_t> cells;
-  std::vector<std::size_t> begin = {0};  // of each block, in `cells`, and the end
-
-  std::size_t count() const { return begin.size() - 1; }
-  std::size_t First(std::size_t block) const { return cells[begin[block]]; }
-  std::span<const std::size_t> operator[](std::size_t block) const {
-    return {&cells[begin[block]], begin[block + 1] - begin[block]};
-  }
-};
-
-// The cell that one of little solid belongs to: the most solid one beside it, if that is solid enough; else itself.
-std::size_t RootOf(const EulerianGrid& grid, const EulerianCells& cells, std::size_t cell) {
-  if (cells.inside[cell] >= kWhole) return cell;
-  const GridIndex at = grid.CellAt(cell);
-  std::size_t root = cell;
-  for (int n = 0; n < 27; ++n) {
-    const GridIndex other = {at[0] - 1 + n % 3, at[1] - 1 + n / 3 % 3, at[2] - 1 + n / 9};
-    if (!grid.HasCell(other)) continue;
-    const std::size_t number = grid.CellNumber(other);
-    if (cells.inside[number] >= kWhole && cells.inside[number] > cells.inside[root]) root = number;
-  }
-  return root;
-}
-
-CellBlocks Blocks(const EulerianGrid& grid, const EulerianCells& cells, ThreadTeam& team) {
-  std::vector<std::size_t> roots(cells.solid.size());
-  team.For(roots.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) roots[c] = RootOf(grid, cells, cells.solid[c]);
-  });
-  std::vector<int> block_of(grid.cell_count(), -1);  // of roots
-  CellBlocks blocks;
-  for (std::size_t c = 0; c < roots.size(); ++c) {
-    if (roots[c] != cells.solid[c]) continue;
-    block_of[roots[c]] = static_cast<int>(blocks.count());
-    blocks.begin.push_back(0);
-  }
-  for (const std::size_t root : roots) ++blocks.begin[block_of[root] + 1];
-  for (std::size_t b = 0; b < blocks.count(); ++b) blocks.begin[b + 1] += blocks.begin[b];
-  // Roots come first, whatever their numbers.
-  blocks.cells.resize(roots.size());
-  std::vector<std::size_t> place(blocks.begin);
-  for (std::size_t c = 0; c < roots.size(); ++c) {
-    if (roots[c] == cells.solid[c]) blocks.cells[place[block_of[roots[c]]]++] = roots[c];
-  }
-  for (std::size_t c = 0; c < roots.size(); ++c) {
-    if (roots[c] != cells.solid[c]) blocks.cells[place[block_of[roots[c]]]++] = cells.solid[c];
-  }
-  return blocks;
 }
 
 // The most nodes that a block's fluxes can name.
@@ -287,7 +235,8 @@ Projection ProjectVelocity(const EulerianBody& body, const EulerianState& state,
                            const NodalForces& nodes, const StepLength& step, ThreadTeam& team,
                            std::vector<Vec3>& velocity, std::vector<double>& pressure) {
   const double dt = step.dt;
-  const CellBlocks blocks = body.volume == VolumeTreatment::kNone ? CellBlocks() : Blocks(body.grid, cells, team);
+  const CellBlocks blocks =
+      body.volume == VolumeTreatment::kNone ? CellBlocks() : MakeCellBlocks(body.grid, cells, team);
   const BlockFluxes fluxes = Fluxes(body, cells, nodes, blocks, team);
   const Numbering numbers = Number(nodes, fluxes, team);
   Projection result;

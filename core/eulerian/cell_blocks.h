@@ -1,0 +1,29 @@
+#ifndef FASCICLE_CORE_EULERIAN_CELL_BLOCKS_H_
+#define FASCICLE_CORE_EULERIAN_CELL_BLOCKS_H_
+
+#include <span>
+#include <vector>
+
+#include "core/eulerian/cells.h"
+
+namespace fascicle {
+
+// Cells whose volumes are kept together, block by block: one that is solid for the most part, then those beside it that
+// are less. Slivers can't be pushed each by itself: they share their pressure with one that is more.
+struct CellBlocks {
+  std::vector<std::size_t> cells;
+  std::vector<std::size_t> begin = {0};  // of each block, in `cells`, and the end
+
+  std::size_t count() const { return begin.size() - 1; }
+  std::size_t First(std::size_t block) const { return cells[begin[block]]; }
+  std::span<const std::size_t> operator[](std::size_t block) const {
+    return std::span(cells).subspan(begin[block], begin[block + 1] - begin[block]);
+  }
+};
+
+// The blocks of all cells that have any solid, by rising first cells. The same for any number of threads.
+CellBlocks MakeCellBlocks(const EulerianGrid& grid, const EulerianCells& cells, ThreadTeam& team);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_EULERIAN_CELL_BLOCKS_H_
