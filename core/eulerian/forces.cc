@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 
+#include <memory>
+
 #include "core/eulerian/plasticity.h"
 
 namespace fascicle {
@@ -13,10 +15,10 @@ constexpr double kPatternStiffness = 0.1;
 // V sigma of a cell [J], its mass [kg], the force on it that is given [N], and what its patterns of the map push with
 // at each corner [N].
 struct CellForce {
-  std::array<Vec3, kPatterns> pattern = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-  Mat3 stress = Mat3::Zero();
-  double mass = 0;
-  Vec3 given = Vec3::Zero();
+  std::array<Vec3, kPatterns> pattern;
+  Mat3 stress;
+  double mass;
+  Vec3 given;
 };
 
 // Patterns g = 1/8 sum of +-X have an energy of 1/2 k V |2 g/h|^2 each [Flanagan & Belytschko 1981, of the reference
@@ -32,7 +34,8 @@ void SetPatterns(const EulerianBody& body, const EulerianState& state, const Gri
 }
 
 CellForce ForceOf(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, std::size_t cell) {
-  CellForce result;
+  const Vec3 none = Vec3::Zero();
+  CellForce result = {{none, none, none, none}, Mat3::Zero(), 0, none};
   if (cells.inside[cell] == 0) return result;
   const double volume = cells.inside[cell] * std::pow(body.grid.spacing, 3);
   const GridIndex at = body.grid.CellAt(cell);
@@ -170,12 +173,13 @@ Mat3 CauchyStress(const EulerianBody& body, const Mat3& Fe, const FibreState& fi
 void SetForces(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, ThreadTeam& team,
                NodalForces& nodes) {
   const EulerianGrid& grid = body.grid;
-  std::vector<CellForce> of_solid(cells.solid.size());
-  team.For(of_solid.size(), 64, [&](std::size_t begin, std::size_t end) {
+  // Not set here: who writes to fresh memory first waits for it, which is better done by all threads.
+  const auto of_solid = std::make_unique_for_overwrite<CellForce[]>(cells.solid.size());
+  team.For(cells.solid.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) of_solid[c] = ForceOf(body, state, cells, cells.solid[c]);
   });
   std::vector<std::int32_t> solid_of(grid.cell_count(), -1);
-  for (std::size_t c = 0; c < of_solid.size(); ++c) solid_of[cells.solid[c]] = static_cast<std::int32_t>(c);
+  for (std::size_t c = 0; c < cells.solid.size(); ++c) solid_of[cells.solid[c]] = static_cast<std::int32_t>(c);
   nodes.mass.resize(grid.node_count());
   nodes.force.resize(grid.node_count());
   team.For(grid.node_count(), 256, [&](std::size_t begin, std::size_t end) {

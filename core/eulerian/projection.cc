@@ -1,6 +1,7 @@
 #include "core/eulerian/projection.h"
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -27,14 +28,12 @@ using CellFluxes = std::vector<NodeFlux>;  // by rising nodes, each once
 
 // The fluxes of blocks, one block after the other.
 struct BlockFluxes {
-  std::vector<NodeFlux> parts;
+  std::unique_ptr<NodeFlux[]> parts;
   std::vector<std::size_t> begin;  // of each block, in `parts`
   std::vector<std::size_t> size;   // of each block
 
   std::size_t count() const { return size.size(); }
-  std::span<const NodeFlux> operator[](std::size_t block) const {
-    return std::span(parts).subspan(begin[block], size[block]);
-  }
+  std::span<const NodeFlux> operator[](std::size_t block) const { return {parts.get() + begin[block], size[block]}; }
 };
 
 // Adds V grad N of the corners of a cell, in place of those that follow others of whom they follow.
@@ -69,7 +68,9 @@ BlockFluxes Fluxes(const EulerianBody& body, const EulerianCells& cells, const N
   });
   fluxes.begin.resize(blocks.count());
   std::exclusive_scan(fluxes.size.begin(), fluxes.size.end(), fluxes.begin.begin(), std::size_t{0});
-  fluxes.parts.resize(blocks.count() == 0 ? 0 : fluxes.begin.back() + fluxes.size.back());
+  // Not set here: who writes to fresh memory first waits for it, which is better done by all threads.
+  fluxes.parts =
+      std::make_unique_for_overwrite<NodeFlux[]>(blocks.count() == 0 ? 0 : fluxes.begin.back() + fluxes.size.back());
   team.For(blocks.count(), kGrain, [&](std::size_t begin, std::size_t end) {
     CellFluxes own;
     for (std::size_t b = begin; b < end; ++b) {
@@ -77,7 +78,7 @@ BlockFluxes Fluxes(const EulerianBody& body, const EulerianCells& cells, const N
       for (const std::size_t cell : blocks[b]) AddFluxes(body, cells, nodes, cell, own);
       MergeByNode(own, [](NodeFlux& sum, const NodeFlux& part) { sum.flux += part.flux; });
       fluxes.size[b] = own.size();
-      std::copy(own.begin(), own.end(), fluxes.parts.begin() + static_cast<std::ptrdiff_t>(fluxes.begin[b]));
+      std::copy(own.begin(), own.end(), fluxes.parts.get() + fluxes.begin[b]);
     }
   });
   return fluxes;

@@ -54,11 +54,7 @@ int Main() {
     Ball two(cells, 2), one(cells, 1);
     const std::string name = cells == 64 ? "eulerian_threads_2" : "eulerian_threads_2_" + std::to_string(cells);
     MedianRatio(
-        name,
-        cells == 32   ? kRounds
-        : cells == 64 ? 5
-                      : 1,
-        [&] { two.Run(); }, [&] { one.Run(); }, {two.Kilocells(), "kcells"});
+        name, cells < 128 ? kRounds : 3, [&] { two.Run(); }, [&] { one.Run(); }, {two.Kilocells(), "kcells"});
     one.PrintStages(cells);
     two.PrintStages(cells);
   }
