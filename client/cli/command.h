@@ -11,7 +11,7 @@
 
 #include "client/lib/client.h"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): of CLI11
 class App;
 }
 
