@@ -41,8 +41,11 @@ Resultant ResultantOf(const EulerianGrid& grid, const NodalForces& nodes, Thread
 }  // namespace
 
 double MassOf(const NodalForces& nodes, ThreadTeam& team) {
-  return SumOverNodes<1>(nodes, team,
-                         [&](std::size_t n, Eigen::Vector<double, 1>& sum) { sum[0] += nodes.mass[n]; })[0];
+  return team.Sum(nodes.mass.size(), [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t n = begin; n < end; ++n) sum += nodes.mass[n];
+    return sum;
+  });
 }
 
 Resultant MomentumOf(const EulerianGrid& grid, const NodalForces& nodes, const std::vector<Vec3>& v, ThreadTeam& team) {

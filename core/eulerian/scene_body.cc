@@ -38,11 +38,16 @@ Material BesidePressure(const Material& material) {
       material);
 }
 
+// What a support holds: its region, and half a cell around it.
+RegionPoints SupportPoints(const Body& body, const Constraint& constraint, double cell_size) {
+  return {body.regions[constraint.region], body.surface.nodes, 0.5 * cell_size};
+}
+
 void SetSupports(const Body& source, double cell_size, EulerianBody& body) {
   if (source.constraints.empty()) return;
   std::vector<RegionPoints> points;
   for (const Constraint& constraint : source.constraints) {
-    points.emplace_back(source.regions[constraint.region], source.surface.nodes, 0.5 * cell_size);
+    points.push_back(SupportPoints(source, constraint, cell_size));
   }
   body.supports = static_cast<int>(points.size());
   body.support_of = [points](const Vec3& X) {
@@ -110,8 +115,7 @@ void SetFibres(const Body& source, EulerianBody& body) {
 }
 
 // Whether a support holds a node of the grid in the body at rest, or of a cell at its surface.
-bool HoldsNode(const EulerianGrid& grid, const Body& body, const TriangleTree& tree, const Region& region) {
-  const RegionPoints points(region, body.surface.nodes, 0.5 * grid.spacing);
+bool HoldsNode(const EulerianGrid& grid, const RegionPoints& points, const TriangleTree& tree) {
   for (std::size_t n = 0; n < grid.node_count(); ++n) {
     const Vec3 x = grid.NodePosition(grid.NodeAt(n));
     if (points.Contain(x) && tree.SignedDistance(x) < grid.spacing) return true;
@@ -126,7 +130,7 @@ void CheckSupports(const EulerianGrid& grid, const Body& body, const std::string
   for (std::size_t k = 0; k < body.constraints.size(); ++k) {
     const std::int32_t region = body.constraints[k].region;
     if (region < 0 || region >= static_cast<std::int32_t>(body.regions.size())) continue;
-    if (HoldsNode(grid, body, tree, body.regions[region])) continue;
+    if (HoldsNode(grid, SupportPoints(body, body.constraints[k], grid.spacing), tree)) continue;
     problems.Add(JoinPath(path, IndexPath("constraints", k) + ".region"),
                  "region `" + body.regions[region].name + "` holds no node of the body's grid",
                  "supports hold what is within half a cell of their regions: make it larger, or take smaller cells");

@@ -85,8 +85,7 @@ KktSystem::KktSystem(const QuadraticProgram& problem, const std::vector<bool>& a
       }
     }
   };
-  const auto count = static_cast<std::size_t>(G_->rows());
-  team != nullptr ? team->For(count, 512, rows_of_schur) : rows_of_schur(0, count);
+  InRanges(team, static_cast<std::size_t>(G_->rows()), kRowGrain, rows_of_schur);
   hair_ = kHair * schur_;
 }
 

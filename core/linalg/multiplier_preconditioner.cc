@@ -59,7 +59,7 @@ RowMatrix ByRows(Eigen::Index count, Eigen::Index columns, ThreadTeam* team, con
   };
   // As few ranges as threads: each has a dense row of its own.
   const std::size_t threads = team != nullptr ? static_cast<std::size_t>(team->size()) : 1;
-  team != nullptr ? team->For(rows.size(), (rows.size() + threads - 1) / threads, make) : make(0, rows.size());
+  InRanges(team, rows.size(), (rows.size() + threads - 1) / threads, make);
   RowMatrix matrix(count, columns);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     matrix.startVec(static_cast<Eigen::Index>(i));
@@ -90,16 +90,15 @@ MultiplierPreconditioner::MultiplierPreconditioner(const QuadraticProgram& probl
 
 bool MultiplierPreconditioner::FactorGroups(const QuadraticProgram& problem, const RowMatrix& G,
                                             const Eigen::VectorXd& inverse_mass) {
-  group_count_ = *std::max_element(groups_.begin(), groups_.end()) + 1;
-  members_.resize(static_cast<std::size_t>(group_count_));
+  members_.resize(static_cast<std::size_t>(*std::max_element(groups_.begin(), groups_.end()) + 1));
   for (std::size_t i = 0; i < groups_.size(); ++i) members_[groups_[i]].push_back(static_cast<Eigen::Index>(i));
-  const RowMatrix rows = ByRows(group_count_, G.cols(), team_, [&](std::size_t g, RowSum& sum) {
+  const RowMatrix rows = ByRows(group_count(), G.cols(), team_, [&](std::size_t g, RowSum& sum) {
     for (const Eigen::Index i : members_[g]) {
       for (RowMatrix::InnerIterator entry(G, i); entry; ++entry) sum.Add(entry.col(), entry.value());
     }
   });
   const RowMatrix columns = Transposed(rows, team_);
-  const RowMatrix product = ByRows(group_count_, group_count_, team_, [&](std::size_t g, RowSum& sum) {
+  const RowMatrix product = ByRows(group_count(), group_count(), team_, [&](std::size_t g, RowSum& sum) {
     for (RowMatrix::InnerIterator entry(rows, static_cast<Eigen::Index>(g)); entry; ++entry) {
       const double weight = entry.value() * inverse_mass[entry.col()];
       for (RowMatrix::InnerIterator other(columns, entry.col()); other; ++other) {
@@ -116,7 +115,7 @@ bool MultiplierPreconditioner::FactorGroups(const QuadraticProgram& problem, con
   Eigen::SparseMatrix<double> matrix = product;
   // A body that nothing holds may have a pressure of its own that changes nothing.
   const double hair = 1e-9 * matrix.diagonal().maxCoeff();
-  for (Eigen::Index g = 0; g < group_count_; ++g) matrix.coeffRef(g, g) += hair;
+  for (Eigen::Index g = 0; g < group_count(); ++g) matrix.coeffRef(g, g) += hair;
   coarse_.compute(matrix);
   return coarse_.info() == Eigen::Success;
 }
@@ -133,21 +132,19 @@ bool MultiplierPreconditioner::FactorOthers(const RowMatrix& G, const Eigen::Vec
 
 void MultiplierPreconditioner::Apply(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> z) const {
   const auto in_parallel = [this](Eigen::Index count, std::size_t grain, const auto& body) {
-    const auto run = [&](std::size_t begin, std::size_t end) {
+    InRanges(team_, static_cast<std::size_t>(count), grain, [&](std::size_t begin, std::size_t end) {
       for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) body(i);
-    };
-    const auto size = static_cast<std::size_t>(count);
-    team_ != nullptr ? team_->For(size, grain, run) : run(0, size);
+    });
   };
-  Eigen::VectorXd of_groups(group_count_);
-  in_parallel(group_count_, 16, [&](Eigen::Index g) {
+  Eigen::VectorXd of_groups(group_count());
+  in_parallel(group_count(), 16, [&](Eigen::Index g) {
     of_groups[g] = 0;
     for (const Eigen::Index i : members_[static_cast<std::size_t>(g)]) of_groups[g] += r[i];
   });
-  if (group_count_ > 0) of_groups = coarse_.solve(of_groups).eval();
+  if (group_count() > 0) of_groups = coarse_.solve(of_groups).eval();
   in_parallel(volumes_, 2048, [&](Eigen::Index i) {
     z[i] = of_volumes_[i] * r[i];
-    if (group_count_ > 0) z[i] += of_groups[groups_[static_cast<std::size_t>(i)]];
+    if (group_count() > 0) z[i] += of_groups[groups_[static_cast<std::size_t>(i)]];
   });
   if (others_ == 0) return;
   z.tail(others_) = r.tail(others_);

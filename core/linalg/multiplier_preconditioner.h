@@ -24,6 +24,7 @@ class MultiplierPreconditioner {
   void Apply(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> z) const;
 
  private:
+  Eigen::Index group_count() const { return static_cast<Eigen::Index>(members_.size()); }
   bool FactorGroups(const QuadraticProgram& problem, const RowMatrix& G, const Eigen::VectorXd& inverse_mass);
   bool FactorOthers(const RowMatrix& G, const Eigen::VectorXd& inverse_mass, const Eigen::VectorXd& hair);
 
@@ -31,7 +32,6 @@ class MultiplierPreconditioner {
   Eigen::VectorXd of_volumes_;
   std::vector<int> groups_;                         // of each volume
   std::vector<std::vector<Eigen::Index>> members_;  // of each group
-  Eigen::Index group_count_ = 0;
   ThreadTeam* team_;
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> coarse_;
   mutable DirectSolver S_;  // solving does not change its factors

@@ -11,10 +11,9 @@ RowMatrix Transposed(const RowMatrix& A, ThreadTeam* team) {
     return static_cast<Eigen::Index>(part * static_cast<std::size_t>(A.rows()) / parts);
   };
   const auto for_parts = [&](const auto& body) {
-    const auto run = [&](std::size_t begin, std::size_t end) {
+    InRanges(team, parts, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t part = begin; part < end; ++part) body(part);
-    };
-    team != nullptr ? team->For(parts, 1, run) : run(0, parts);
+    });
   };
   // Of each part, of each column: its entries, then the place of the next one.
   std::vector<std::vector<int>> places(parts);

@@ -11,6 +11,13 @@
 namespace fascicle {
 
 using RowMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+inline constexpr std::size_t kRowGrain = 512;  // rows that a thread takes at once
+
+// Calls body(begin, end) on ranges of [0, count), in parallel where there is a team; on all of it at once where not.
+template <class Body>
+void InRanges(ThreadTeam* team, std::size_t count, std::size_t grain, const Body& body) {
+  team != nullptr ? team->For(count, grain, body) : body(0, count);
+}
 
 // y_i = value(i, (A x)_i), rows in parallel where there is a team; the same bits without.
 template <class Value>
@@ -24,9 +31,7 @@ void ProductWith(const RowMatrix& A, const Eigen::Ref<const Eigen::VectorXd>& x,
       y[i] = value(i, sum);
     }
   };
-  const auto count = static_cast<std::size_t>(A.rows());
-  constexpr std::size_t kGrain = 512;
-  team != nullptr ? team->For(count, kGrain, rows) : rows(0, count);
+  InRanges(team, static_cast<std::size_t>(A.rows()), kRowGrain, rows);
 }
 
 // y = A x.
@@ -44,8 +49,7 @@ inline double LargestTerms(const RowMatrix& A, const Eigen::VectorXd& x, ThreadT
       for (RowMatrix::InnerIterator entry(A, i); entry; ++entry) sums[i] += std::abs(entry.value() * x[entry.col()]);
     }
   };
-  const auto count = static_cast<std::size_t>(A.rows());
-  team != nullptr ? team->For(count, 512, rows) : rows(0, count);
+  InRanges(team, static_cast<std::size_t>(A.rows()), kRowGrain, rows);
   return sums.size() == 0 ? 0 : sums.maxCoeff();
 }
 
