@@ -41,10 +41,9 @@ struct NodalForces {
 //   add(sum, part)  adds a part to another of the same node
 template <class Part, class Add>
 void MergeByNode(std::vector<Part>& parts, const Add& add) {
-  const auto is_before = [](const Part& a, const Part& b) { return a.node < b.node; };
-  const auto is_not_after = [](const Part& a, const Part& b) { return a.node <= b.node; };
-  if (std::is_sorted(parts.begin(), parts.end(), is_not_after)) return;  // ascending, each once
-  std::stable_sort(parts.begin(), parts.end(), is_before);
+  const auto do_not_rise = [](const Part& a, const Part& b) { return a.node >= b.node; };
+  if (std::adjacent_find(parts.begin(), parts.end(), do_not_rise) == parts.end()) return;
+  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.node < b.node; });
   std::size_t count = 0;
   for (const Part& part : parts) {
     if (count > 0 && parts[count - 1].node == part.node) {

@@ -174,6 +174,8 @@ StepProblem EulerianSolver::Move(const EulerianState& state, double dt) {
   std::optional<Band> band;
   {
     const StageTimer timer(profile_, "extrapolation of velocities");
+    // The map of nodes outside that follow is their own: it goes with the volumes that their velocities were chosen
+    // for.
     std::vector<std::uint8_t> moves(v.size());
     for (std::size_t n = 0; n < v.size(); ++n) moves[n] = nodes_.moves(n) ? 1 : 0;
     band.emplace(grid, moves, kVelocityBand, *team_);
