@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/paths.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +30,7 @@ std::string RoomOf(const std::string& path) {
 }
 
 std::vector<Include> ReadIncludes() {
-  const fs::path root = FASCICLE_ROOT;
+  const fs::path root = testing::ProjectRoot();
   const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
   std::vector<Include> includes;
   for (const char* top : {"core", "server", "client", "proto"}) {

@@ -5,6 +5,8 @@
 #include <ostream>
 #include <stdexcept>
 
+#include "tests/support/paths.h"
+
 namespace fascicle {
 namespace {
 
@@ -28,7 +30,7 @@ void PrintTo(const BadCase& bad, std::ostream* out) { *out << bad.name; }
 
 std::vector<BadCase> AllCases() {
   std::vector<BadCase> cases;
-  for (const auto& entry : fs::directory_iterator(fs::path(FASCICLE_ROOT) / "tests/bad_input/cases")) {
+  for (const auto& entry : fs::directory_iterator(testing::ProjectRoot() / "tests/bad_input/cases")) {
     cases.push_back({entry.path().filename().string(), entry.path(), ReadExpectations(entry.path() / "expect.txt")});
   }
   std::sort(cases.begin(), cases.end(), [](const BadCase& a, const BadCase& b) { return a.name < b.name; });

@@ -11,6 +11,7 @@
 #include "cases.h"
 #include "client/lib/scene_file.h"
 #include "server/translate/translate.h"
+#include "tests/support/paths.h"
 
 namespace fascicle {
 namespace {
@@ -63,8 +64,8 @@ TEST(BadInputCases, AreMany) { EXPECT_GE(AllCases().size(), 40u); }
 
 TEST(BadInputFiles, ASceneThatIsNotThereOrIsAFolder) {
   Problems problems;
-  EXPECT_FALSE(client::LoadScene(FASCICLE_ROOT "/tests/bad_input/cases/none.json", problems).has_value());
-  EXPECT_FALSE(client::LoadScene(FASCICLE_ROOT "/tests/bad_input/cases", problems).has_value());
+  EXPECT_FALSE(client::LoadScene(testing::ProjectRoot() / "tests/bad_input/cases/none.json", problems).has_value());
+  EXPECT_FALSE(client::LoadScene(testing::ProjectRoot() / "tests/bad_input/cases", problems).has_value());
   EXPECT_EQ(problems.count(), 2u);
 }
 
@@ -73,7 +74,7 @@ class GeneratedFiles : public testing::Test {
  protected:
   void SetUp() override {
     std::filesystem::create_directories(folder_ / "scene");
-    std::filesystem::copy_file(FASCICLE_ROOT "/tests/bad_input/cases/mesh_nan/scene.json",
+    std::filesystem::copy_file(testing::ProjectRoot() / "tests/bad_input/cases/mesh_nan/scene.json",
                                folder_ / "scene/scene.json");
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }

@@ -13,6 +13,7 @@
 #include "ratio.h"
 #include "server/embedded_server.h"
 #include "server/translate/translate.h"
+#include "tests/support/paths.h"
 
 namespace fascicle {
 namespace {
@@ -25,7 +26,7 @@ constexpr int kRounds = 9;
 // The demonstration, shortened to 20 frames of some hundred steps each, and with a bulk modulus that fixes the step.
 v1::Scene BenchScene() {
   Problems problems;
-  auto package = client::LoadScene(std::string(FASCICLE_ROOT) + "/client/examples/fusiform_isometric.json", problems);
+  auto package = client::LoadScene(testing::ProjectRoot() / "client/examples/fusiform_isometric.json", problems);
   if (!package) throw std::runtime_error(problems.ToString());
   v1::Scene scene = package->scene;
   scene.set_duration(0.04);

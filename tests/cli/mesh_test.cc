@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "child_process.h"
+#include "tests/support/paths.h"
 
 namespace fascicle::testing {
 namespace {
@@ -19,12 +20,9 @@ using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-fs::path Data() {
-  const char* folder = std::getenv("FASCICLE_DATA");
-  return folder ? fs::path(folder) : fs::path(FASCICLE_ROOT) / "../shared/data";
+std::string Muscle(const std::string& name) {
+  return testing::DataFolder() / "vh_muscle_surfaces" / ("VHM_Left_" + name + "_4k.stl");
 }
-
-std::string Muscle(const std::string& name) { return Data() / "vh_muscle_surfaces" / ("VHM_Left_" + name + "_4k.stl"); }
 
 // A bar of 20 x 20 x 60 along z, as OBJ.
 constexpr const char* kBar = R"(v 0 0 0

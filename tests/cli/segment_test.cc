@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "child_process.h"
+#include "tests/support/paths.h"
 
 namespace fascicle::testing {
 namespace {
@@ -106,9 +107,7 @@ TEST_F(SegmentTest, TellsAllMistakesAtOnceAndWritesNothing) {
 }
 
 TEST_F(SegmentTest, BrightMusclesOfAThigh) {
-  const char* data = std::getenv("FASCICLE_DATA");
-  const fs::path thigh = (data != nullptr ? fs::path(data) : fs::path(FASCICLE_ROOT) / "../shared/data") /
-                         "qmritools_leg_mri/thigh_one_leg_i16.mha";
+  const fs::path thigh = testing::DataFolder() / "qmritools_leg_mri/thigh_one_leg_i16.mha";
   if (!fs::exists(thigh)) GTEST_SKIP() << thigh << " is not there; set FASCICLE_DATA";
   const Finished found = Fascicle({"segment", thigh, "--filter", "wavelet", "--class", "2", "--opening", "2",
                                    "--picture", File("thigh.png"), "--json"});

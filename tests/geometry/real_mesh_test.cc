@@ -9,14 +9,10 @@
 #include "core/geometry/mesh_io.h"
 #include "core/geometry/region.h"
 #include "mesh_samples.h"
+#include "tests/support/paths.h"
 
 namespace fascicle {
 namespace {
-
-std::filesystem::path Data() {
-  const char* folder = std::getenv("FASCICLE_DATA");
-  return folder ? std::filesystem::path(folder) : std::filesystem::path(FASCICLE_ROOT) / "../shared/data";
-}
 
 struct RealMesh {
   std::string file;
@@ -30,7 +26,7 @@ class RealMeshes : public testing::TestWithParam<RealMesh> {};
 
 TEST_P(RealMeshes, AreReadAndChecked) {
   const RealMesh& expected = GetParam();
-  const std::filesystem::path path = Data() / expected.file;
+  const std::filesystem::path path = testing::DataFolder() / expected.file;
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there; set FASCICLE_DATA";
   const std::string elements =
       path.extension() == ".node" ? ReadFile(std::filesystem::path(path).replace_extension(".ele")) : "";
@@ -82,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // The attachments of a muscle are two patches at its ends.
 TEST(RealMeshTest, AttachmentsAreTagged) {
-  const std::filesystem::path path = Data() / "vh_muscle_tets/VHM_Left_Muscle_BicepsFemorisLongus.msh";
+  const std::filesystem::path path = testing::DataFolder() / "vh_muscle_tets/VHM_Left_Muscle_BicepsFemorisLongus.msh";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there; set FASCICLE_DATA";
   Problems problems;
   const std::optional<TetMesh> mesh = ReadMesh({path.string(), ReadFile(path), ""}, problems);

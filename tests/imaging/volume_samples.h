@@ -14,6 +14,7 @@
 #include <string>
 
 #include "core/imaging/volume_image.h"
+#include "tests/support/paths.h"
 
 namespace fascicle::testing {
 
@@ -42,11 +43,6 @@ class Folder {
 inline std::string ReadBytes(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-inline std::filesystem::path DataFolder() {
-  const char* folder = std::getenv("FASCICLE_DATA");
-  return folder != nullptr ? std::filesystem::path(folder) : std::filesystem::path(FASCICLE_ROOT) / "../shared/data";
 }
 
 // Different whole numbers in all voxels, some below 0; every axis of another length and spacing, none along x, y or z.

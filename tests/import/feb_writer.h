@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/geometry/shapes.h"
+#include "tests/support/paths.h"
 
 // Writes models as FEBio reads them, version 3.0 and 4.0, for tests: of the reference problems among others.
 namespace fascicle::testing {
@@ -136,14 +137,9 @@ class FebWriter {
   std::string material_, sets_, boundary_, loads_;
 };
 
-inline std::string ReferenceFolder() {
-  const char* folder = std::getenv("FASCICLE_REFERENCE");
-  return folder != nullptr ? folder : FASCICLE_ROOT "/../shared/reference";
-}
-
 // One of the FEBio reference results; none when it is not there.
 inline std::optional<nlohmann::json> ReadReference(const std::string& name) {
-  std::ifstream file(ReferenceFolder() + "/febio/" + name + ".json");
+  std::ifstream file(ReferenceFolder() / "febio" / (name + ".json"));
   if (!file) return std::nullopt;
   return nlohmann::json::parse(file);
 }

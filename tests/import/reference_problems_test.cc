@@ -142,7 +142,7 @@ class ReferenceProblemTest : public ::testing::TestWithParam<Case> {
   }
   std::string Skipped() const {
     return problem_ ? "the problem has no field of " + GetParam().element
-                    : "no reference results in " + ReferenceFolder() + " (set FASCICLE_REFERENCE)";
+                    : "no reference results in " + ReferenceFolder().string() + " (set FASCICLE_REFERENCE)";
   }
 
   // A cantilever along x: its end pulled down by `force` [N] over an area of 1 mm^2.

@@ -13,6 +13,7 @@
 
 #include "core/materials/material.h"
 #include "core/materials/uniaxial_curve.h"
+#include "tests/support/paths.h"
 
 namespace fascicle {
 namespace {
@@ -114,8 +115,7 @@ TEST(UniaxialTension, IncompressibleMooneyRivlin) {
 
 // Problem b of the FEBio references, homogeneous case: a 10 mm cube, c1, c2, K in MPa, every point of the load path.
 TEST(UniaxialTension, MooneyRivlinAgreesWithFebio) {
-  const char* set = std::getenv("FASCICLE_REFERENCE");
-  const std::filesystem::path reference = set != nullptr ? set : FASCICLE_ROOT "/../shared/reference";
+  const std::filesystem::path reference = testing::ReferenceFolder();
   std::ifstream in(reference / "febio/b_uniaxial_mooney_rivlin.json");
   if (!in) GTEST_SKIP() << "no reference results in " << reference << "; set FASCICLE_REFERENCE";
   const nlohmann::json problem = nlohmann::json::parse(in);

@@ -1,4 +1,5 @@
 #include "core/materials/fibre_curves.h"
+#include "tests/support/paths.h"
 
 #include <gtest/gtest.h>
 
@@ -62,8 +63,7 @@ TEST(ActiveCurve, TakesThePublishedValues) {
 
 // Both curves of Blemker 2005 as tabled from public code (8 digits).
 TEST(FibreCurves, AgreeWithTheReferenceTable) {
-  const char* set = std::getenv("FASCICLE_DATA");
-  const std::filesystem::path data = set != nullptr ? set : FASCICLE_ROOT "/../shared/data";
+  const std::filesystem::path data = testing::DataFolder();
   std::ifstream in(data / "reference_curves/muscle_curves.csv");
   if (!in) GTEST_SKIP() << "no reference curves in " << data << "; set FASCICLE_DATA";
   int rows = 0;

@@ -13,6 +13,7 @@
 
 #include "core/geometry/shapes.h"
 #include "core/geometry/triangle_mesh.h"
+#include "tests/support/paths.h"
 
 namespace fascicle {
 
@@ -197,11 +198,6 @@ inline TriangleMesh WithHole(TriangleMesh surface, const Vec3& point, double rad
     return std::any_of(t.begin(), t.end(), [&](std::int32_t n) { return (surface.nodes[n] - point).norm() < radius; });
   });
   return surface;
-}
-
-inline std::filesystem::path DataFolder() {
-  const char* folder = std::getenv("FASCICLE_DATA");
-  return folder ? std::filesystem::path(folder) : std::filesystem::path(FASCICLE_ROOT) / "../shared/data";
 }
 
 inline std::string FileBytes(const std::filesystem::path& path) {

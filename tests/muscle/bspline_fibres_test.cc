@@ -21,6 +21,7 @@
 #include "core/geometry/region.h"
 #include "core/geometry/shapes.h"
 #include "core/muscle/muscle_solid.h"
+#include "tests/support/paths.h"
 
 namespace fascicle {
 namespace {
@@ -337,8 +338,7 @@ class FittedToRealMuscle : public testing::TestWithParam<RealMuscle> {};
 
 // Against the fibres that were published with the mesh for the same two attachments.
 TEST_P(FittedToRealMuscle, FibresAgreeWithThePublished) {
-  const char* set = std::getenv("FASCICLE_DATA");
-  const std::filesystem::path data = set != nullptr ? set : FASCICLE_ROOT "/../shared/data";
+  const std::filesystem::path data = testing::DataFolder();
   const std::string base = (data / "vh_muscle_tets" / GetParam().name).string();
   if (!std::filesystem::exists(base + ".msh")) GTEST_SKIP() << "no anatomy in " << data << "; set FASCICLE_DATA";
   const std::string bytes = ReadAll(base + ".msh");

@@ -16,6 +16,7 @@
 #include "core/geometry/mesh_io.h"
 #include "core/geometry/region.h"
 #include "core/geometry/shapes.h"
+#include "tests/support/paths.h"
 
 namespace fascicle {
 namespace {
@@ -278,8 +279,7 @@ std::string ReadAll(const std::filesystem::path& path) {
 // The biceps femoris of the Visible Human, against the fibres that were published with it for the same two attachments
 // (means over the ten nodes of quadratic tetrahedra). Measured when this was written: 3.40 degrees on average.
 TEST(HarmonicFibres, AgreeWithThoseOfARealMuscle) {
-  const char* set = std::getenv("FASCICLE_DATA");
-  const std::filesystem::path data = set != nullptr ? set : FASCICLE_ROOT "/../shared/data";
+  const std::filesystem::path data = testing::DataFolder();
   const std::filesystem::path base = data / "vh_muscle_tets/VHM_Left_Muscle_BicepsFemorisLongus";
   if (!std::filesystem::exists(base.string() + ".msh"))
     GTEST_SKIP() << "no anatomy in " << data << "; set FASCICLE_DATA";

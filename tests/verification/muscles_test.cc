@@ -8,17 +8,13 @@
 
 #include "client/lib/scene_file.h"
 #include "server/translate/translate.h"
+#include "tests/support/paths.h"
 #include "tet_scenes.h"
 
 namespace fascicle {
 namespace {
 
 using namespace fascicle::testing;
-
-std::filesystem::path DataFolder() {
-  const char* folder = std::getenv("FASCICLE_DATA");
-  return folder != nullptr ? folder : FASCICLE_ROOT "/../shared/data";
-}
 
 // A folder of its own that is gone at the end of the test.
 class TemporaryFolder {
@@ -37,7 +33,7 @@ class TemporaryFolder {
 // Reads an example scene as a user would, with its data files copied beside it.
 std::shared_ptr<const Scene> LoadExample(const std::string& name, const std::vector<std::filesystem::path>& data) {
   const TemporaryFolder folder(name);
-  std::filesystem::copy(std::filesystem::path(FASCICLE_ROOT) / "client/examples" / name, folder.path() / name);
+  std::filesystem::copy(ProjectRoot() / "client/examples" / name, folder.path() / name);
   for (const auto& file : data) std::filesystem::copy(file, folder.path() / file.filename());
   Problems problems;
   const auto package = client::LoadScene((folder.path() / name).string(), problems);

@@ -7,22 +7,19 @@
 #include <optional>
 #include <string>
 
-namespace fascicle::testing {
+#include "tests/support/paths.h"
 
-inline std::string ReferenceFolder() {
-  const char* folder = std::getenv("FASCICLE_REFERENCE");
-  return folder != nullptr ? folder : FASCICLE_ROOT "/../shared/reference";
-}
+namespace fascicle::testing {
 
 // One of the FEBio reference results; none when it is not there.
 inline std::optional<nlohmann::json> ReadReference(const std::string& name) {
-  std::ifstream file(ReferenceFolder() + "/febio/" + name + ".json");
+  std::ifstream file(ReferenceFolder() / "febio" / (name + ".json"));
   if (!file) return std::nullopt;
   return nlohmann::json::parse(file);
 }
 
 inline std::string NoReference() {
-  return "no reference results in " + ReferenceFolder() + " (set FASCICLE_REFERENCE)";
+  return "no reference results in " + ReferenceFolder().string() + " (set FASCICLE_REFERENCE)";
 }
 
 }  // namespace fascicle::testing

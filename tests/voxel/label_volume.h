@@ -8,14 +8,11 @@
 #include <vector>
 
 #include "core/imaging/volume_reader.h"
+#include "tests/support/paths.h"
 
 namespace fascicle::testing {
 
-inline std::string LabelVolumePath() {
-  const char* folder = std::getenv("FASCICLE_DATA");
-  return std::string(folder != nullptr ? folder : FASCICLE_ROOT "/../shared/data") +
-         "/voxel_labels/upper_arm_biceps1_triceps2_1mm.mha";
-}
+inline std::string LabelVolumePath() { return DataFolder() / "voxel_labels/upper_arm_biceps1_triceps2_1mm.mha"; }
 
 // The voxels of one label of an image; none when it can't be read.
 inline std::optional<VoxelGrid> ReadLabel(const std::string& path, std::uint8_t label) {

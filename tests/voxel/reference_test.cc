@@ -11,6 +11,7 @@
 
 #include "core/voxel/static_solver.h"
 #include "label_volume.h"
+#include "tests/support/paths.h"
 #include "voxel_scenes.h"
 
 namespace fascicle {
@@ -20,10 +21,7 @@ using testing::BoxGrid;
 using testing::LabelVolumePath;
 using testing::ReadLabel;
 
-std::string ReferencePath() {
-  const char* folder = std::getenv("FASCICLE_REFERENCE");
-  return std::string(folder != nullptr ? folder : FASCICLE_ROOT "/../shared/reference") + "/voxel/README.md";
-}
+std::string ReferencePath() { return testing::ReferenceFolder() / "voxel/README.md"; }
 
 struct Row {
   std::string model;

@@ -1,0 +1,18 @@
+#ifndef FASCICLE_TESTS_SUPPORT_PATHS_H_
+#define FASCICLE_TESTS_SUPPORT_PATHS_H_
+
+#include <filesystem>
+
+// Folders that tests read. Thread-safe.
+namespace fascicle::testing {
+
+// The clone that the tests were built from.
+std::filesystem::path ProjectRoot();
+// Real anatomy: $FASCICLE_DATA, or ../shared/data beside the project. May be absent: a test that needs it then skips.
+std::filesystem::path DataFolder();
+// Results of other solvers: $FASCICLE_REFERENCE, or ../shared/reference beside the project. May be absent likewise.
+std::filesystem::path ReferenceFolder();
+
+}  // namespace fascicle::testing
+
+#endif  // FASCICLE_TESTS_SUPPORT_PATHS_H_
