@@ -11,10 +11,10 @@
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
 
-#include "../server/server_process.h"
 #include "cases.h"
 #include "client/lib/client.h"
 #include "fascicle/v1/simulation_service.grpc.pb.h"
+#include "tests/support/server_process.h"
 
 namespace fascicle {
 namespace {
@@ -105,7 +105,7 @@ TEST_F(BadInputService, TheWireIsCheckedToo) {
   body.mutable_fibres()->mutable_file()->set_path("../../etc/passwd");
   body.mutable_fibres()->mutable_file()->set_asset("assets/../../../etc/passwd");
   grpc::ClientContext context;
-  context.set_wait_for_ready(true);  // a first attempt to connect may fail, see Stubs in tests/server/service_fixture.h
+  context.set_wait_for_ready(true);  // see Stubs in tests/support/service_fixture.h
   v1::Job job;
   const grpc::Status status = stub->CreateJob(&context, request, &job);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << status.error_message();

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "ratio.h"
-#include "reference_problems.h"
-#include "static_run.h"
+#include "tests/support/reference_problems.h"
+#include "tests/support/static_run.h"
 
 namespace fascicle {
 namespace {

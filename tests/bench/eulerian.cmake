@@ -1,3 +1,2 @@
 # A solid on its grid.
 fascicle_bench(eulerian_bench SOURCES eulerian_bench.cc DEPS core/eulerian core/geometry core/base)
-target_include_directories(eulerian_bench PRIVATE ${CMAKE_SOURCE_DIR}/tests/eulerian)

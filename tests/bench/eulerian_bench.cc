@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "ratio.h"
-#include "solids.h"
+#include "tests/support/solids.h"
 
 namespace fascicle::bench {
 namespace {

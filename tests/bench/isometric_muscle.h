@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "reference_problems.h"
-#include "static_run.h"
+#include "tests/support/reference_problems.h"
+#include "tests/support/static_run.h"
 
 // Problem d of the reference problems, a muscle held at both ends, in the sizes that benchmarks run: quadratic elements
 // with curved edges on n x n x lengthwise hexahedra of six tetrahedra each.

@@ -11,8 +11,8 @@
 
 #include "ratio.h"
 #include "server/store/store.h"
-#include "tests/store/samples.h"
-#include "tests/store/temporary_directory.h"
+#include "tests/support/store_samples.h"
+#include "tests/support/temporary_directory.h"
 
 namespace fascicle::server {
 namespace {

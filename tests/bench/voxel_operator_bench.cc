@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "../voxel/voxel_scenes.h"
 #include "ratio.h"
 #include "roofs.h"
+#include "tests/support/voxel_scenes.h"
 #include "voxel_matrix.h"
 
 namespace fascicle::bench {

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "../voxel/label_volume.h"
 #include "core/voxel/static_solver.h"
 #include "ratio.h"
+#include "tests/support/label_volume.h"
 #include "voxel_matrix.h"
 
 namespace fascicle::bench {

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "tet_scenes.h"
+#include "tests/support/tet_scenes.h"
 
 namespace fascicle {
 namespace {

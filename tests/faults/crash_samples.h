@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "tests/store/samples.h"
+#include "tests/support/store_samples.h"
 
 namespace fascicle::server {
 

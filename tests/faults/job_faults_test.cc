@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "failing_store.h"
 #include "server/jobs/job_manager.h"
-#include "tests/jobs/box_jobs.h"
-#include "tests/store/failing_store.h"
+#include "tests/support/box_jobs.h"
 
 namespace fascicle::server {
 namespace {

@@ -1,2 +1,2 @@
 # Jobs on a store that fails.
-fascicle_test(job_faults_test SOURCES job_faults_test.cc DEPS tests/jobs tests/store server/jobs TIMEOUT 180)
+fascicle_test(job_faults_test SOURCES job_faults_test.cc DEPS server/jobs server/store core/geometry core/sim TIMEOUT 180)

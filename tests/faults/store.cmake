@@ -1,8 +1,8 @@
 # The store under kill -9.
 add_executable(store_crash_writer store_crash_writer.cc)
 target_link_libraries(store_crash_writer PRIVATE fascicle_settings Threads::Threads)
-fascicle_link(store_crash_writer PRIVATE tests/store server/store)
+fascicle_link(store_crash_writer PRIVATE tests/support server/store)
 
-fascicle_test(store_crash_test SOURCES store_crash_test.cc DEPS tests/store server/store TIMEOUT 180)
+fascicle_test(store_crash_test SOURCES store_crash_test.cc DEPS server/store TIMEOUT 180)
 target_compile_definitions(store_crash_test PRIVATE CRASH_WRITER="$<TARGET_FILE:store_crash_writer>")
 add_dependencies(store_crash_test store_crash_writer)

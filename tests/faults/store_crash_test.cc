@@ -17,8 +17,8 @@
 #include "crash_samples.h"
 #include "server/store/database.h"
 #include "server/store/store.h"
-#include "tests/store/samples.h"
-#include "tests/store/temporary_directory.h"
+#include "tests/support/store_samples.h"
+#include "tests/support/temporary_directory.h"
 
 extern char** environ;
 

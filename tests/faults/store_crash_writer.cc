@@ -11,7 +11,7 @@
 
 #include "crash_samples.h"
 #include "server/store/store.h"
-#include "tests/store/samples.h"
+#include "tests/support/store_samples.h"
 
 namespace fascicle::server {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../import/sample_models.h"
+#include "tests/support/sample_models.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

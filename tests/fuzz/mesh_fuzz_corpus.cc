@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../geometry/mesh_samples.h"
+#include "tests/support/mesh_samples.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

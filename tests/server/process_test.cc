@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "client/lib/client.h"
-#include "server_process.h"
-#include "service_fixture.h"
+#include "tests/support/server_process.h"
+#include "tests/support/service_fixture.h"
 
 namespace fascicle::service_test {
 namespace {

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "core/materials/uniaxial_curve.h"
-#include "reference_problems.h"
-#include "static_run.h"
+#include "tests/support/reference_problems.h"
+#include "tests/support/static_run.h"
 #include "twisted_rod.h"
 
 namespace fascicle {

@@ -1,9 +1,9 @@
 // The FEBio reference problems by quasi-static stepping with default settings: figures and fields.
 #include <gtest/gtest.h>
 
-#include "reference_file.h"
-#include "reference_problems.h"
-#include "static_run.h"
+#include "tests/support/reference_file.h"
+#include "tests/support/reference_problems.h"
+#include "tests/support/static_run.h"
 
 namespace fascicle {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "core/tet/diagnostics.h"
-#include "reference_file.h"
-#include "tet_scenes.h"
+#include "tests/support/reference_file.h"
+#include "tests/support/tet_scenes.h"
 
 namespace fascicle {
 namespace {

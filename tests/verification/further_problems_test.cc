@@ -5,8 +5,8 @@
 #include <functional>
 #include <numbers>
 
-#include "reference_problems.h"
-#include "static_run.h"
+#include "tests/support/reference_problems.h"
+#include "tests/support/static_run.h"
 #include "twisted_rod.h"
 
 namespace fascicle {

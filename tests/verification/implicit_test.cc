@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "reference_problems.h"
-#include "static_run.h"
+#include "tests/support/reference_problems.h"
+#include "tests/support/static_run.h"
 
 namespace fascicle {
 namespace {

@@ -2,8 +2,8 @@
 // after a restart, and a time that grows with the size.
 #include <gtest/gtest.h>
 
-#include "reference_problems.h"
-#include "static_run.h"
+#include "tests/support/reference_problems.h"
+#include "tests/support/static_run.h"
 
 namespace fascicle {
 namespace {

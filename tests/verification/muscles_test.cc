@@ -9,7 +9,7 @@
 #include "client/lib/scene_file.h"
 #include "server/translate/translate.h"
 #include "tests/support/paths.h"
-#include "tet_scenes.h"
+#include "tests/support/tet_scenes.h"
 
 namespace fascicle {
 namespace {

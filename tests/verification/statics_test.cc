@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/tet/diagnostics.h"
-#include "tet_scenes.h"
+#include "tests/support/tet_scenes.h"
 
 namespace fascicle {
 namespace {

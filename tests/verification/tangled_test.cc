@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/tet/diagnostics.h"
-#include "tet_scenes.h"
+#include "tests/support/tet_scenes.h"
 
 namespace fascicle {
 namespace {

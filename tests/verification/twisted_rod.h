@@ -5,7 +5,7 @@
 #include <numbers>
 #include <set>
 
-#include "static_run.h"
+#include "tests/support/static_run.h"
 
 // A round rod along z, its surface curved, whose one end is turned while its length is held.
 namespace fascicle::testing {

@@ -1,0 +1,431 @@
+// The command line as its users see it: child processes, exit codes, what they print and leave behind.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "tests/support/child_process.h"
+
+namespace fascicle::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kNobody = "127.0.0.1:1";
+
+// A block of rubber that shivers: `frames` frames of `steps` steps each.
+std::string SceneText(int frames, int steps) {
+  return R"({"name": "block", "bodies": [{"name": "block", "unit": "cm",
+    "mesh": {"box": {"size": [1, 1, 1], "divisions": [3, 3, 3]}},
+    "material": {"neo_hookean": {"young_modulus": 1e4}},
+    "regions": [{"name": "floor", "plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}}],
+    "constraints": [{"region": "floor"}]}],
+    "gravity": {"acceleration": [0, 0, -9.81]},
+    "duration": )" +
+         std::to_string(1e-4 * frames * steps) + R"(, "output": {"frame_interval": )" + std::to_string(1e-4 * steps) +
+         R"(, "fields": ["von_mises_stress"]}, "tet": {"time_step": 1e-4}})";
+}
+
+std::vector<json> Lines(const std::string& text) {
+  std::vector<json> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(json::parse(line));
+  return lines;
+}
+
+class CliTest : public ::testing::Test {
+ protected:
+  Finished Fascicle(std::vector<std::string> arguments, const std::string& server = "") {
+    arguments.insert(arguments.begin(), FASCICLE_PROGRAM);
+    return RunProgram(arguments, {{"FASCICLE_SERVER", server}, {"DISPLAY", ""}, {"TMPDIR", Temporary()}});
+  }
+  std::string Scene(const std::string& name, const std::string& text) {
+    WriteText(folder_ / name, text);
+    return folder_ / name;
+  }
+  std::string Temporary() {
+    fs::create_directories(folder_.path() / "tmp");
+    return folder_ / "tmp";
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(CliTest, HelpTellsExitCodesAndExamples) {
+  const Finished help = Fascicle({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.out, AllOf(HasSubstr("Exit codes:"), HasSubstr("3  no server")));
+  for (const char* command : {"run", "submit", "validate", "watch", "list", "show", "cancel", "delete", "export",
+                              "render", "plot", "mesh", "materials", "schema", "examples", "completion"}) {
+    EXPECT_THAT(help.out, HasSubstr(command));
+    const Finished own = Fascicle({command, "--help"});
+    EXPECT_EQ(own.exit_code, 0) << command;
+    EXPECT_THAT(own.out, HasSubstr(std::string("fascicle ") + command)) << command;
+  }
+}
+
+TEST_F(CliTest, TellsItsVersion) {
+  const Finished version = Fascicle({"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_THAT(version.out, ::testing::MatchesRegex("fascicle [0-9.]+\n"));
+}
+
+TEST_F(CliTest, WrongCommandLinesAreInvalidInput) {
+  EXPECT_EQ(Fascicle({}).exit_code, 2);
+  EXPECT_EQ(Fascicle({"fly"}).exit_code, 2);
+  EXPECT_EQ(Fascicle({"run"}).exit_code, 2);
+  EXPECT_EQ(Fascicle({"run", "a.json", "--threads", "0"}).exit_code, 2);
+  EXPECT_EQ(Fascicle({"render", "x", "--out", "a.png", "--size", "huge"}).exit_code, 2);
+  EXPECT_EQ(Fascicle({"list", "--state", "sleeping"}).exit_code, 2);
+  EXPECT_EQ(Fascicle({"completion", "tcsh"}).exit_code, 2);
+  EXPECT_EQ(Fascicle({"examples", "write", "none"}).exit_code, 2);
+  EXPECT_EQ(Fascicle({"schema", "none"}).exit_code, 2);
+  EXPECT_EQ(Fascicle({"materials", "none"}).exit_code, 2);
+}
+
+TEST_F(CliTest, WithoutServerEveryCommandSaysSo) {
+  const std::string scene = Scene("scene.json", SceneText(2, 5));
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{"submit", scene}, {"list"}, {"show", "x"}}) {
+    const Finished finished = Fascicle(command, kNobody);
+    EXPECT_EQ(finished.exit_code, 3) << command[0] << finished.err;
+    EXPECT_THAT(finished.err, HasSubstr("127.0.0.1:1")) << command[0];
+  }
+}
+
+TEST_F(CliTest, InvalidScenesListEveryProblem) {
+  const std::string scene = Scene("bad.json", R"({"duraton": 1, "bodies": [{"unit": "inch"}]})");
+  for (const char* command : {"run", "validate", "submit"}) {
+    const Finished human = Fascicle({command, scene});
+    EXPECT_EQ(human.exit_code, 2) << command;
+    EXPECT_EQ(human.out, "");
+    EXPECT_THAT(human.err,
+                AllOf(HasSubstr("duraton: unknown field (did you mean duration?)\n"), HasSubstr("bodies[0].unit: ")));
+    const Finished program = Fascicle({command, scene, "--json"});
+    EXPECT_EQ(program.exit_code, 2);
+    const json object = json::parse(program.out);
+    EXPECT_GE(object["problems"].size(), 2u);
+  }
+  EXPECT_TRUE(fs::is_empty(Temporary())) << "nothing is left behind";
+}
+
+TEST_F(CliTest, TheServersProblemsComeTheSameWay) {
+  std::string text = SceneText(2, 5);
+  text.replace(text.find("1e4"), 3, "-10");
+  const std::string scene = Scene("bad.json", text);
+  for (const char* command : {"run", "validate"}) {
+    const Finished finished = Fascicle({command, scene});
+    EXPECT_EQ(finished.exit_code, 2) << finished.err;
+    EXPECT_THAT(finished.err, HasSubstr("bodies[0].material.neo_hookean.young_modulus: "));
+  }
+}
+
+TEST_F(CliTest, RunLeavesTablesSeriesAndPictures) {
+  const std::string scene = Scene("scene.json", SceneText(4, 20));
+  const Finished finished = Fascicle({"run", scene, "--out", folder_ / "out", "--data", folder_ / "data", "--json"});
+  ASSERT_EQ(finished.exit_code, 0) << finished.err;
+  const json summary = json::parse(finished.out);
+  EXPECT_EQ(summary["state"], "succeeded");
+  EXPECT_EQ(summary["frames"], 5);
+  const json& kinetic = summary["series"]["energy/kinetic"];
+  EXPECT_EQ(kinetic["unit"], "J");
+  EXPECT_GE(kinetic["max"], kinetic["final"]);
+  EXPECT_GE(kinetic["final"], kinetic["min"]);
+  for (const char* file :
+       {"series.csv", "series.png", "last.png", "frames.pvd", "frames/block_000004.vtu", "summary.json"}) {
+    EXPECT_GT(fs::file_size(folder_.path() / "out" / file), 100u) << file;
+  }
+  EXPECT_EQ(json::parse(ReadText(folder_ / "out/summary.json")), summary);
+  EXPECT_FALSE(fs::is_empty(folder_.path() / "data"));
+}
+
+TEST_F(CliTest, RunWithoutDataLeavesNothing) {
+  const Finished finished = Fascicle({"run", Scene("scene.json", SceneText(2, 5))});
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("succeeded"), HasSubstr("energy/elastic")));
+  EXPECT_THAT(finished.err, Not(HasSubstr("\x1b"))) << "no bar without a terminal";
+  EXPECT_TRUE(fs::is_empty(Temporary()));
+}
+
+TEST_F(CliTest, RunTellsWhereTheTimeWent) {
+  const std::string scene = Scene("scene.json", SceneText(20, 50));
+  const Finished text = Fascicle({"run", scene, "--profile"});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, AllOf(HasSubstr("\nstage "), HasSubstr("\nset-up "), HasSubstr("\n  elastic force "),
+                              HasSubstr("\nwhole "), HasSubstr("meanwhile"), HasSubstr("\nencode ")));
+  EXPECT_THAT(Fascicle({"run", scene}).out, Not(HasSubstr("elastic force")));
+  const json summary = json::parse(Fascicle({"run", scene, "--profile", "--json"}).out);
+  const json& profile = summary["profile"];
+  double top = profile["rest_seconds"];
+  for (const json& stage : profile["stages"]) {
+    EXPECT_GE(stage["seconds"], 0);
+    if (stage["name"] == "step") {
+      EXPECT_EQ(stage["calls"], 1000);
+    }
+    if (!stage.contains("concurrent") && stage["name"].get<std::string>().find('/') == std::string::npos) {
+      top += stage["seconds"].get<double>();
+    }
+  }
+  EXPECT_NEAR(top, profile["wall_seconds"], 1e-9);
+  EXPECT_GT(profile["wall_seconds"], 0);
+}
+
+TEST_F(CliTest, SettingsChangeTheScene) {
+  const std::string scene = Scene("scene.json", SceneText(2, 5));
+  const auto set = [&](const std::string& setting) { return Fascicle({"validate", scene, "--set", setting}); };
+  const Finished shorter =
+      Fascicle({"run", scene, "--json", "--set", "duration=0.0005", "--set",
+                "bodies[0].material={\"linear_elastic\": {\"young_modulus\": 1e4}}", "--set", "name=half as long"});
+  EXPECT_EQ(shorter.exit_code, 0) << shorter.err;
+  EXPECT_EQ(json::parse(shorter.out)["frames"], 2);
+  EXPECT_EQ(set("bodies[0].density=900").exit_code, 0) << "adds what is not there";
+  // What is wrong is told under the path that was set.
+  const Finished negative = set("bodies[0].density=-1");
+  EXPECT_EQ(negative.exit_code, 2);
+  EXPECT_THAT(negative.err, HasSubstr("bodies[0].density: "));
+  for (const std::string setting :
+       {"bodies[7].density=1", "bodies.density=1", "bodies[0].[1]=2", "duration", "=1", "bodies[x]=1", "..=1"}) {
+    const Finished finished = set(setting);
+    EXPECT_EQ(finished.exit_code, 2) << setting;
+    EXPECT_THAT(finished.err, HasSubstr("--set")) << setting;
+  }
+}
+
+TEST_F(CliTest, AFailedJobSaysWhy) {
+  std::string text = SceneText(10, 100);
+  const std::string floor = R"({"region": "floor"}])";  // and a lid that is pushed through it
+  text.replace(text.find(floor), floor.size(), R"({"region": "floor"}, {"region": "lid", "motion": {"translation":
+    [{"axis": "z", "curve": {"times": [0, 0.05], "values": [0, -0.02]}}]}}])");
+  const std::string regions = R"("regions": [)";
+  text.replace(text.find(regions), regions.size(),
+               regions + R"({"name": "lid", "plane": {"point": [0, 0, 1], "normal": [0, 0, 1]}}, )");
+  const Finished finished = Fascicle({"run", Scene("scene.json", text), "--json"});
+  EXPECT_EQ(finished.exit_code, 1) << finished.out << finished.err;
+  const json summary = json::parse(finished.out);
+  EXPECT_EQ(summary["state"], "failed");
+  EXPECT_FALSE(summary["failure"]["reason"].get<std::string>().empty());
+}
+
+TEST_F(CliTest, CtrlCCancelsARun) {
+  ChildProcess run({FASCICLE_PROGRAM, "run", Scene("scene.json", SceneText(1000, 1000)), "--json"},
+                   {{"TMPDIR", Temporary()}});
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  run.Signal(SIGINT);
+  const Finished finished = run.Wait();
+  EXPECT_EQ(finished.exit_code, 4) << finished.err;
+  EXPECT_EQ(json::parse(finished.out)["state"], "cancelled");
+  EXPECT_TRUE(fs::is_empty(Temporary()));
+}
+
+TEST_F(CliTest, EveryExampleCanBeWrittenAndIsValid) {
+  const Finished written = Fascicle({"examples", "write", "--all", "--out", folder_ / "examples"});
+  EXPECT_EQ(written.exit_code, 0) << written.err;
+  int valid = 0;
+  for (const json& example : Lines(Fascicle({"examples", "--json"}).out)) {
+    if (!example["needs"].empty()) continue;  // a mesh that is not ours
+    const Finished checked =
+        Fascicle({"validate", folder_ / ("examples/" + example["example"].get<std::string>() + ".json")});
+    EXPECT_EQ(checked.exit_code, 0) << example["example"] << checked.err;
+    ++valid;
+  }
+  EXPECT_GE(valid, 9);
+  EXPECT_EQ(Fascicle({"examples", "write", "bar_tension", "--out", folder_ / "examples"}).exit_code, 2)
+      << "not overwritten";
+}
+
+TEST_F(CliTest, SchemaTellsUnitsRangesAndDefaults) {
+  const Finished all = Fascicle({"schema"});
+  EXPECT_EQ(all.exit_code, 0);
+  EXPECT_THAT(all.out, AllOf(HasSubstr("density: number [kg/m^3], (0, 30000], default 1060"), HasSubstr("\"mm\"")));
+  EXPECT_THAT(Fascicle({"schema", "fusiform"}).out, AllOf(HasSubstr("FusiformShape"), Not(HasSubstr("BoxShape"))));
+  for (const json& type : Lines(Fascicle({"schema", "--json"}).out)) {
+    for (const json& field : type.value("fields", json::array())) {
+      EXPECT_FALSE(field["comment"].get<std::string>().empty()) << field;
+      const bool number = field["type"] == "number" || field["type"] == "whole number";
+      const bool ruled = field.contains("range") || field["name"] == "physical_tag" || type["message"] == "Curve";
+      EXPECT_TRUE(!number || ruled) << type["message"] << field;
+    }
+  }
+}
+
+TEST_F(CliTest, MaterialCurvesAsTableAndPlot) {
+  const Finished list = Fascicle({"materials", "--json"});
+  EXPECT_EQ(Lines(list.out).size(), 8u);
+  const Finished curve = Fascicle({"materials", "curve", "muscle", "--activation", "0", "1", "--stretch", "1", "1.4",
+                                   "--points", "5", "--csv", folder_ / "curve.csv", "--out", folder_ / "curve.png"});
+  EXPECT_EQ(curve.exit_code, 0) << curve.err;
+  EXPECT_THAT(curve.out, HasSubstr("activation 1"));
+  EXPECT_GT(fs::file_size(folder_ / "curve.png"), 1000u);
+  const std::string csv = ReadText(folder_ / "curve.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
+  const std::vector<json> curves = Lines(Fascicle({"materials", "curve", "muscle", "--activation", "0", "1",
+                                                   "--stretch", "1", "1.4", "--points", "5", "--json"})
+                                             .out);
+  ASSERT_EQ(curves.size(), 2u);
+  EXPECT_NEAR(curves[0]["nominal_stress"][0].get<double>(), 0, 1e-6) << "no stress at rest";
+  EXPECT_GT(curves[1]["nominal_stress"][4], curves[0]["nominal_stress"][4]) << "activation pulls";
+  const std::vector<json> slow =
+      Lines(Fascicle({"materials", "curve", "muscle", "--activation", "1", "--set", "max_velocity=10", "--velocity",
+                      "-7", "--stretch", "1", "1.4", "--points", "5", "--json"})
+                .out);
+  ASSERT_EQ(slow.size(), 1u);
+  // -7/s at an optimal stretch of 1.4 is half of the largest speed: Hill's (1 - 0.5)/(1 + 0.5/0.25) of the active
+  // stress.
+  const double held = curves[1]["cauchy_stress"][4].get<double>() - curves[0]["cauchy_stress"][4].get<double>();
+  EXPECT_NEAR(slow[0]["cauchy_stress"][4].get<double>() - curves[0]["cauchy_stress"][4].get<double>(), held / 6,
+              0.01 * held);
+  const Finished bad = Fascicle({"materials", "curve", "neo_hookean", "--set", "poisson_ratio=0.7", "--set", "x=1"});
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_THAT(bad.err,
+              AllOf(HasSubstr("young_modulus: is required"), HasSubstr("0.7 is out of range"), HasSubstr("--set x")));
+}
+
+TEST_F(CliTest, CompletionKnowsCommandsAndOptions) {
+  for (const char* shell : {"bash", "zsh", "fish"}) {
+    const Finished script = Fascicle({"completion", shell});
+    EXPECT_EQ(script.exit_code, 0);
+    EXPECT_THAT(script.out, AllOf(HasSubstr("materials"), HasSubstr("digests"))) << shell;
+  }
+  WriteText(folder_ / "completion.bash", Fascicle({"completion", "bash"}).out);
+  const auto complete = [&](const std::string& words, int index) {
+    return RunProgram({"/bin/bash", "-c",
+                       "source " + (folder_ / "completion.bash") + "; COMP_WORDS=(" + words +
+                           "); COMP_CWORD=" + std::to_string(index) + "; _fascicle; echo \"${COMPREPLY[@]}\""})
+        .out;
+  };
+  EXPECT_EQ(complete("fascicle va", 1), "validate\n");
+  EXPECT_EQ(complete("fascicle watch 3f --di", 3), "--digests\n");
+  EXPECT_EQ(complete("fascicle --json materials cu", 3), "curve\n");
+  EXPECT_EQ(complete("fascicle materials curve muscle --act", 4), "--activation\n");
+}
+
+// The same through a server of its own.
+class ServerTest : public CliTest {
+ protected:
+  void SetUp() override {
+    server_ = std::make_unique<ChildProcess>(
+        std::vector<std::string>{FASCICLED_PROGRAM, "--listen", "127.0.0.1:0", "--data", folder_ / "server"});
+    const std::string line = server_->ReadLine();
+    ASSERT_THAT(line, HasSubstr("listening on ")) << server_->Wait().err;
+    address_ = line.substr(line.find("listening on ") + 13);
+  }
+  Finished Call(const std::vector<std::string>& arguments) { return Fascicle(arguments, address_); }
+  std::string Submit(int frames, int steps) {
+    const Finished finished = Call({"submit", Scene("scene.json", SceneText(frames, steps))});
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    return finished.out.substr(0, finished.out.find('\n'));
+  }
+
+  std::unique_ptr<ChildProcess> server_;
+  std::string address_;
+};
+
+TEST_F(ServerTest, AJobsWholeLife) {
+  const std::string job = Submit(5, 20);
+  const Finished watched = Call({"watch", job, "--json"});
+  EXPECT_EQ(watched.exit_code, 0) << watched.err;
+  EXPECT_EQ(json::parse(watched.out)["frames"], 6);
+  EXPECT_EQ(json::parse(Call({"show", job, "--json"}).out)["state"], "succeeded");
+  EXPECT_THAT(Call({"show", job.substr(5)}).out, HasSubstr("succeeded"));
+  EXPECT_EQ(Lines(Call({"list", "--json", "--state", "succeeded"}).out).size(), 1u);
+  EXPECT_THAT(Call({"list"}).out, HasSubstr(job));
+  EXPECT_THAT(Call({"show", job, "--profile"}).out, AllOf(HasSubstr("\n  elastic force"), Not(HasSubstr("succeeded"))));
+  const json profile = json::parse(Call({"show", job, "--profile", "--json"}).out);
+  EXPECT_EQ(profile["runs"], 1);
+  EXPECT_EQ(json::parse(Call({"watch", job, "--profile", "--json"}).out)["profile"], profile);
+  // The scene comes back as a scene file.
+  EXPECT_EQ(Call({"validate", Scene("again.json", Call({"show", job, "--scene"}).out)}).exit_code, 0);
+
+  EXPECT_EQ(Call({"export", job, "--out", folder_ / "out", "--from", "1", "--to", "4", "--every", "3"}).exit_code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "out/frames/block_000004.vtu"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/frames/block_000002.vtu"));
+  const std::string csv = ReadText(folder_ / "out/series.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
+  EXPECT_EQ(Call({"export", job, "--out", folder_ / "out", "--from", "99"}).exit_code, 2);
+
+  const Finished rendered = Call({"render", job, "--out", folder_ / "a.png", "--frame", "2", "--size", "200x150",
+                                  "--wireframe", "--colour", "von_mises_stress", "--view", "front"});
+  EXPECT_EQ(rendered.exit_code, 0) << rendered.err;
+  EXPECT_GT(fs::file_size(folder_ / "a.png"), 2000u);
+  EXPECT_EQ(Call({"render", job, "--out", folder_ / "b.png", "--frame", "77"}).exit_code, 2);
+
+  const std::vector<json> series = Lines(Call({"plot", job, "--series", "energy/*", "--json"}).out);
+  ASSERT_GE(series.size(), 2u);
+  EXPECT_EQ(series[0]["values"].size(), 6u);
+  EXPECT_THAT(Call({"plot", job, "--series", "energy/kinetic"}).out, HasSubstr("energy/kinetic"));
+  EXPECT_EQ(Call({"plot", job, "--series", "none*"}).exit_code, 2);
+  // Series over each other, of two jobs in one picture, from a time on.
+  const std::string other = Submit(5, 20);
+  EXPECT_EQ(Call({"watch", other, "--json"}).exit_code, 0);
+  const std::vector<json> lines = Lines(Call({"plot", job, other, "--series", "energy/kinetic", "--x", "energy/elastic",
+                                              "--from", "0.003", "--out", folder_ / "xy.png", "--json"})
+                                            .out);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0]["values"].size(), 4u);
+  EXPECT_EQ(lines[0]["x"], lines[1]["x"]);
+  EXPECT_GT(fs::file_size(folder_ / "xy.png"), 2000u);
+  EXPECT_EQ(Call({"plot", job, "--x", "none"}).exit_code, 2);
+
+  EXPECT_EQ(Call({"delete", job}).exit_code, 0);
+  EXPECT_EQ(Call({"show", job}).exit_code, 2) << "it is gone";
+}
+
+TEST_F(ServerTest, RunningJobsCanBeCancelledButNotDeleted) {
+  const std::string job = Submit(1000, 1000);
+  EXPECT_EQ(Call({"delete", job}).exit_code, 2);
+  EXPECT_EQ(Call({"cancel", job}).exit_code, 0);
+  const Finished watched = Call({"watch", job, "--json"});
+  EXPECT_EQ(watched.exit_code, 4) << watched.err;
+  EXPECT_EQ(json::parse(watched.out)["state"], "cancelled");
+  for (const char* command : {"show", "cancel", "delete", "watch"}) {
+    EXPECT_EQ(Call({command, "jobs/none"}).exit_code, 2) << command;
+  }
+}
+
+TEST_F(ServerTest, CtrlCLeavesAWatchedJobRunning) {
+  const std::string job = Submit(1000, 1000);
+  ChildProcess watch({FASCICLE_PROGRAM, "--server", address_, "watch", job});
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  watch.Signal(SIGINT);
+  const Finished finished = watch.Wait();
+  EXPECT_EQ(finished.exit_code, 4);
+  EXPECT_THAT(finished.err, HasSubstr("it goes on"));
+  EXPECT_EQ(json::parse(Call({"show", job, "--json"}).out)["state"], "running");
+  EXPECT_EQ(Call({"cancel", job}).exit_code, 0);
+}
+
+// A watcher killed at frame k and restarted with --from k + 1 sees what one that was never killed sees.
+TEST_F(ServerTest, AKilledWatcherGoesOnWithTheSameDigests) {
+  const std::string job = Submit(30, 100);
+  std::vector<std::string> seen;
+  {
+    ChildProcess watch({FASCICLE_PROGRAM, "--server", address_, "watch", job, "--digests"});
+    for (int i = 0; i < 7; ++i) seen.push_back(watch.ReadLine());
+    watch.Signal(SIGKILL);
+    EXPECT_EQ(watch.Wait().exit_code, -SIGKILL);
+  }
+  const auto append = [](const std::string& text, std::vector<std::string>& lines) {
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) {
+      if (line.starts_with("frame ")) lines.push_back(line);
+    }
+  };
+  append(Call({"watch", job, "--digests", "--from", "7"}).out, seen);
+  std::vector<std::string> whole;
+  append(Call({"watch", job, "--digests"}).out, whole);
+  EXPECT_EQ(whole.size(), 31u);
+  EXPECT_EQ(seen, whole);
+}
+
+}  // namespace
+}  // namespace fascicle::testing

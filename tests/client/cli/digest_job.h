@@ -1,0 +1,92 @@
+#ifndef FASCICLE_TESTS_CLIENT_CLI_DIGEST_JOB_H_
+#define FASCICLE_TESTS_CLIENT_CLI_DIGEST_JOB_H_
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/child_process.h"
+
+namespace fascicle::testing {
+
+// The lines of `--digests`: `frame K TIME DIGEST`.
+inline std::vector<std::string> FrameLines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("frame ")) lines.push_back(line);
+  }
+  return lines;
+}
+
+// A job of a scene file through a server that may be killed on the way: what every method promises.
+class DigestJob {
+ public:
+  void StartServer() {
+    server_.reset();
+    server_ = std::make_unique<ChildProcess>(
+        std::vector<std::string>{FASCICLED_PROGRAM, "--listen", "127.0.0.1:0", "--data", folder_ / "server"});
+    const std::string line = server_->ReadLine();
+    ASSERT_THAT(line, ::testing::HasSubstr("listening on "));
+    address_ = line.substr(line.find("listening on ") + 13);
+  }
+  Finished Call(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), {FASCICLE_PROGRAM, "--server", address_});
+    return RunProgram(arguments);
+  }
+  std::string Submit(const std::string& scene) const {
+    WriteText(folder_ / "scene.json", scene);
+    const Finished submitted = Call({"submit", folder_ / "scene.json"});
+    EXPECT_EQ(submitted.exit_code, 0) << submitted.err;
+    return submitted.out.substr(0, submitted.out.find('\n'));
+  }
+
+  // A scene of `frames` frames: those that a client saw, those of a server that was killed in between, and those of
+  // `run` on two threads are the same.
+  void ExpectSameDigestsAsRunAlsoWhenKilled(const std::string& scene, std::size_t frames) {
+    StartServer();
+    const std::string job = Submit(scene);
+    std::vector<std::string> seen;
+    {
+      ChildProcess watch({FASCICLE_PROGRAM, "--server", address_, "watch", job, "--digests"});
+      for (int i = 0; i < 4; ++i) seen.push_back(watch.ReadLine());
+      server_->Signal(SIGKILL);
+      server_->Wait();
+    }
+    StartServer();
+    const std::vector<std::string> streamed = FrameLines(Call({"watch", job, "--digests"}).out);
+    const Finished run = RunProgram({FASCICLE_PROGRAM, "run", folder_ / "scene.json", "--threads", "2", "--digests"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    ASSERT_EQ(streamed.size(), frames + 1);
+    EXPECT_EQ(streamed, FrameLines(run.out));
+    EXPECT_EQ(seen, std::vector<std::string>(streamed.begin(), streamed.begin() + 4));
+  }
+
+  // A scene that would take long.
+  void ExpectCanBeCancelled(const std::string& scene) {
+    StartServer();
+    const std::string job = Submit(scene);
+    ChildProcess watch({FASCICLE_PROGRAM, "--server", address_, "watch", job, "--digests"});
+    for (int i = 0; i < 3; ++i) EXPECT_THAT(watch.ReadLine(), ::testing::StartsWith("frame "));
+    EXPECT_EQ(Call({"cancel", job}).exit_code, 0);
+    const Finished watched = watch.Wait();
+    EXPECT_EQ(watched.exit_code, 4) << watched.err;
+    EXPECT_THAT(watched.out, ::testing::HasSubstr("cancelled"));
+  }
+
+  const ScratchFolder& folder() const { return folder_; }
+
+ private:
+  ScratchFolder folder_;
+  std::unique_ptr<ChildProcess> server_;
+  std::string address_;
+};
+
+}  // namespace fascicle::testing
+
+#endif  // FASCICLE_TESTS_CLIENT_CLI_DIGEST_JOB_H_

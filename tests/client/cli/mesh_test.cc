@@ -1,0 +1,268 @@
+// `fascicle mesh` as its users see it: from surfaces and label images to meshes and scenes that run.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/support/child_process.h"
+#include "tests/support/paths.h"
+
+namespace fascicle::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+std::string Muscle(const std::string& name) {
+  return testing::DataFolder() / "vh_muscle_surfaces" / ("VHM_Left_" + name + "_4k.stl");
+}
+
+// A bar of 20 x 20 x 60 along z, as OBJ.
+constexpr const char* kBar = R"(v 0 0 0
+v 20 0 0
+v 20 20 0
+v 0 20 0
+v 0 0 60
+v 20 0 60
+v 20 20 60
+v 0 20 60
+f 1 4 3 2
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+)";
+
+class MeshTest : public ::testing::Test {
+ protected:
+  Finished Fascicle(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), FASCICLE_PROGRAM);
+    return RunProgram(arguments, {{"DISPLAY", ""}});
+  }
+  std::string File(const std::string& name, const std::string& text) {
+    WriteText(folder_ / name, text);
+    return folder_ / name;
+  }
+  bool HasFile(const std::string& name) { return fs::exists(folder_ / name); }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(MeshTest, TellsAboutTheMesh) {
+  const std::string bar = File("bar.obj", kBar);
+  const Finished made = Fascicle({"mesh", bar, "--out", folder_ / "bar.msh", "--size", "5", "--picture",
+                                  folder_ / "bar.png", "--region", "top=side:0,0,1:10"});
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(made.out, AllOf(HasSubstr("tetrahedra"), HasSubstr("dihedral angles"), HasSubstr("of the surface's"),
+                              HasSubstr("region top"), HasSubstr("physical tag 1")));
+  EXPECT_TRUE(HasFile("bar.msh"));
+  EXPECT_EQ(ReadText(folder_ / "bar.png").substr(1, 3), "PNG");
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path())) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
+  }
+}
+
+TEST_F(MeshTest, TheSameMeshForAnyNumberOfThreads) {
+  const std::string bar = File("bar.obj", kBar);
+  EXPECT_EQ(Fascicle({"mesh", bar, "--out", folder_ / "a.msh", "--tets", "2000", "--threads", "1"}).exit_code, 0);
+  EXPECT_EQ(Fascicle({"mesh", bar, "--out", folder_ / "b.msh", "--tets", "2000", "--threads", "3"}).exit_code, 0);
+  EXPECT_EQ(ReadText(folder_ / "a.msh"), ReadText(folder_ / "b.msh"));
+}
+
+TEST_F(MeshTest, TellsAllMistakesAtOnceAndWritesNothing) {
+  const std::string bar = File("bar.obj", kBar);
+  const Finished wrong = Fascicle({"mesh",
+                                   bar,
+                                   "--json",
+                                   "--out",
+                                   folder_ / "bar.vtk",
+                                   "--label",
+                                   "1",
+                                   "--region",
+                                   "a b=side:0,0,1",
+                                   "--region",
+                                   "c=side:0,0",
+                                   "--region",
+                                   "d=near:none.stl:3",
+                                   "--region",
+                                   "e=near:" + bar,
+                                   "--region",
+                                   "f",
+                                   "--region",
+                                   "g=ball:1",
+                                   "--region",
+                                   "g=side:0,0,1:200",
+                                   "--region",
+                                   "h=end:0,0,0:3",
+                                   "--region",
+                                   "i=end:0,0,1:0",
+                                   "--region",
+                                   "j=end:0,0,1"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  const json error = json::parse(wrong.out);
+  EXPECT_EQ(error["reason"], "INVALID_SURFACE");
+  std::vector<std::string> paths;
+  for (const json& problem : error["problems"]) paths.push_back(problem["path"]);
+  EXPECT_THAT(paths, ::testing::UnorderedElementsAre("--out", "--label", "--region a b", "--region c", "--region d",
+                                                     "--region e", "--region f", "--region g", "--region g",
+                                                     "--region g", "--region h", "--region i", "--region j"));
+  EXPECT_EQ(Fascicle({"mesh", folder_ / "none.stl", "--out", folder_ / "x.msh"}).exit_code, 2);
+  EXPECT_EQ(Fascicle({"mesh", bar, "--out", folder_ / "x.msh", "--size", "2", "--tets", "3000"}).exit_code, 2);
+  EXPECT_EQ(Fascicle({"mesh", bar, "--out", folder_ / "x.msh", "--size", "-2"}).exit_code, 2);
+  EXPECT_FALSE(HasFile("x.msh") || HasFile("bar.vtk"));
+}
+
+TEST_F(MeshTest, AnEmptyRegionIsAMistake) {
+  const std::string bar = File("bar.obj", kBar);
+  const std::string far = File("far.obj", "v 0 0 100\nv 20 0 100\nv 0 20 100\nf 1 2 3\n");
+  const Finished wrong =
+      Fascicle({"mesh", bar, "--out", folder_ / "bar.msh", "--size", "5", "--region", "top=near:" + far + ":3"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, AllOf(HasSubstr("--region top: selects no triangle"), HasSubstr("the nearest triangle is 4"),
+                               HasSubstr("in the same unit")));
+  EXPECT_FALSE(HasFile("bar.msh"));
+}
+
+TEST_F(MeshTest, TheEndsOfAMuscleMustBeApart) {
+  const std::string bar = File("bar.obj", kBar);
+  const auto with_ends = [&](const std::string& origin, const std::string& insertion) {
+    return Fascicle({"mesh", bar, "--json", "--out", folder_ / "bar.msh", "--size", "5", "--scene",
+                     folder_ / "bar.json", "--region", "origin=" + origin, "--region", "insertion=" + insertion});
+  };
+  const Finished wrong = with_ends("end:0,0,2:35", "end:0,0,-1:35");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err + wrong.out, AllOf(HasSubstr("--region insertion"), HasSubstr("nodes in common with origin")));
+  EXPECT_FALSE(HasFile("bar.msh"));
+  const Finished right = with_ends("end:0,0,2:12", "end:0,0,-1:0.1");
+  ASSERT_EQ(right.exit_code, 0) << right.err;
+  const json regions = json::parse(right.out)["regions"];
+  // The face and a rim of 10 to 12 around it; the face alone.
+  EXPECT_GT(regions[0]["area"], 400 + 80 * 10 - 1);
+  EXPECT_LT(regions[0]["area"], 400 + 80 * 12 + 1);
+  EXPECT_NEAR(regions[1]["area"].get<double>(), 400, 1);
+}
+
+TEST_F(MeshTest, AHoleIsRefusedWithItsPlace) {
+  std::string open = kBar;
+  open.erase(open.find("f 5 6 7 8\n"), 10);
+  const Finished refused = Fascicle({"mesh", File("open.obj", open), "--out", folder_ / "open.msh"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err,
+              AllOf(HasSubstr("open.obj: the surface has a hole at (10, 10, 60), 28.3 across"), HasSubstr("80 long")));
+  const Finished closed =
+      Fascicle({"mesh", folder_ / "open.obj", "--out", folder_ / "open.msh", "--size", "5", "--max-hole", "30"});
+  EXPECT_EQ(closed.exit_code, 0) << closed.err;
+  EXPECT_THAT(closed.out, HasSubstr("closed a hole at (10, 10, 60)"));
+}
+
+TEST_F(MeshTest, AMuscleIsMeshedWithItsAttachmentsAndContracts) {
+  if (!fs::exists(Muscle("Muscle_PeroneusLongus"))) GTEST_SKIP() << Data() << " is not there; set FASCICLE_DATA";
+  const Finished made =
+      Fascicle({"mesh", Muscle("Muscle_PeroneusLongus"), "--json", "--out", folder_ / "m/peroneus.msh", "--tets",
+                "3000", "--region", "origin=end:0,0,1:40", "--region", "insertion=end:0,0,-1:25", "--region",
+                "fibula=near:" + Muscle("Bone_Fibula") + ":6", "--scene", folder_ / "scene.json"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const json report = json::parse(made.out);
+  EXPECT_GE(report["smallest_dihedral_angle"], 10.0);
+  EXPECT_NEAR(report["volume_error"].get<double>(), 0, 5e-3);
+  EXPECT_GT(report["regions"][2]["triangles"], 10);
+
+  const Finished run = Fascicle({"run", folder_ / "scene.json", "--json", "--out", folder_ / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json series = json::parse(ReadText(folder_ / "out/summary.json"))["series"];
+  const auto last = [&](const char* name) { return series.at(name).at("final").get<double>(); };
+  EXPECT_NEAR(last("muscle/volume_ratio"), 1, 0.01);
+  EXPECT_GT(last("muscle/min_volume_ratio"), 0.2);
+  // The muscle pulls its insertion, at its lower end, upwards: what holds it pulls down, by some tens of newtons.
+  EXPECT_LT(last("muscle/reaction/insertion/z"), -5);
+  for (const std::string axis : {"x", "y", "z"}) {
+    EXPECT_NEAR(last(("muscle/reaction/origin/" + axis).c_str()), -last(("muscle/reaction/insertion/" + axis).c_str()),
+                1e-3);
+  }
+}
+
+TEST_F(MeshTest, LabelsOfAnImage) {
+  const fs::path image = Data() / "voxel_labels/upper_arm_biceps1_triceps2_1mm.mha";
+  if (!fs::exists(image)) GTEST_SKIP() << image << " is not there; set FASCICLE_DATA";
+  const Finished made =
+      Fascicle({"mesh", image, "--label", "1", "--json", "--out", folder_ / "biceps.msh", "--tets", "4000"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const json report = json::parse(made.out);
+  EXPECT_NEAR(report["volume"].get<double>() / report["voxel_volume"].get<double>(), 1, 5e-3);
+  EXPECT_GE(report["smallest_dihedral_angle"], 10.0);
+  // The biceps' own surface encloses 317 cm^3; the voxels count those that it touches, 8 % more.
+  EXPECT_NEAR(report["volume"].get<double>() / 317e3, 1.08, 0.03);
+  const Finished wrong = Fascicle({"mesh", image, "--label", "7", "--out", folder_ / "x.msh"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("no voxel has the label 7 (there are: 1, 2)"));
+  EXPECT_EQ(Fascicle({"mesh", image, "--out", folder_ / "x.msh"}).exit_code, 2) << "without a label";
+}
+
+// A ball of 4 in an image whose axes are turned by a right angle, with voxels of 1 x 0.5 x 2.
+std::string BallImage() {
+  constexpr std::array<int, 3> kSize = {20, 40, 12};
+  std::string voxels;
+  for (int z = 0; z < kSize[2]; ++z) {
+    for (int y = 0; y < kSize[1]; ++y) {
+      for (int x = 0; x < kSize[0]; ++x) {
+        const double dx = 1.0 * x - 9, dy = 0.5 * y - 10, dz = 2.0 * z - 11;
+        voxels += dx * dx + dy * dy + dz * dz < 16 ? '\3' : '\0';
+      }
+    }
+  }
+  return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\n"
+         "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 100 200 300\nElementSpacing = 1 0.5 2\nDimSize = 20 40 12\n"
+         "ElementType = MET_UCHAR\nElementDataFile = LOCAL\n" +
+         voxels;
+}
+
+TEST_F(MeshTest, AnImageLiesWhereItsHeaderSays) {
+  const std::string image = File("ball.mha", BallImage());
+  const Finished made =
+      Fascicle({"mesh", image, "--label", "3", "--smooth", "0.6", "--out", folder_ / "ball.msh", "--size", "1"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  // The centre (9, 10, 11) along the turned axes: x runs along y, and y against x.
+  std::istringstream in(ReadText(folder_ / "ball.msh"));
+  std::string line;
+  while (line != "$Nodes") std::getline(in, line);
+  int count = 0;
+  in >> count;
+  std::array<double, 3> lowest{1e9, 1e9, 1e9}, highest{-1e9, -1e9, -1e9};
+  for (int i = 0; i < count; ++i) {
+    int number = 0;
+    in >> number;
+    for (int axis = 0; axis < 3; ++axis) {
+      double x = 0;
+      in >> x;
+      lowest[axis] = std::min(lowest[axis], x);
+      highest[axis] = std::max(highest[axis], x);
+    }
+  }
+  constexpr std::array<double, 3> kCentre = {100 - 10, 200 + 9, 300 + 11};
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(0.5 * (lowest[axis] + highest[axis]), kCentre[axis], 0.2) << axis;
+    EXPECT_NEAR(highest[axis] - lowest[axis], 8, 1.2) << axis;
+  }
+}
+
+TEST_F(MeshTest, ABrokenImageIsRefused) {
+  const std::string whole = BallImage();
+  for (const std::string& bytes : {whole.substr(0, 100), std::string("nothing"), std::string()}) {
+    for (const char* name : {"broken.mha", "broken.nii", "broken.nii.gz"}) {
+      const Finished refused = Fascicle({"mesh", File(name, bytes), "--label", "3", "--out", folder_ / "broken.msh"});
+      EXPECT_EQ(refused.exit_code, 2) << name << refused.err;
+      EXPECT_THAT(refused.err, HasSubstr("the image can't be read")) << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fascicle::testing

@@ -1,0 +1,209 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "client/export/csv.h"
+#include "client/export/vtk_series.h"
+#include "client/lib/decode.h"
+#include "client/lib/replace_file.h"
+#include "client/lib/series_table.h"
+#include "tests/support/child_process.h"
+#include "tests/support/sample_job.h"
+
+namespace fascicle::client {
+namespace {
+
+namespace fs = std::filesystem;
+using ::fascicle::testing::Bytes;
+using ::fascicle::testing::ReadText;
+using ::fascicle::testing::SampleJob;
+using ::fascicle::testing::ScratchFolder;
+using ::testing::HasSubstr;
+
+TEST(VtkSeriesWriter, WritesWhatVtkReadsBack) {
+  const SampleJob job;
+  const ScratchFolder folder;
+  VtkSeriesWriter writer(job.geometry(), folder.path());
+  writer.Add(job.frame(0));
+  writer.Add(job.frame(7));
+  writer.Finish();
+  const std::string pvd = ReadText(folder / "frames.pvd");
+  EXPECT_THAT(pvd, HasSubstr(R"(timestep="0.35000000000000003" part="0" name="belly" file="frames/belly_000007.vtu")"));
+
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName((folder / "frames/belly_000007.vtu").c_str());
+  reader->Update();
+  vtkUnstructuredGrid& grid = *reader->GetOutput();
+  ASSERT_EQ(static_cast<std::size_t>(grid.GetNumberOfPoints()), job.nodes());
+  ASSERT_EQ(static_cast<std::size_t>(grid.GetNumberOfCells()), job.tetrahedra());
+  const v1::Frame frame = job.frame(7);
+  const auto shape = DecodeGeometry(job.geometry())[0];
+  const auto positions = DecodePositions(frame.bodies(0), shape.positions.size());
+  vtkDataArray* displacement = grid.GetPointData()->GetArray("displacement");
+  vtkDataArray* stress = grid.GetCellData()->GetArray("von_mises_stress");
+  vtkDataArray* velocity = grid.GetPointData()->GetArray("velocity");
+  vtkDataArray* region = grid.GetPointData()->GetArray("region/origin");
+  vtkDataArray* fibre = grid.GetCellData()->GetArray("rest_fibre");
+  ASSERT_TRUE(displacement && stress && velocity && region && fibre);
+  const auto values = DecodeField(frame.bodies(0).fields(1), shape);
+  for (std::size_t i = 0; i < job.nodes(); ++i) {
+    const auto id = static_cast<vtkIdType>(i);
+    const Vec3 x(grid.GetPoint(id)), u(displacement->GetTuple(id));
+    EXPECT_EQ(x, positions[i]);
+    EXPECT_EQ(u, positions[i] - shape.positions[i]);
+    EXPECT_EQ(region->GetTuple1(id), shape.positions[i].z() == 0 ? 1 : 0);
+    EXPECT_EQ(velocity->GetComponent(id, 2), 0.5);
+  }
+  for (std::size_t e = 0; e < job.tetrahedra(); ++e) {
+    const auto id = static_cast<vtkIdType>(e);
+    EXPECT_EQ(stress->GetTuple1(id), values[e]);
+    EXPECT_EQ(fibre->GetComponent(id, 2), 1);
+    vtkIdType count;
+    const vtkIdType* nodes;
+    grid.GetCellPoints(id, count, nodes);
+    ASSERT_EQ(count, 4);
+    for (std::size_t n = 0; n < 4; ++n) EXPECT_EQ(nodes[n], shape.tetrahedra[e][n]);
+  }
+}
+
+// Bodies of the eulerian method: triangles, and every field at the nodes.
+TEST(VtkSeriesWriter, WritesSurfacesAsTriangles) {
+  v1::Geometry geometry;
+  v1::BodyGeometry& body = *geometry.add_bodies();
+  body.set_name("skin");
+  const std::vector<double> positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const std::vector<std::uint32_t> triangles = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
+  body.set_positions(Bytes(positions));
+  body.set_triangles(Bytes(triangles));
+  v1::Frame frame;
+  v1::BodyFrame& of_body = *frame.add_bodies();
+  of_body.set_positions(Bytes(positions));
+  v1::FieldValues& field = *of_body.add_fields();
+  field.set_name("cauchy_stress");
+  field.set_location(v1::FieldValues::LOCATION_NODE);
+  field.set_components(6);
+  field.set_values(Bytes(std::vector<double>(24, 2.5)));
+  const ScratchFolder folder;
+  VtkSeriesWriter writer(geometry, folder.path());
+  writer.Add(frame);
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName((folder / "frames/skin_000000.vtu").c_str());
+  reader->Update();
+  vtkUnstructuredGrid& grid = *reader->GetOutput();
+  EXPECT_EQ(grid.GetNumberOfPoints(), 4);
+  ASSERT_EQ(grid.GetNumberOfCells(), 4);
+  for (vtkIdType c = 0; c < 4; ++c) {
+    ASSERT_EQ(grid.GetCellType(c), 5);  // VTK_TRIANGLE
+    vtkIdType count;
+    const vtkIdType* nodes;
+    grid.GetCellPoints(c, count, nodes);
+    ASSERT_EQ(count, 3);
+    for (int n = 0; n < 3; ++n) EXPECT_EQ(nodes[n], triangles[static_cast<std::size_t>(3 * c + n)]);
+  }
+  ASSERT_NE(grid.GetPointData()->GetArray("cauchy_stress"), nullptr);
+  EXPECT_EQ(grid.GetPointData()->GetArray("cauchy_stress")->GetComponent(3, 5), 2.5);
+}
+
+TEST(VtkSeriesWriter, LeavesNoOtherFiles) {
+  const SampleJob job;
+  const ScratchFolder folder;
+  VtkSeriesWriter writer(job.geometry(), folder.path());
+  writer.Add(job.frame(0));
+  writer.Finish();
+  std::vector<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder.path())) files.push_back(entry.path().filename());
+  EXPECT_THAT(files, ::testing::UnorderedElementsAre("frames", "frames.pvd", "belly_000000.vtu"));
+}
+
+TEST(VtkSeriesWriter, RefusesNamesThatLeadOutOfTheFolder) {
+  v1::Geometry geometry = SampleJob().geometry();
+  geometry.mutable_bodies(0)->set_name("../evil");
+  EXPECT_THROW(VtkSeriesWriter(geometry, "somewhere"), std::runtime_error);
+}
+
+TEST(Decode, RefusesBytesThatDoNotFit) {
+  const SampleJob job;
+  v1::Geometry geometry = job.geometry();
+  geometry.mutable_bodies(0)->mutable_positions()->pop_back();
+  EXPECT_THROW(DecodeGeometry(geometry), std::runtime_error);
+  geometry = job.geometry();
+  geometry.mutable_bodies(0)->mutable_tetrahedra()->back() = '\x7f';  // a node far beyond the last
+  EXPECT_THROW(DecodeGeometry(geometry), std::runtime_error);
+  geometry = job.geometry();
+  geometry.mutable_bodies(0)->mutable_fibres()->resize(24);
+  EXPECT_THROW(DecodeGeometry(geometry), std::runtime_error);
+  geometry = job.geometry();
+  geometry.mutable_bodies(0)->set_triangles(Bytes(std::vector<std::uint32_t>{0, 1, 100000}));
+  EXPECT_THROW(DecodeGeometry(geometry), std::runtime_error);
+  const BodyShape shape = DecodeGeometry(job.geometry())[0];
+  v1::Frame frame = job.frame(1);
+  frame.mutable_bodies(0)->mutable_fields(1)->set_components(2);
+  EXPECT_THROW(DecodeField(frame.bodies(0).fields(1), shape), std::runtime_error);
+  frame.mutable_bodies(0)->mutable_positions()->resize(48);
+  EXPECT_THROW(DecodePositions(frame.bodies(0), shape.positions.size()), std::runtime_error);
+  frame.add_bodies();
+  EXPECT_THROW(CheckFits(frame, job.geometry()), std::runtime_error);
+}
+
+TEST(Csv, WritesSeriesThatReadBackExactly) {
+  const SampleJob job;
+  SeriesTable table(job.geometry());
+  for (int i = 0; i < 3; ++i) table.Add(job.frame(i));
+  EXPECT_EQ(CsvOf(table),
+            "frame,time [s],step,energy/elastic [J],belly/reaction/origin/z [N]\n"
+            "0,0,0,0,-0\n1,0.05,10,0.001,-2.5\n2,0.1,20,0.004,-5\n");
+}
+
+TEST(Csv, QuotesHeadingsAndLeavesOutWhatIsNoNumber) {
+  EXPECT_EQ(CsvOf({{"a, \"b\"", {1, std::numeric_limits<double>::quiet_NaN()}}, {"c", {0.1, 2}}}),
+            "\"a, \"\"b\"\"\",c\n1,0.1\n,2\n");
+}
+
+TEST(SeriesTable, RefusesFramesWithOtherSeries) {
+  SeriesTable table(SampleJob().geometry());
+  v1::Frame frame = SampleJob().frame(0);
+  frame.add_series(1);
+  EXPECT_THROW(table.Add(frame), std::runtime_error);
+}
+
+TEST(MatchesGlob, StarsAndQuestionMarks) {
+  EXPECT_TRUE(MatchesGlob("*", ""));
+  EXPECT_TRUE(MatchesGlob("*/reaction/*", "muscle/reaction/origin/z"));
+  EXPECT_TRUE(MatchesGlob("*volume_ratio", "muscle/volume_ratio"));
+  EXPECT_TRUE(MatchesGlob("a*b*c", "aXbbYc"));
+  EXPECT_TRUE(MatchesGlob("probe/?", "probe/x"));
+  EXPECT_FALSE(MatchesGlob("probe/?", "probe/xy"));
+  EXPECT_FALSE(MatchesGlob("energy", "energy/elastic"));
+  EXPECT_FALSE(MatchesGlob("*z", "muscle/x"));
+}
+
+TEST(ReplaceFile, KeepsTheOldFileWhenWritingFails) {
+  const ScratchFolder folder;
+  const fs::path path = folder.path() / "deep/er/file.txt";
+  ReplaceFile(path, "old");
+  EXPECT_EQ(ReadText(path), "old");
+  EXPECT_THROW(ReplaceFile(path,
+                           [](const fs::path& beside) {
+                             ::fascicle::testing::WriteText(beside, "half");
+                             throw std::runtime_error("disk full");
+                           }),
+               std::runtime_error);
+  EXPECT_EQ(ReadText(path), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(path.parent_path()), {}), 1);
+  ReplaceFile(path, "new");
+  EXPECT_EQ(ReadText(path), "new");
+  EXPECT_THROW(ReplaceFile(folder.path() / "deep", "x"), std::runtime_error);
+  EXPECT_THROW(ReplaceFile("/proc/none/file", "x"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace fascicle::client

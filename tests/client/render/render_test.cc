@@ -1,0 +1,363 @@
+#include <gif_lib.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPNGReader.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "client/render/colour_scale.h"
+#include "client/render/field_values.h"
+#include "client/render/picture.h"
+#include "client/render/plot.h"
+#include "tests/support/child_process.h"
+#include "tests/support/sample_job.h"
+
+namespace fascicle::client {
+namespace {
+
+using ::fascicle::testing::Bytes;
+using ::fascicle::testing::SampleJob;
+using ::fascicle::testing::ScratchFolder;
+using ::testing::HasSubstr;
+
+using Pixel = std::array<int, 3>;
+
+struct Image {
+  int width = 0, height = 0;
+  std::vector<Pixel> pixels;  // from the bottom
+
+  std::size_t Count(const std::function<bool(const Pixel&)>& wanted) const {
+    return static_cast<std::size_t>(std::count_if(pixels.begin(), pixels.end(), wanted));
+  }
+  std::size_t Colours() const { return std::set<Pixel>(pixels.begin(), pixels.end()).size(); }
+};
+
+Image ReadPng(const std::string& path) {
+  vtkNew<vtkPNGReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  vtkImageData& data = *reader->GetOutput();
+  Image image{data.GetDimensions()[0], data.GetDimensions()[1], {}};
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const auto* p = static_cast<const unsigned char*>(data.GetScalarPointer(x, y, 0));
+      image.pixels.push_back({p[0], p[1], p[2]});
+    }
+  }
+  return image;
+}
+
+bool IsYellow(const Pixel& p) { return p[0] > 150 && p[1] > 140 && p[2] < 90; }
+bool IsViolet(const Pixel& p) { return p[2] > p[1] + 20 && p[0] > p[1] + 5 && p[1] < 80; }
+bool IsRed(const Pixel& p) { return p[0] > 120 && p[1] < 90 && p[2] < 90; }
+
+class RenderTest : public ::testing::Test {
+ protected:
+  Image Draw(const PictureOptions& options, int frame = 10) {
+    const std::string path = folder_ / "picture.png";
+    DrawPicture(job_.geometry(), job_.frame(frame), options, path);
+    return ReadPng(path);
+  }
+  PictureOptions Small() {
+    PictureOptions options;
+    options.size = {400, 300};
+    return options;
+  }
+
+  SampleJob job_;
+  ScratchFolder folder_;
+};
+
+TEST_F(RenderTest, ShowsTheBellyInTheColoursOfItsField) {
+  const Image image = Draw(Small());
+  EXPECT_EQ(image.width, 400);
+  EXPECT_EQ(image.height, 300);
+  EXPECT_GT(image.Colours(), 500u);
+  // The belly moves most, the ends least, and both are a good part of the picture.
+  EXPECT_GT(image.Count(IsYellow), 1000u);
+  EXPECT_GT(image.Count(IsViolet), 1000u);
+}
+
+TEST_F(RenderTest, WireframeSurfaceAndFibresAreSeparate) {
+  PictureOptions options = Small();
+  options.colour = "";
+  options.rest_outline = false;
+  options.surface = false;
+  const auto is_dark = [](const Pixel& p) { return p[0] < 170 && p[1] < 170 && p[2] < 170; };
+  const std::size_t empty = Draw(options).Count(is_dark);
+  options.wireframe = true;
+  EXPECT_GT(Draw(options).Count(is_dark), empty + 500);
+  options.wireframe = false;
+  options.fibres = true;
+  const Image fibres = Draw(options);
+  EXPECT_GT(fibres.Count(IsRed), 100u);
+}
+
+TEST_F(RenderTest, IsTheSamePictureEveryTime) { EXPECT_EQ(Draw(Small()).pixels, Draw(Small()).pixels); }
+
+TEST_F(RenderTest, TheRestShapeCanBeDrawnToo) { EXPECT_GT(Draw(Small(), 0).Colours(), 100u); }
+
+TEST_F(RenderTest, TheViewFollowsTheAngles) {
+  PictureOptions options = Small();
+  options.azimuth = -90;
+  options.elevation = 0;
+  const Image side = Draw(options);
+  options.elevation = 90;
+  EXPECT_NE(Draw(options).pixels, side.pixels);
+}
+
+TEST_F(RenderTest, NamesTheFieldsThatThereAre) {
+  PictureOptions options = Small();
+  options.colour = "temperature";
+  try {
+    Draw(options);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("displacement, velocity, von_mises_stress"));
+  }
+  options.colour = "velocity/q";
+  EXPECT_THROW(Draw(options), std::runtime_error);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "picture.png"));
+}
+
+// A row of bricks along x, the last of them twice as long as the others in frame 1.
+struct Bricks {
+  v1::Geometry geometry;
+  std::vector<v1::Frame> frames;
+
+  explicit Bricks(int count) {
+    std::vector<double> positions;
+    std::vector<std::uint32_t> bricks;
+    const auto node = [count](int i, int j, int k) {
+      return static_cast<std::uint32_t>(i + (count + 1) * (j + 2 * k));
+    };
+    for (int k = 0; k < 2; ++k) {
+      for (int j = 0; j < 2; ++j) {
+        for (int i = 0; i <= count; ++i) positions.insert(positions.end(), {0.01 * i, 0.01 * j, 0.01 * k});
+      }
+    }
+    for (int i = 0; i < count; ++i) {
+      for (int c = 0; c < 8; ++c) bricks.push_back(node(i + (c & 1), c >> 1 & 1, c >> 2));
+    }
+    v1::BodyGeometry& body = *geometry.add_bodies();
+    body.set_name("row");
+    body.set_positions(Bytes(positions));
+    body.set_bricks(Bytes(bricks));
+    for (int f = 0; f < 2; ++f) {
+      v1::Frame& frame = frames.emplace_back();
+      frame.set_index(f);
+      std::vector<double> moved = positions, values;
+      for (int n = 0; n < 4; ++n) moved[3 * node(count, n & 1, n >> 1)] += 0.01 * f;
+      for (int i = 0; i < count; ++i) values.push_back(f * i);
+      v1::BodyFrame& of_body = *frame.add_bodies();
+      of_body.set_positions(Bytes(moved));
+      v1::FieldValues& field = *of_body.add_fields();
+      field.set_name("volume_ratio");
+      field.set_location(v1::FieldValues::LOCATION_BRICK);
+      field.set_components(1);
+      field.set_values(Bytes(values));
+    }
+  }
+};
+
+TEST_F(RenderTest, BricksAreDrawnInTheColoursOfTheirField) {
+  const Bricks row(6);
+  PictureOptions options = Small();
+  options.colour = "volume_ratio";
+  options.range = {0, 5};
+  const std::string path = folder_ / "bricks.png";
+  DrawPicture(row.geometry, row.frames[1], options, path);
+  const Image image = ReadPng(path);
+  EXPECT_GT(image.Count(IsYellow), 300u);
+  EXPECT_GT(image.Count(IsViolet), 300u);
+  options.smooth = true;
+  DrawPicture(row.geometry, row.frames[1], options, path);
+  EXPECT_NE(ReadPng(path).pixels, image.pixels);
+}
+
+// A cube of triangles whose upper side, coloured by its nodes, rises in frame 1.
+struct Triangles {
+  v1::Geometry geometry;
+  v1::Frame frame;
+
+  Triangles() {
+    std::vector<double> positions, moved, values;
+    for (int n = 0; n < 8; ++n) {
+      positions.insert(positions.end(), {0.01 * (n & 1), 0.01 * (n >> 1 & 1), 0.01 * (n >> 2)});
+      moved.insert(moved.end(), {positions[3 * n], positions[3 * n + 1], positions[3 * n + 2] * 1.5});
+      values.push_back(n >> 2);
+    }
+    const std::vector<std::uint32_t> triangles = {0, 3, 1, 0, 2, 3, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                                  2, 7, 3, 2, 6, 7, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+    v1::BodyGeometry& body = *geometry.add_bodies();
+    body.set_name("cube");
+    body.set_positions(Bytes(positions));
+    body.set_triangles(Bytes(triangles));
+    v1::BodyFrame& of_body = *frame.add_bodies();
+    of_body.set_positions(Bytes(moved));
+    v1::FieldValues& field = *of_body.add_fields();
+    field.set_name("volume_ratio");
+    field.set_location(v1::FieldValues::LOCATION_NODE);
+    field.set_components(1);
+    field.set_values(Bytes(values));
+  }
+};
+
+TEST_F(RenderTest, SurfacesAreDrawnInTheColoursOfTheirNodes) {
+  const Triangles cube;
+  PictureOptions options = Small();
+  options.colour = "volume_ratio";
+  const std::string path = folder_ / "triangles.png";
+  DrawPicture(cube.geometry, cube.frame, options, path);
+  const Image image = ReadPng(path);
+  EXPECT_GT(image.Count(IsYellow), 300u);
+  EXPECT_GT(image.Count(IsViolet), 300u);
+  options.surface = false;
+  options.wireframe = true;
+  DrawPicture(cube.geometry, cube.frame, options, path);
+  const Image edges = ReadPng(path);
+  EXPECT_GT(edges.Count(IsYellow), 20u);
+  EXPECT_LT(edges.Count(IsYellow), image.Count(IsYellow) / 2);
+}
+
+TEST_F(RenderTest, PanelsShareEyeAndScale) {
+  PictureOptions options = Small();
+  options.size = {800, 300};
+  const std::vector<v1::Frame> frames = {job_.frame(0), job_.frame(10)};
+  const std::string path = folder_ / "panels.png";
+  DrawPanels(job_.geometry(), frames, options, path);
+  const Image image = ReadPng(path);
+  // On the left nothing has moved: all of it has the colour of zero.
+  std::size_t left = 0, right = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < 565; ++x) {  // the scale is beside
+      if (IsYellow(image.pixels[static_cast<std::size_t>(y * image.width + x)])) ++(x < 285 ? left : right);
+    }
+  }
+  EXPECT_EQ(left, 0u);
+  EXPECT_GT(right, 200u);
+  EXPECT_THROW(DrawPanels(job_.geometry(), std::vector<v1::Frame>(25, job_.frame(0)), options, path),
+               std::runtime_error);
+}
+
+// A cloud shows what is behind: the middle of a thick body is denser than its rim.
+TEST_F(RenderTest, ACloudIsDenserWhereItIsThicker) {
+  PictureOptions options = Small();
+  options.colour = "";
+  options.rest_outline = false;
+  options.volume = true;
+  options.azimuth = 0;
+  options.elevation = 0;
+  const Image cloud = Draw(options, 0);
+  // The belly, 32 mm through, takes more light than the ends of 12 mm.
+  const auto red = [](int least) { return [least](const Pixel& p) { return p[0] > p[2] + least; }; };
+  EXPECT_GT(cloud.Count(red(10)), 2 * cloud.Count(red(90)));
+  EXPECT_GT(cloud.Count(red(90)), 300u);
+}
+
+TEST_F(RenderTest, AnimationsAreGifsThatRepeat) {
+  PictureOptions options = Small();
+  options.size = {120, 90};
+  const std::vector<v1::Frame> frames = {job_.frame(0), job_.frame(5), job_.frame(10)};
+  const std::string path = folder_ / "run.gif";
+  double done = 0;
+  DrawAnimation(job_.geometry(), frames, options, {.frames_per_second = 20, .turntable = 0}, path,
+                [&](double part) { done = part; });
+  EXPECT_EQ(done, 1);
+  int error = 0;
+  GifFileType* gif = DGifOpenFileName(path.c_str(), &error);
+  ASSERT_NE(gif, nullptr);
+  ASSERT_EQ(DGifSlurp(gif), GIF_OK);
+  EXPECT_EQ(gif->ImageCount, 3);
+  EXPECT_EQ(gif->SWidth, 120);
+  EXPECT_EQ(gif->SHeight, 90);
+  GraphicsControlBlock control;
+  ASSERT_EQ(DGifSavedExtensionToGCB(gif, 1, &control), GIF_OK);
+  EXPECT_EQ(control.DelayTime, 5);  // 0.01 s
+  const auto pixels = [&](int i) {
+    return std::vector<GifByteType>(gif->SavedImages[i].RasterBits, gif->SavedImages[i].RasterBits + 120 * 90);
+  };
+  EXPECT_NE(pixels(0), pixels(2));
+  DGifCloseFile(gif, &error);
+
+  DrawAnimation(job_.geometry(), frames, options, {.frames_per_second = 20, .turntable = 4}, path);
+  gif = DGifOpenFileName(path.c_str(), &error);
+  ASSERT_NE(gif, nullptr);
+  ASSERT_EQ(DGifSlurp(gif), GIF_OK);
+  EXPECT_EQ(gif->ImageCount, 4);
+  DGifCloseFile(gif, &error);
+}
+
+TEST_F(RenderTest, RefusesSizesThatNoOneWants) {
+  PictureOptions options = Small();
+  options.size = {100000, 10};
+  EXPECT_THROW(Draw(options), std::runtime_error);
+}
+
+TEST_F(RenderTest, PlotsHaveALineForEachSeries) {
+  PlotPanel panel{"title", "time [s]", "energy [J]", {{"a", {0, 1, 2}, {0, 1, 0}}, {"b", {0, 1, 2}, {1, NAN, 1}}}};
+  const std::string path = folder_ / "plot.png";
+  DrawPlot({panel, panel}, {500, 500}, path);
+  const Image image = ReadPng(path);
+  EXPECT_EQ(image.height, 500);
+  EXPECT_GT(image.Count([](const Pixel& p) { return p[0] < 60 && p[1] > 80 && p[2] > 150; }), 200u) << "blue line";
+  EXPECT_GT(image.Count([](const Pixel& p) { return p[0] > 180 && p[1] < 130 && p[2] < 60; }), 100u) << "orange line";
+}
+
+TEST_F(RenderTest, LinesThatHardlyChangeAreDrawnToo) {
+  const std::string path = folder_ / "plot.png";
+  for (const double change : {0.003, 1e-6, 1e-12, 0.0}) {
+    DrawPlot({{"", "time [s]", "ratio", {{"a", {0, 1, 2}, {1, 1 + change, 1}}}}}, {400, 300}, path);
+    const Image image = ReadPng(path);
+    const std::size_t blue = image.Count([](const Pixel& p) { return p[0] < 60 && p[1] > 80 && p[2] > 150; });
+    EXPECT_GT(blue, 400u) << change;
+  }
+}
+
+TEST(ValuesAtNodes, AveragesTetrahedraByVolume) {
+  // A linear function of z has averages that follow it in the middle of the body.
+  const SampleJob job;
+  const BodyShape shape = DecodeGeometry(job.geometry())[0];
+  const NodeValues nodes = ValuesAtNodes(shape, job.frame(3).bodies(0), "von_mises_stress");
+  EXPECT_EQ(nodes.unit, "Pa");
+  for (std::size_t i = 0; i < nodes.values.size(); ++i) {
+    const double w = shape.positions[i].z() / SampleJob::kLength;
+    EXPECT_NEAR(nodes.values[i], 1000 * w, 1000.0 / SampleJob::kAlong) << i;
+  }
+}
+
+TEST(ValuesAtNodes, TakesMagnitudesAndComponents) {
+  const SampleJob job;
+  const BodyShape shape = DecodeGeometry(job.geometry())[0];
+  const v1::Frame frame = job.frame(10);
+  const NodeValues magnitude = ValuesAtNodes(shape, frame.bodies(0), "displacement");
+  const NodeValues x = ValuesAtNodes(shape, frame.bodies(0), "displacement/x");
+  const auto positions = DecodePositions(frame.bodies(0), shape.positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    EXPECT_DOUBLE_EQ(magnitude.values[i], (positions[i] - shape.positions[i]).norm());
+    EXPECT_DOUBLE_EQ(x.values[i], (positions[i] - shape.positions[i]).x());
+  }
+}
+
+TEST(ColourScale, ReadableUnits) {
+  EXPECT_EQ(MakeReadable(0.012, "m").name, "mm");
+  EXPECT_DOUBLE_EQ(MakeReadable(0.012, "m").factor, 1000);
+  EXPECT_EQ(MakeReadable(2.5e5, "Pa").name, "kPa");
+  EXPECT_EQ(MakeReadable(2500, "m").name, "m");
+  EXPECT_EQ(MakeReadable(1.2, "1").name, "");
+  EXPECT_EQ(MakeReadable(0, "N").name, "N");
+  const ColourScale both = MakeColourScale(-1, 3, false);
+  EXPECT_EQ(both.lowest, -3);
+  const ColourScale level = MakeColourScale(2, 2, false);
+  EXPECT_LT(level.lowest, level.highest);
+}
+
+}  // namespace
+}  // namespace fascicle::client

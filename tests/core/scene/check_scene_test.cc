@@ -1,0 +1,275 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/scene/scene.h"
+#include "tests/support/tet_scenes.h"
+
+namespace fascicle {
+namespace {
+
+using namespace fascicle::testing;
+using ::testing::HasSubstr;
+
+Scene GoodScene() {
+  Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, Muscle(std::array{5e2, 5e2, 1e5, 3e4, 1.2, 0.05, 6.6, 1.4}));
+  body.constraints.push_back(Fix(kX0));
+  body.loads.push_back({kX1, Traction{Vec3(0, 0, -50)}, Curve::Constant(1)});
+  body.activation = {{0, 1}, {0, 1}, Curve::Interpolation::kSmooth};
+  Scene scene = OneBody(body);
+  scene.gravity.acceleration = Vec3(0, 0, -9.81);
+  scene.output.probes = {{"tip", 0, 3}};
+  return scene;
+}
+
+// The one problem that a change makes.
+Problem ProblemOf(const Scene& scene) {
+  Problems problems;
+  CheckScene(scene, problems);
+  EXPECT_EQ(problems.count(), 1u) << problems.ToString();
+  return problems.empty() ? Problem{} : problems.kept()[0];
+}
+
+TEST(CheckSceneTest, GoodSceneHasNoProblems) {
+  Problems problems;
+  CheckScene(GoodScene(), problems);
+  EXPECT_TRUE(problems.empty()) << problems.ToString();
+}
+
+TEST(CheckSceneTest, NoBodies) {
+  Scene scene = GoodScene();
+  scene.bodies.clear();
+  scene.output.probes.clear();
+  EXPECT_EQ(ProblemOf(scene).path, "bodies");
+}
+
+TEST(CheckSceneTest, BodyWithoutMass) {
+  Scene scene = GoodScene();
+  scene.bodies[0].density = 0;
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].density");
+}
+
+TEST(CheckSceneTest, NamesMustDiffer) {
+  Scene scene = GoodScene();
+  scene.bodies.push_back(scene.bodies[0]);
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[1].name");
+}
+
+TEST(CheckSceneTest, FibresAreMissing) {
+  Scene scene = GoodScene();
+  scene.bodies[0].fibres.clear();
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].fibres");
+  scene.bodies[0].material = NeoHookean(std::array{1e4, 0.3});
+  Problems problems;
+  CheckScene(scene, problems);
+  EXPECT_TRUE(problems.empty());
+}
+
+TEST(CheckSceneTest, FibresOfAnotherMesh) {
+  Scene scene = GoodScene();
+  scene.bodies[0].fibres.pop_back();
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("71 fibre directions for 72"));
+}
+
+TEST(CheckSceneTest, FibreThatIsNoDirection) {
+  Scene scene = GoodScene();
+  scene.bodies[0].fibres[5] *= 2;
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 5"));
+}
+
+TEST(CheckSceneTest, FibresThatOnlyAPartNeeds) {
+  Scene scene = GoodScene();
+  Body& body = scene.bodies[0];
+  body.more_materials = {body.material};
+  body.material = NeoHookean(std::array{1e4, 0.3});
+  body.material_of.assign(body.mesh.tetrahedra.size(), 0);
+  body.material_of[3] = 1;
+  body.fibres.clear();
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].fibres");
+}
+
+TEST(CheckSceneTest, PartsWithMaterialsAndActivationsThatThereAreNot) {
+  const std::size_t tetrahedra = GoodScene().bodies[0].mesh.tetrahedra.size();
+  for (const bool of_material : {true, false}) {
+    Scene scene = GoodScene();
+    Body& body = scene.bodies[0];
+    auto& parts = of_material ? body.material_of : body.activation_of;
+    const std::string path = of_material ? "bodies[0].region_materials" : "bodies[0].region_activations";
+    parts.assign(tetrahedra, 0);
+    Problems none;
+    CheckScene(scene, none);
+    EXPECT_TRUE(none.empty()) << none.ToString();
+    parts[7] = 1;
+    EXPECT_EQ(ProblemOf(scene).path, path);
+    EXPECT_THAT(ProblemOf(scene).message, HasSubstr("element 7"));
+    parts[7] = -1;
+    EXPECT_EQ(ProblemOf(scene).path, path);
+    parts.assign(tetrahedra - 1, 0);
+    EXPECT_THAT(ProblemOf(scene).message, HasSubstr("71 entries for 72"));
+  }
+}
+
+TEST(CheckSceneTest, ActivationOfAPartOutsideItsRange) {
+  Scene scene = GoodScene();
+  scene.bodies[0].more_activations = {Curve::Constant(1), Curve::Constant(2)};
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].region_activations[1].curve.values");
+}
+
+TEST(CheckSceneTest, ActivationScale) {
+  Scene scene = GoodScene();
+  std::vector<double>& scale = scene.bodies[0].activation_scale;
+  scale.assign(scene.bodies[0].mesh.tetrahedra.size(), 0.5);
+  scale[9] = 1.5;
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].activation_scale");
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("element 9"));
+  scale[9] = std::nan("");
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("element 9"));
+  scale[9] = 1;
+  scale.pop_back();
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("71 values for 72"));
+}
+
+TEST(CheckSceneTest, InitialDisplacement) {
+  Scene scene = GoodScene();
+  std::vector<Vec3>& displacement = scene.bodies[0].initial_displacement;
+  displacement.assign(scene.bodies[0].mesh.nodes.size(), Vec3(0, 0, 1e-3));
+  displacement[2].y() = std::nan("");
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].initial_displacement");
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("node 2"));
+  displacement[2].y() = 0;
+  displacement.pop_back();
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("35 displacements for 36"));
+}
+
+TEST(CheckSceneTest, ActivationOutsideItsRange) {
+  Scene scene = GoodScene();
+  scene.bodies[0].activation.values[1] = 1.2;
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].activation.values");
+  scene.bodies[0].activation.values[1] = -0.1;
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].activation.values");
+}
+
+TEST(CheckSceneTest, CurvesThatCannotBeEvaluated) {
+  Scene scene = GoodScene();
+  scene.bodies[0].loads[0].scale = {{0, 2, 2}, {0, 1, 2}, Curve::Interpolation::kLinear};
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].loads[0].scale.times");
+  scene.bodies[0].loads[0].scale = {{0, 2}, {0}, Curve::Interpolation::kLinear};
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].loads[0].scale.values");
+  scene.bodies[0].loads[0].scale = {{0}, {std::nan("")}, Curve::Interpolation::kLinear};
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].loads[0].scale.values");
+}
+
+// The sides x = 0 and y = 0 share an edge.
+TEST(CheckSceneTest, ConstraintsThatContradictEachOther) {
+  Scene scene = GoodScene();
+  Constraint moving = Fix(kY0);
+  scene.bodies[0].constraints.push_back(moving);  // asks for the same: rest
+  Problems problems;
+  CheckScene(scene, problems);
+  EXPECT_TRUE(problems.empty());
+
+  scene.bodies[0].constraints[1].motion.translation[2] = Curve{{0, 1}, {0, 0.01}, Curve::Interpolation::kLinear};
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].constraints[1]");
+  scene.bodies[0].constraints[1].axes = {true, true, false};  // z is left to the first
+  problems = {};
+  CheckScene(scene, problems);
+  EXPECT_TRUE(problems.empty()) << problems.ToString();
+  scene.bodies[0].constraints[1].motion.rotation = Rotation{Vec3::Zero(), Vec3::UnitX(), Curve::Constant(0.1)};
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].constraints[1]");
+}
+
+TEST(CheckSceneTest, TractionNeedsSurface) {
+  Scene scene = GoodScene();
+  scene.bodies[0].regions[kX1].triangles.clear();
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].loads[0].region");
+  scene.bodies[0].loads[0].kind = NodalForce{Vec3(0, 0, 1)};  // a force does not
+  Problems problems;
+  CheckScene(scene, problems);
+  EXPECT_TRUE(problems.empty());
+}
+
+TEST(CheckSceneTest, RegionsThatAreNotThere) {
+  Scene scene = GoodScene();
+  scene.bodies[0].loads[0].region = 99;
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].loads[0].region");
+  scene = GoodScene();
+  scene.bodies[0].constraints[0].region = -1;
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].constraints[0].region");
+}
+
+TEST(CheckSceneTest, BodyThatWouldFlyAway) {
+  Scene scene = GoodScene();
+  scene.bodies[0].constraints.clear();
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].constraints");  // z alone is loaded
+  scene.bodies[0].loads.clear();
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].constraints");  // gravity
+  scene.gravity.acceleration.setZero();
+  Problems problems;
+  CheckScene(scene, problems);
+  EXPECT_TRUE(problems.empty()) << problems.ToString();
+  // Loads in balance need no support.
+  scene.bodies[0].loads = {{kX1, Traction{Vec3(50, 0, 0)}, Curve::Constant(1)},
+                           {kX0, Traction{Vec3(-50, 0, 0)}, Curve::Constant(1)}};
+  CheckScene(scene, problems);
+  EXPECT_TRUE(problems.empty()) << problems.ToString();
+  scene.bodies[0].loads[1].scale = Curve{{0, 1}, {0, 1}, Curve::Interpolation::kLinear};
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("along x"));
+}
+
+// Equilibrium alone says nothing about where an unheld body is, loaded or not.
+TEST(CheckSceneTest, EquilibriumNeedsSupportsAlongEveryAxis) {
+  Scene scene = GoodScene();
+  scene.tet.stepping = Stepping::kQuasiStatic;
+  Problems held;
+  CheckScene(scene, held);
+  EXPECT_TRUE(held.empty()) << held.ToString();
+  scene.bodies[0].constraints[0].axes = {true, false, true};
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("along y"));
+  scene.tet.stepping = Stepping::kBackwardEuler;
+  CheckScene(scene, held);
+  EXPECT_TRUE(held.empty()) << held.ToString();
+}
+
+TEST(CheckSceneTest, StepsThatAreSolvedForNeedDouble) {
+  Scene scene = GoodScene();
+  scene.tet.precision = Precision::kSingle;
+  for (const Stepping stepping : {Stepping::kExplicit, Stepping::kMixed}) {
+    scene.tet.stepping = stepping;
+    Problems problems;
+    CheckScene(scene, problems);
+    EXPECT_TRUE(problems.empty()) << problems.ToString();
+  }
+  for (const Stepping stepping :
+       {Stepping::kBackwardEuler, Stepping::kNewmark, Stepping::kBdf2, Stepping::kQuasiStatic}) {
+    scene.tet.stepping = stepping;
+    EXPECT_EQ(ProblemOf(scene).path, "tet.precision");
+    EXPECT_THAT(ProblemOf(scene).hint, HasSubstr("explicit"));
+  }
+}
+
+TEST(CheckSceneTest, Output) {
+  Scene scene = GoodScene();
+  scene.output.frame_interval = 1e-6;
+  EXPECT_EQ(ProblemOf(scene).path, "output.frame_interval");
+  scene = GoodScene();
+  scene.output.probes.push_back({"tip", 0, 4});
+  EXPECT_EQ(ProblemOf(scene).path, "output.probes[1].name");
+  scene.output.probes[1] = {"other", 0, 1000000};
+  EXPECT_EQ(ProblemOf(scene).path, "output.probes[1].point");
+  scene.output.probes[1] = {"other", 3, 0};
+  EXPECT_EQ(ProblemOf(scene).path, "output.probes[1].body");
+}
+
+TEST(CheckSceneTest, AllProblemsAtOnce) {
+  Scene scene = GoodScene();
+  scene.bodies[0].density = -1;
+  scene.bodies[0].activation.values[0] = 7;
+  scene.duration = 0;
+  Problems problems;
+  CheckScene(scene, problems);
+  EXPECT_EQ(problems.count(), 3u);
+}
+
+}  // namespace
+}  // namespace fascicle

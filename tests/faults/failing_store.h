@@ -1,0 +1,130 @@
+#ifndef FASCICLE_TESTS_FAULTS_FAILING_STORE_H_
+#define FASCICLE_TESTS_FAULTS_FAILING_STORE_H_
+
+#include <atomic>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "server/store/store.h"
+
+namespace fascicle::server {
+
+// Counts the calls of a store and makes those from one to another fail. Thread-safe.
+class Faults {
+ public:
+  static constexpr int kForEver = std::numeric_limits<int>::max();
+
+  // The calls number first (from 0, counted from now), first + 1, ... up to `count` of them fail.
+  void FailFrom(int first, int count = kForEver) {
+    calls_ = 0;
+    count_ = count;
+    first_ = first;
+  }
+  void Heal() { first_ = kForEver; }
+  int calls() const { return calls_; }
+
+  void Call() {
+    const int call = calls_++;
+    if (call >= first_ && call - first_ < count_) throw StoreError("disk full, so the test wants it");
+  }
+
+ private:
+  std::atomic<int> calls_ = 0;
+  std::atomic<int> first_ = kForEver;
+  std::atomic<int> count_ = kForEver;
+};
+
+// A store that fails when told to; otherwise the store behind it. What fails has no effect.
+class FailingStore final : public Store {
+ public:
+  struct Points {
+    Faults reads;         // of jobs and frames
+    Faults job_writes;    // CreateJob, UpdateJob, DeleteJob
+    Faults frame_writes;  // PutFrame, PutGeometry
+  };
+
+  explicit FailingStore(std::unique_ptr<Store> behind) : behind_(std::move(behind)) {}
+
+  Points& faults() { return *faults_; }
+
+  bool CreateJob(const JobRecord& job, JobRecord* existing) override {
+    faults_->job_writes.Call();
+    return behind_->CreateJob(job, existing);
+  }
+  std::optional<JobRecord> GetJob(std::string_view id) override {
+    faults_->reads.Call();
+    return behind_->GetJob(id);
+  }
+  std::vector<JobRecord> ListJobs(int limit, std::string_view before_id, const std::vector<JobState>& states) override {
+    faults_->reads.Call();
+    return behind_->ListJobs(limit, before_id, states);
+  }
+  void UpdateJob(const JobRecord& job) override {
+    faults_->job_writes.Call();
+    behind_->UpdateJob(job);
+  }
+  bool DeleteJob(std::string_view id) override {
+    faults_->job_writes.Call();
+    return behind_->DeleteJob(id);
+  }
+  std::shared_ptr<FrameStore> OpenFrames(std::string_view job_id) override {
+    faults_->reads.Call();
+    std::shared_ptr<FrameStore> frames = behind_->OpenFrames(job_id);
+    return frames == nullptr ? nullptr : std::make_shared<Frames>(std::move(frames), faults_);
+  }
+  bool HasAsset(std::string_view sha256_hex) override { return behind_->HasAsset(sha256_hex); }
+  std::unique_ptr<Upload> BeginUpload(std::string_view sha256_hex, std::int64_t size) override {
+    return behind_->BeginUpload(sha256_hex, size);
+  }
+  std::optional<std::string> ReadAsset(std::string_view sha256_hex) override { return behind_->ReadAsset(sha256_hex); }
+
+ private:
+  class Frames final : public FrameStore {
+   public:
+    Frames(std::shared_ptr<FrameStore> behind, std::shared_ptr<Points> faults)
+        : behind_(std::move(behind)), faults_(std::move(faults)) {}
+
+    void PutGeometry(std::string_view bytes) override {
+      faults_->frame_writes.Call();
+      behind_->PutGeometry(bytes);
+    }
+    std::optional<std::string> GetGeometry() override {
+      faults_->reads.Call();
+      return behind_->GetGeometry();
+    }
+    bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) override {
+      faults_->frame_writes.Call();
+      return behind_->PutFrame(frame, bytes, checkpoint);
+    }
+    std::optional<std::string> GetCheckpoint() override {
+      faults_->reads.Call();
+      return behind_->GetCheckpoint();
+    }
+    std::vector<FrameRecord> ListFrames(std::int64_t start, int limit) override {
+      faults_->reads.Call();
+      return behind_->ListFrames(start, limit);
+    }
+    std::int64_t frame_count() override { return behind_->frame_count(); }
+    std::int64_t stored_bytes() override { return behind_->stored_bytes(); }
+    std::optional<std::string> ReadChunk(std::int64_t index, std::int64_t chunk) override {
+      faults_->reads.Call();
+      return behind_->ReadChunk(index, chunk);
+    }
+
+   private:
+    const std::shared_ptr<FrameStore> behind_;
+    const std::shared_ptr<Points> faults_;
+  };
+
+  const std::unique_ptr<Store> behind_;
+  const std::shared_ptr<Points> faults_ = std::make_shared<Points>();
+};
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_TESTS_FAULTS_FAILING_STORE_H_

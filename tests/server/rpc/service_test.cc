@@ -1,0 +1,338 @@
+// What the calls do when they are right.
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/support/service_fixture.h"
+
+namespace fascicle::service_test {
+namespace {
+
+using JobsTest = ServiceTest;
+
+TEST_F(JobsTest, AJobIsCreatedRunsAndCanBeLookedAt) {
+  v1::CreateJobRequest request;
+  *request.mutable_job()->mutable_scene() = SwingingBox(0.1, 0.01);
+  request.mutable_job()->set_threads(2);
+  v1::Job created;
+  ASSERT_TRUE(stubs_->Create(request, created).ok());
+  EXPECT_TRUE(created.name().starts_with("jobs/"));
+  EXPECT_EQ(created.scene_name(), "swinging box");
+  EXPECT_FALSE(created.has_scene());
+  EXPECT_GT(created.create_time().seconds(), 1'600'000'000);
+
+  ASSERT_TRUE(stubs_->AwaitState(created.name(), v1::Job::STATE_SUCCEEDED));
+  const v1::Job job = stubs_->Get(created.name());
+  EXPECT_EQ(job.scene().SerializeAsString(), request.job().scene().SerializeAsString());
+  EXPECT_EQ(job.threads(), 2);
+  EXPECT_EQ(job.attempt(), 1);
+  EXPECT_EQ(job.frame_count(), 11);
+  EXPECT_GT(job.stored_bytes(), 11 * 45 * 24);
+  EXPECT_NEAR(job.progress().fraction(), 1, 1e-9);
+  EXPECT_GE(job.end_time().seconds(), job.start_time().seconds());
+  EXPECT_FALSE(job.has_failure());
+}
+
+TEST_F(JobsTest, AJobsProfileSaysWhereItsTimeWent) {
+  const std::string name = stubs_->Submit(LargeSteps(400));
+  ASSERT_TRUE(stubs_->AwaitState(name, v1::Job::STATE_SUCCEEDED, 60s));
+  const v1::Job job = stubs_->Get(name);
+  ASSERT_TRUE(job.has_profile());
+  const v1::Profile& profile = job.profile();
+  std::map<std::string, v1::Profile::Stage> stages;
+  double whole = 0, step = 0;
+  for (const v1::Profile::Stage& stage : profile.stages()) {
+    stages[stage.name()] = stage;
+    const bool is_part = stage.name().find('/') != std::string::npos;
+    if (!is_part && !stage.concurrent()) whole += stage.seconds();
+    if (stage.name().starts_with("step/")) step += stage.seconds();
+  }
+  const auto micros = [](const google::protobuf::Timestamp& t) {
+    return 1e6 * static_cast<double>(t.seconds()) + 1e-3 * t.nanos();
+  };
+  EXPECT_GT(profile.wall_seconds(), 0);
+  EXPECT_LE(profile.wall_seconds(), 1e-6 * (micros(job.end_time()) - micros(job.start_time())) + 0.01);
+  // All but what goes by between stages; a busy machine may stop the worker there for some milliseconds.
+  constexpr double kBetween = 0.03;
+  EXPECT_GT(whole, 0.97 * profile.wall_seconds() - kBetween) << profile.DebugString();
+  EXPECT_LE(whole, profile.wall_seconds());
+  EXPECT_GT(step, 0.97 * stages["step"].seconds() - kBetween) << profile.DebugString();
+  EXPECT_GT(stages["step/elastic force"].seconds(), 0.3 * stages["step"].seconds());
+  EXPECT_EQ(stages["step"].calls(), job.progress().step());
+  EXPECT_EQ(stages["commit"].calls(), 400);
+  EXPECT_TRUE(stages["commit"].concurrent());
+  EXPECT_GT(profile.cpu_seconds(), 0.3 * step);
+  EXPECT_EQ(profile.runs(), 1);
+  // It comes with the end of a stream, and not with a list.
+  EXPECT_EQ(ReadStream(*stubs_, AllFramesOf(name)).end->job().profile().SerializeAsString(),
+            profile.SerializeAsString());
+  grpc::ClientContext context;
+  v1::ListJobsResponse list;
+  ASSERT_TRUE(stubs_->jobs->ListJobs(&context, {}, &list).ok());
+  EXPECT_FALSE(list.jobs(0).has_profile());
+}
+
+TEST_F(JobsTest, ValidateOnlyCreatesNothing) {
+  v1::CreateJobRequest request;
+  *request.mutable_job()->mutable_scene() = SwingingBox(1, 0.1);
+  request.set_validate_only(true);
+  v1::Job job;
+  ASSERT_TRUE(stubs_->Create(request, job).ok());
+  EXPECT_EQ(job.name(), "");
+  grpc::ClientContext context;
+  v1::ListJobsResponse list;
+  ASSERT_TRUE(stubs_->jobs->ListJobs(&context, {}, &list).ok());
+  EXPECT_EQ(list.jobs_size(), 0);
+}
+
+TEST_F(JobsTest, PagesListEveryJobOnceNewestFirst) {
+  std::vector<std::string> names;
+  for (int i = 0; i < 7; ++i) names.push_back(stubs_->Submit(SwingingBox(0.01, 0.01)));
+  for (const int page_size : {1, 3, 7, 100}) {
+    std::vector<std::string> listed;
+    v1::ListJobsRequest request;
+    request.set_page_size(page_size);
+    do {
+      grpc::ClientContext context;
+      v1::ListJobsResponse page;
+      ASSERT_TRUE(stubs_->jobs->ListJobs(&context, request, &page).ok());
+      EXPECT_LE(page.jobs_size(), page_size);
+      for (const v1::Job& job : page.jobs()) {
+        listed.push_back(job.name());
+        EXPECT_FALSE(job.has_scene());
+      }
+      request.set_page_token(page.next_page_token());
+    } while (!request.page_token().empty());
+    EXPECT_EQ(listed, std::vector<std::string>(names.rbegin(), names.rend())) << page_size;
+  }
+}
+
+TEST_F(JobsTest, ListsByState) {
+  const std::string done = stubs_->Submit(SwingingBox(0.01, 0.01));
+  ASSERT_TRUE(stubs_->AwaitState(done, v1::Job::STATE_SUCCEEDED));
+  const std::string running = stubs_->Submit(LongScene());
+  ASSERT_TRUE(stubs_->AwaitState(running, v1::Job::STATE_RUNNING));
+  grpc::ClientContext context;
+  v1::ListJobsRequest request;
+  request.add_states(v1::Job::STATE_RUNNING);
+  v1::ListJobsResponse response;
+  ASSERT_TRUE(stubs_->jobs->ListJobs(&context, request, &response).ok());
+  ASSERT_EQ(response.jobs_size(), 1);
+  EXPECT_EQ(response.jobs(0).name(), running);
+}
+
+TEST_F(JobsTest, TwoJobsRunAtOnceAndAThirdWaits) {
+  const std::string a = stubs_->Submit(LongScene());
+  const std::string b = stubs_->Submit(LongScene());
+  const std::string c = stubs_->Submit(LongScene());
+  ASSERT_TRUE(stubs_->AwaitState(a, v1::Job::STATE_RUNNING));
+  ASSERT_TRUE(stubs_->AwaitState(b, v1::Job::STATE_RUNNING));
+  // Both make frames while the other runs too.
+  const std::int64_t count_a = stubs_->Get(a).frame_count(), count_b = stubs_->Get(b).frame_count();
+  EXPECT_TRUE(stubs_->AwaitFrames(a, count_a + 5));
+  EXPECT_TRUE(stubs_->AwaitFrames(b, count_b + 5));
+  EXPECT_EQ(stubs_->Get(a).state(), v1::Job::STATE_RUNNING);
+  EXPECT_EQ(stubs_->Get(b).state(), v1::Job::STATE_RUNNING);
+  EXPECT_EQ(stubs_->Get(c).state(), v1::Job::STATE_QUEUED);
+}
+
+TEST_F(JobsTest, CancelStopsWithinASecondAndKeepsTheFrames) {
+  const std::string name = stubs_->Submit(LongScene());
+  ASSERT_TRUE(stubs_->AwaitFrames(name, 10));
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_TRUE(stubs_->Cancel(name).ok());
+  ASSERT_TRUE(stubs_->AwaitState(name, v1::Job::STATE_CANCELLED));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 1s);
+  const v1::Job job = stubs_->Get(name);
+  EXPECT_GE(job.frame_count(), 10);
+  EXPECT_EQ(static_cast<std::int64_t>(stubs_->List(name).size()), std::min<std::int64_t>(job.frame_count(), 10'000));
+  EXPECT_TRUE(stubs_->Cancel(name).ok()) << "a job in a final state is returned as it is";
+  EXPECT_EQ(stubs_->Get(name).state(), v1::Job::STATE_CANCELLED);
+}
+
+TEST_F(JobsTest, GeometryComesInChunksAndMatchesTheScene) {
+  const std::string name = stubs_->Submit(LargeFrames(2));
+  grpc::ClientContext context;
+  v1::GetGeometryRequest request;
+  request.set_name(name);
+  const auto reader = stubs_->frames->GetGeometry(&context, request);  // at once: it waits for the job to start
+  v1::GetGeometryResponse message;
+  std::string bytes;
+  int chunks = 0;
+  bool last = false;
+  while (reader->Read(&message)) {
+    EXPECT_EQ(message.chunk().offset(), static_cast<std::int64_t>(bytes.size()));
+    EXPECT_EQ(message.chunk().crc32c(), Crc32c(message.chunk().data()));
+    EXPECT_FALSE(last);
+    bytes += message.chunk().data();
+    last = message.chunk().last();
+    ++chunks;
+  }
+  ASSERT_TRUE(reader->Finish().ok());
+  EXPECT_TRUE(last);
+  EXPECT_EQ(chunks, static_cast<int>((bytes.size() + (1 << 20) - 1) >> 20));
+  v1::Geometry geometry;
+  ASSERT_TRUE(geometry.ParseFromString(bytes));
+  ASSERT_EQ(geometry.bodies_size(), 1);
+  EXPECT_EQ(geometry.bodies(0).positions().size(), 21u * 21 * 21 * 24);
+  EXPECT_EQ(geometry.bodies(0).tetrahedra().size(), 48'000u * 16);
+  EXPECT_GT(geometry.series_size(), 0);
+}
+
+TEST_F(JobsTest, AJobThatIsCancelledInTheQueueHasNoGeometry) {
+  const std::string a = stubs_->Submit(LongScene());
+  const std::string b = stubs_->Submit(LongScene());
+  const std::string waiting = stubs_->Submit(SwingingBox(1, 0.1));
+  grpc::ClientContext context;
+  v1::GetGeometryRequest request;
+  request.set_name(waiting);
+  const auto reader = stubs_->frames->GetGeometry(&context, request);
+  ASSERT_TRUE(stubs_->Cancel(waiting).ok());
+  v1::GetGeometryResponse message;
+  EXPECT_FALSE(reader->Read(&message));
+  EXPECT_EQ(ReasonOf(reader->Finish()), "9 NO_GEOMETRY");
+}
+
+TEST_F(JobsTest, TheServerTellsAboutItself) {
+  grpc::ClientContext context;
+  v1::ServerInfo info;
+  ASSERT_TRUE(stubs_->server->GetServerInfo(&context, {}, &info).ok());
+  EXPECT_FALSE(info.version().empty());
+  ASSERT_EQ(info.methods_size(), 3);
+  EXPECT_EQ(info.methods(0), "tet");
+  EXPECT_EQ(info.methods(1), "voxel");
+  EXPECT_EQ(info.methods(2), "eulerian");
+  EXPECT_EQ(info.workers(), 2);
+  EXPECT_EQ(info.max_asset_size(), std::int64_t{4} << 30);
+}
+
+TEST_F(JobsTest, ASecondServerDoesNotTakeTheSamePort) {
+  server::ServerOptions options;
+  options.listen = server_->address();
+  EXPECT_THROW(server::EmbeddedServer::Start(options), std::runtime_error);
+  EXPECT_FALSE(stubs_->Submit(SwingingBox(0.01, 0.01)).empty());
+}
+
+TEST_F(JobsTest, OtherAddressesThanLoopbackAreRefused) {
+  for (const char* listen : {"0.0.0.0:0", "[::]:0", "example.org:0", "127.0.0.1", "127.0.0.1:99999", ":80", ""}) {
+    server::ServerOptions options;
+    options.listen = listen;
+    EXPECT_THROW(server::EmbeddedServer::Start(options), std::runtime_error) << listen;
+  }
+}
+
+class AssetsTest : public ServiceTest {
+ protected:
+  server::ServerOptions Options() override {
+    server::ServerOptions options;
+    options.max_asset_size = 8 << 20;
+    return options;
+  }
+
+  static std::string NameOf(const std::string& bytes) { return "assets/" + Hex(Sha256Of(bytes)); }
+
+  grpc::Status Upload(const std::string& name, std::int64_t size, const std::string& bytes,
+                      std::size_t chunk = 1 << 20) {
+    grpc::ClientContext context;
+    v1::UploadAssetResponse response;
+    const auto writer = stubs_->assets->UploadAsset(&context, &response);
+    v1::UploadAssetRequest request;
+    request.set_name(name);
+    request.set_size(size);
+    std::size_t sent = 0;
+    do {
+      request.set_data(bytes.substr(sent, chunk));
+      sent += chunk;
+      if (!writer->Write(request)) break;
+      request.clear_name();
+      request.clear_size();
+    } while (sent < bytes.size());
+    writer->WritesDone();
+    const grpc::Status status = writer->Finish();
+    if (status.ok()) {
+      EXPECT_EQ(response.name(), name);
+      EXPECT_EQ(response.size(), size);
+    }
+    return status;
+  }
+
+  bool IsMissing(const std::string& name) {
+    grpc::ClientContext context;
+    v1::FindMissingAssetsRequest request;
+    request.add_names(name);
+    v1::FindMissingAssetsResponse response;
+    EXPECT_TRUE(stubs_->assets->FindMissingAssets(&context, request, &response).ok());
+    return response.missing_size() == 1;
+  }
+};
+
+TEST_F(AssetsTest, UploadsAreKeptByDigest) {
+  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{1} << 20, (std::size_t{3} << 20) + 17}) {
+    const std::string bytes(size, 'x');
+    const std::string name = NameOf(bytes);
+    EXPECT_TRUE(IsMissing(name));
+    EXPECT_TRUE(Upload(name, static_cast<std::int64_t>(size), bytes).ok());
+    EXPECT_FALSE(IsMissing(name));
+    EXPECT_TRUE(Upload(name, static_cast<std::int64_t>(size), bytes).ok()) << "again";
+  }
+}
+
+TEST_F(AssetsTest, WrongUploadsLeaveNothing) {
+  const std::string bytes(3'000'000, 'y');
+  const std::string name = NameOf(bytes);
+  const auto size = static_cast<std::int64_t>(bytes.size());
+  std::string changed = bytes;
+  changed[1'234'567] = 'z';
+  EXPECT_EQ(ReasonOf(Upload(name, size, changed)), "3 DIGEST_MISMATCH");
+  EXPECT_EQ(ReasonOf(Upload(name, size, bytes.substr(1))), "3 SIZE_MISMATCH");
+  EXPECT_EQ(ReasonOf(Upload(name, size, bytes + "y")), "3 SIZE_MISMATCH");
+  EXPECT_EQ(ReasonOf(Upload(name, -1, bytes)), "3 INVALID_ARGUMENT");
+  EXPECT_EQ(ReasonOf(Upload(name, size, bytes, (1 << 20) + 1)), "3 INVALID_ARGUMENT");
+  EXPECT_EQ(ReasonOf(Upload("assets/../../etc/passwd", size, bytes)), "3 INVALID_ARGUMENT");
+  const grpc::Status large = Upload(name, 9 << 20, bytes);
+  EXPECT_EQ(ReasonOf(large), "8 ASSET_TOO_LARGE");
+  EXPECT_TRUE(DetailOf<google::rpc::QuotaFailure>(large));
+  {
+    grpc::ClientContext context;
+    v1::UploadAssetResponse response;
+    const auto writer = stubs_->assets->UploadAsset(&context, &response);
+    writer->WritesDone();
+    EXPECT_EQ(ReasonOf(writer->Finish()), "3 INVALID_ARGUMENT") << "without any message";
+  }
+  EXPECT_TRUE(IsMissing(name));
+  EXPECT_TRUE(Upload(name, size, bytes).ok());
+}
+
+TEST_F(AssetsTest, ABrokenUploadLeavesNothing) {
+  const std::string bytes(2 << 20, 'b');
+  for (int i = 0; i < 10; ++i) {
+    grpc::ClientContext context;
+    v1::UploadAssetResponse response;
+    const auto writer = stubs_->assets->UploadAsset(&context, &response);
+    v1::UploadAssetRequest request;
+    request.set_name(NameOf(bytes));
+    request.set_size(static_cast<std::int64_t>(bytes.size()));
+    request.set_data(bytes.substr(0, 1 << 20));
+    writer->Write(request);
+    context.TryCancel();
+    EXPECT_EQ(writer->Finish().error_code(), grpc::StatusCode::CANCELLED);
+  }
+  EXPECT_TRUE(IsMissing(NameOf(bytes)));
+  EXPECT_TRUE(Upload(NameOf(bytes), static_cast<std::int64_t>(bytes.size()), bytes).ok());
+}
+
+TEST_F(AssetsTest, FindMissingChecksNames) {
+  grpc::ClientContext context;
+  v1::FindMissingAssetsRequest request;
+  request.add_names("assets/" + std::string(64, 'A'));
+  v1::FindMissingAssetsResponse response;
+  EXPECT_EQ(ReasonOf(stubs_->assets->FindMissingAssets(&context, request, &response)), "3 INVALID_ARGUMENT");
+  grpc::ClientContext another;
+  request.clear_names();
+  for (int i = 0; i < 1001; ++i) request.add_names("assets/" + std::string(64, 'a'));
+  EXPECT_EQ(ReasonOf(stubs_->assets->FindMissingAssets(&another, request, &response)), "3 INVALID_ARGUMENT");
+}
+
+}  // namespace
+}  // namespace fascicle::service_test

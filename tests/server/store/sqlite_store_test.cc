@@ -1,0 +1,251 @@
+// What is special to the store on disk: it survives, and it meets files and disks that are not as they should be.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "server/store/database.h"
+#include "server/store/group_commit.h"
+#include "server/store/store.h"
+#include "tests/support/store_samples.h"
+#include "tests/support/temporary_directory.h"
+
+namespace fascicle::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SqliteStoreTest : public testing::Test {
+ protected:
+  std::unique_ptr<Store> Open() { return OpenSqliteStore(directory_.path()); }
+  std::string FramesPath(int job) { return directory_.path() + "/jobs/" + SampleJob(job).id + ".db"; }
+  void Fill(Store& store, int job, int frames, std::size_t size) {
+    store.CreateJob(SampleJob(job), &existing_);
+    const std::shared_ptr<FrameStore> open = store.OpenFrames(SampleJob(job).id);
+    for (int i = 0; i < frames; ++i) {
+      const SampleFrame frame = MakeSampleFrame(i, size);
+      open->PutFrame(frame.record, frame.bytes, "checkpoint " + std::to_string(i));
+    }
+  }
+  bool AreFilesOf(int job) {
+    for (const auto& entry : fs::directory_iterator(directory_.path() + "/jobs")) {
+      if (entry.path().filename().string().starts_with(SampleJob(job).id)) return true;
+    }
+    return false;
+  }
+
+  TemporaryDirectory directory_;
+  JobRecord existing_;
+};
+
+TEST_F(SqliteStoreTest, EverythingIsThereAfterReopening) {
+  {
+    const std::unique_ptr<Store> store = Open();
+    Fill(*store, 1, 3, 2'000'000);
+    store->OpenFrames(SampleJob(1).id)->PutGeometry(SampleBytes(9, 1'500'000));
+    JobRecord job = SampleJob(1);
+    job.state = JobState::kRunning;
+    store->UpdateJob(job);
+  }
+  const std::unique_ptr<Store> store = Open();
+  EXPECT_EQ(store->GetJob(SampleJob(1).id)->state, JobState::kRunning);
+  EXPECT_EQ(store->GetJob(SampleJob(1).id)->spec, SampleJob(1).spec);
+  const std::shared_ptr<FrameStore> frames = store->OpenFrames(SampleJob(1).id);
+  EXPECT_EQ(frames->frame_count(), 3);
+  EXPECT_EQ(frames->stored_bytes(), 7'500'000);
+  EXPECT_EQ(frames->GetGeometry(), SampleBytes(9, 1'500'000));
+  EXPECT_EQ(frames->GetCheckpoint(), "checkpoint 2");
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(ReadFrame(*frames, i), MakeSampleFrame(i, 2'000'000).bytes);
+}
+
+TEST_F(SqliteStoreTest, IsUsedByOneAtATime) {
+  std::unique_ptr<Store> store = Open();
+  EXPECT_NE(ErrorOf([&] { Open(); }).find("in use"), std::string::npos);
+  const pid_t child = fork();
+  if (child == 0) _exit(ErrorOf([&] { Open(); }).empty() ? 1 : 0);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  // As long as frames are in use the directory is too.
+  store->CreateJob(SampleJob(1), &existing_);
+  std::shared_ptr<FrameStore> frames = store->OpenFrames(SampleJob(1).id);
+  store.reset();
+  EXPECT_NE(ErrorOf([&] { Open(); }), "");
+  frames.reset();
+  EXPECT_EQ(ErrorOf([&] { Open(); }), "");
+}
+
+TEST_F(SqliteStoreTest, RefusesDataOfANewerVersion) {
+  { Open(); }
+  { Database(directory_.path() + "/control.db", Database::Mode::kReadWrite).Execute("PRAGMA user_version = 99"); }
+  EXPECT_NE(ErrorOf([&] { Open(); }).find("newer version"), std::string::npos);
+}
+
+// control.db as format 1 had it: its jobs have no profile, and get one.
+TEST_F(SqliteStoreTest, JobsOfFormat1AreTakenOver) {
+  static constexpr std::array<const char*, 1> kFormat1 = {
+      R"(CREATE TABLE jobs (id TEXT PRIMARY KEY NOT NULL, request_id TEXT UNIQUE, request_digest BLOB NOT NULL,
+           scene_name TEXT NOT NULL, threads INTEGER NOT NULL, state INTEGER NOT NULL, failure BLOB NOT NULL,
+           attempt INTEGER NOT NULL, generation INTEGER NOT NULL, create_time_us INTEGER NOT NULL,
+           start_time_us INTEGER NOT NULL, end_time_us INTEGER NOT NULL, fraction REAL NOT NULL, time REAL NOT NULL,
+           step INTEGER NOT NULL, frame_count INTEGER NOT NULL, stored_bytes INTEGER NOT NULL) STRICT, WITHOUT ROWID;
+         CREATE TABLE specs (job_id TEXT PRIMARY KEY NOT NULL REFERENCES jobs (id) ON DELETE CASCADE,
+           spec BLOB NOT NULL) STRICT;)"};
+  const std::string id = SampleJob(1).id;
+  {
+    Database old = OpenFormatted(directory_.path() + "/control.db", 0x46534343, kFormat1);
+    old.Execute(("INSERT INTO jobs VALUES ('" + id +
+                 "', 'r', x'01', 'old', 3, 2, x'', 1, 1, 5, 6, 0, 0.5, 0.25, 8, 9, 10);"
+                 "INSERT INTO specs VALUES ('" +
+                 id + "', x'0203')")
+                    .c_str());
+  }
+  {
+    const std::unique_ptr<Store> store = Open();
+    JobRecord job = *store->GetJob(id);
+    EXPECT_EQ(job.scene_name, "old");
+    EXPECT_EQ(job.spec, "\x02\x03");
+    EXPECT_EQ(job.stored_bytes, 10);
+    EXPECT_EQ(job.profile, "");
+    job.profile = "where";
+    store->UpdateJob(job);
+  }
+  EXPECT_EQ(Open()->GetJob(id)->profile, "where");
+  EXPECT_EQ(Open()->ListJobs(1, "", {}).at(0).profile, "where");
+}
+
+TEST_F(SqliteStoreTest, DeletingAJobRemovesItsFile) {
+  const std::unique_ptr<Store> store = Open();
+  Fill(*store, 1, 2, 1000);
+  Fill(*store, 2, 2, 1000);
+  store->DeleteJob(SampleJob(1).id);
+  EXPECT_FALSE(AreFilesOf(1));
+  std::shared_ptr<FrameStore> used = store->OpenFrames(SampleJob(2).id);
+  store->DeleteJob(SampleJob(2).id);
+  EXPECT_TRUE(AreFilesOf(2));
+  used.reset();
+  EXPECT_FALSE(AreFilesOf(2));
+}
+
+TEST_F(SqliteStoreTest, RemovesOrphansAndFinishesFilesThatWereJustBegun) {
+  {
+    const std::unique_ptr<Store> store = Open();
+    Fill(*store, 1, 1, 1000);
+    store->CreateJob(SampleJob(2), &existing_);
+  }
+  for (const char* suffix : {".db", ".db-wal", ".db-shm"})
+    std::ofstream(directory_.path() + "/jobs/orphan" + suffix) << "x";
+  std::ofstream(FramesPath(2)).close();  // created, and then the process ended
+  const std::unique_ptr<Store> store = Open();
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory_.path() + "/jobs"), fs::directory_iterator()), 2);
+  EXPECT_EQ(store->OpenFrames(SampleJob(1).id)->frame_count(), 1);
+  EXPECT_EQ(store->OpenFrames(SampleJob(2).id)->frame_count(), 0);
+}
+
+TEST_F(SqliteStoreTest, ADamagedFileIsToldByNameAndTheOthersGoOn) {
+  {
+    const std::unique_ptr<Store> store = Open();
+    for (int job : {1, 2, 3}) Fill(*store, job, 3, 100'000);
+  }
+  std::ofstream(FramesPath(1), std::ios::binary) << std::string(70'000, 'x');  // no database any more
+  fs::resize_file(FramesPath(2), 3 * 32768);                                   // cut off
+  const std::unique_ptr<Store> store = Open();
+  EXPECT_NE(ErrorOf([&] { store->OpenFrames(SampleJob(1).id); }).find(FramesPath(1)), std::string::npos);
+  const std::string cut = ErrorOf([&] {
+    const std::shared_ptr<FrameStore> frames = store->OpenFrames(SampleJob(2).id);
+    for (int i = 0; i < 3; ++i) ReadFrame(*frames, i);
+  });
+  EXPECT_NE(cut.find(FramesPath(2)), std::string::npos) << cut;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(ReadFrame(*store->OpenFrames(SampleJob(3).id), i), MakeSampleFrame(i, 100'000).bytes);
+  }
+  EXPECT_TRUE(store->DeleteJob(SampleJob(1).id));
+  EXPECT_FALSE(AreFilesOf(1));
+}
+
+// No file may grow past `bytes` while it lives: what a full disk does to a write.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit = {bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_;
+};
+
+TEST_F(SqliteStoreTest, AFullDiskLosesNothingThatWasAcknowledged) {
+  const std::unique_ptr<Store> store = Open();
+  Fill(*store, 1, 2, 100'000);
+  const std::shared_ptr<FrameStore> frames = store->OpenFrames(SampleJob(1).id);
+  const SampleFrame large = MakeSampleFrame(2, 3'000'000);
+  {
+    const FileSizeLimit full(1'000'000);
+    const std::string error = ErrorOf([&] { frames->PutFrame(large.record, large.bytes, "lost"); });
+    EXPECT_NE(error.find(FramesPath(1)), std::string::npos) << error;
+    JobRecord job = SampleJob(2);
+    job.spec = SampleBytes(1, 3'000'000);
+    EXPECT_NE(ErrorOf([&] { store->CreateJob(job, &existing_); }).find("control.db"), std::string::npos);
+  }
+  EXPECT_EQ(frames->frame_count(), 2);
+  EXPECT_EQ(frames->GetCheckpoint(), "checkpoint 1");
+  EXPECT_FALSE(store->GetJob(SampleJob(2).id).has_value());
+  // There is space again.
+  EXPECT_FALSE(frames->PutFrame(large.record, large.bytes, "kept"));
+  EXPECT_TRUE(store->CreateJob(SampleJob(2), &existing_));
+  EXPECT_EQ(ReadFrame(*frames, 1), MakeSampleFrame(1, 100'000).bytes);
+  EXPECT_EQ(ReadFrame(*frames, 2), large.bytes);
+}
+
+TEST_F(SqliteStoreTest, TheLogStaysSmall) {
+  const std::unique_ptr<Store> store = Open();
+  store->CreateJob(SampleJob(1), &existing_);
+  const std::shared_ptr<FrameStore> frames = store->OpenFrames(SampleJob(1).id);
+  const std::string bytes = SampleBytes(1, 4 << 20);
+  std::uintmax_t largest = 0;
+  for (int i = 0; i < 40; ++i) {
+    frames->PutFrame(MakeSampleFrame(i, 10).record, bytes, "");
+    frames->ReadChunk(i, 0);
+    largest = std::max(largest, fs::file_size(FramesPath(1) + "-wal"));
+  }
+  EXPECT_LE(largest, std::uintmax_t{64} << 20);
+}
+
+TEST(GroupCommitTest, OneThatFailsLeavesTheOthers) {
+  TemporaryDirectory directory;
+  static constexpr std::array<const char*, 1> kFormats = {"CREATE TABLE numbers (n INTEGER PRIMARY KEY) STRICT"};
+  Database database = OpenFormatted(directory.path() + "/numbers.db", 1, kFormats);
+  Statement insert = database.Prepare("INSERT INTO numbers VALUES (?)");
+  GroupCommit commit(database);
+  constexpr int kThreads = 8, kEach = 30;
+  std::atomic<int> failed = 0;
+  std::vector<std::thread> threads;
+  for (int t = 0; t < kThreads; ++t) {
+    threads.emplace_back([&, t] {
+      for (int i = 0; i < kEach; ++i) {
+        const int number = i % 3 == 0 ? -1 : t * kEach + i;  // of all the -1 only one can be stored
+        try {
+          commit.Run([&] { insert.Run(number); });
+        } catch (const StoreError&) {
+          ++failed;
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(failed, kThreads * kEach / 3 - 1);
+  EXPECT_EQ(database.QueryInt("SELECT count(*) FROM numbers"), kThreads * kEach * 2 / 3 + 1);
+}
+
+}  // namespace
+}  // namespace fascicle::server

@@ -1,0 +1,319 @@
+// Every clause of server/store/store.h, for each store.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <set>
+#include <stdexcept>
+#include <thread>
+
+#include "server/store/store.h"
+#include "tests/support/store_samples.h"
+#include "tests/support/temporary_directory.h"
+
+namespace fascicle::server {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+enum class Kind { kMemory, kSqlite };
+
+class StoreContract : public testing::TestWithParam<Kind> {
+ protected:
+  std::unique_ptr<Store> Make() {
+    return GetParam() == Kind::kMemory ? MakeMemoryStore() : OpenSqliteStore(directory_.path());
+  }
+  std::shared_ptr<FrameStore> MakeFrames() {
+    store_->CreateJob(SampleJob(1), &existing_);
+    return store_->OpenFrames(SampleJob(1).id);
+  }
+  static std::vector<std::string> Names(const std::vector<JobRecord>& jobs) {
+    std::vector<std::string> names;
+    for (const JobRecord& job : jobs) names.push_back(job.scene_name.substr(job.scene_name.size() - 2));
+    return names;
+  }
+
+  TemporaryDirectory directory_;
+  std::unique_ptr<Store> store_ = Make();
+  JobRecord existing_;
+};
+
+void ExpectEqual(const JobRecord& a, const JobRecord& b) {
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.request_id, b.request_id);
+  EXPECT_EQ(a.request_digest, b.request_digest);
+  EXPECT_EQ(a.scene_name, b.scene_name);
+  EXPECT_EQ(a.spec, b.spec);
+  EXPECT_EQ(a.threads, b.threads);
+  EXPECT_EQ(a.state, b.state);
+  EXPECT_EQ(a.failure, b.failure);
+  EXPECT_EQ(a.profile, b.profile);
+  EXPECT_EQ(a.attempt, b.attempt);
+  EXPECT_EQ(a.generation, b.generation);
+  EXPECT_EQ(a.create_time_us, b.create_time_us);
+  EXPECT_EQ(a.start_time_us, b.start_time_us);
+  EXPECT_EQ(a.end_time_us, b.end_time_us);
+  EXPECT_EQ(a.fraction, b.fraction);
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.frame_count, b.frame_count);
+  EXPECT_EQ(a.stored_bytes, b.stored_bytes);
+}
+
+TEST_P(StoreContract, KeepsEveryFieldOfAJob) {
+  JobRecord job = SampleJob(1);
+  job.request_id = "a request";
+  ASSERT_TRUE(store_->CreateJob(job, &existing_));
+  ExpectEqual(store_->GetJob(job.id).value(), job);
+}
+
+TEST_P(StoreContract, KnowsNoJobThatWasNotCreated) {
+  EXPECT_FALSE(store_->GetJob("nobody").has_value());
+  EXPECT_EQ(store_->OpenFrames("nobody"), nullptr);
+  EXPECT_FALSE(store_->DeleteJob("nobody"));
+  EXPECT_THAT(store_->ListJobs(10, "", {}), IsEmpty());
+  store_->UpdateJob(SampleJob(1));
+  EXPECT_FALSE(store_->GetJob(SampleJob(1).id).has_value());
+}
+
+TEST_P(StoreContract, GivesTheEarlierJobForARequestIdThatIsTaken) {
+  JobRecord first = SampleJob(1), second = SampleJob(2);
+  first.request_id = second.request_id = "same";
+  ASSERT_TRUE(store_->CreateJob(first, &existing_));
+  EXPECT_FALSE(store_->CreateJob(second, &existing_));
+  ExpectEqual(existing_, first);
+  EXPECT_FALSE(store_->GetJob(second.id).has_value());
+  // Jobs without a request id never meet.
+  EXPECT_TRUE(store_->CreateJob(SampleJob(3), &existing_));
+  EXPECT_TRUE(store_->CreateJob(SampleJob(4), &existing_));
+  // A deleted job's request id is free.
+  ASSERT_TRUE(store_->DeleteJob(first.id));
+  EXPECT_TRUE(store_->CreateJob(second, &existing_));
+}
+
+TEST_P(StoreContract, ConcurrentSubmissionsMakeOneJobForEachRequestId) {
+  constexpr int kThreads = 8, kRequests = 60, kRepeats = 8;
+  std::atomic<int> created = 0, wrong = 0, number = 0;
+  std::vector<std::thread> threads;
+  for (int t = 0; t < kThreads; ++t) {
+    threads.emplace_back([&, t] {
+      for (int i = 0; i < kRequests * kRepeats / kThreads; ++i) {
+        JobRecord job = SampleJob(number++);
+        job.request_id = "request " + std::to_string((i * 7 + t) % kRequests);
+        JobRecord existing;
+        const bool is_new = store_->CreateJob(job, &existing);
+        created += is_new;
+        wrong += !is_new && existing.request_id != job.request_id;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  const std::vector<JobRecord> jobs = store_->ListJobs(10'000, "", {});
+  std::set<std::string> requests;
+  for (const JobRecord& job : jobs) requests.insert(job.request_id);
+  EXPECT_EQ(created, kRequests);
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(jobs.size(), std::size_t{kRequests});
+  EXPECT_EQ(requests.size(), std::size_t{kRequests});
+}
+
+TEST_P(StoreContract, ListsNewestFirstByPageAndState) {
+  for (int i : {3, 1, 2, 5, 4}) {
+    JobRecord job = SampleJob(i);
+    job.state = i % 2 == 0 ? JobState::kRunning : JobState::kFailed;
+    store_->CreateJob(job, &existing_);
+  }
+  EXPECT_THAT(Names(store_->ListJobs(10, "", {})), ElementsAre("05", "04", "03", "02", "01"));
+  EXPECT_THAT(Names(store_->ListJobs(2, "", {})), ElementsAre("05", "04"));
+  EXPECT_THAT(Names(store_->ListJobs(2, SampleJob(4).id, {})), ElementsAre("03", "02"));
+  EXPECT_THAT(Names(store_->ListJobs(10, SampleJob(5).id, {JobState::kFailed})), ElementsAre("03", "01"));
+  EXPECT_THAT(Names(store_->ListJobs(10, "", {JobState::kRunning, JobState::kQueued})), ElementsAre("04", "02"));
+  EXPECT_THAT(store_->ListJobs(0, "", {}), IsEmpty());
+  EXPECT_EQ(store_->ListJobs(1, "", {}).front().spec, "");
+}
+
+TEST_P(StoreContract, UpdatesWhatARunChangesAndNothingElse) {
+  JobRecord job = SampleJob(1);
+  job.request_id = "r";
+  store_->CreateJob(job, &existing_);
+  JobRecord changed = job;
+  changed.state = JobState::kFailed;
+  changed.failure = std::string("why\0not", 7);
+  changed.profile = std::string("where\0to", 8);
+  changed.attempt = 2;
+  changed.generation = 4;
+  changed.start_time_us = 5;
+  changed.end_time_us = 6;
+  changed.fraction = 0.7;
+  changed.time = 0.3;
+  changed.step = 8;
+  changed.frame_count = 9;
+  changed.stored_bytes = 10;
+  JobRecord sent = changed;
+  sent.spec = sent.scene_name = sent.request_id = sent.request_digest = "something else";
+  sent.threads = 77;
+  sent.create_time_us = 1;
+  store_->UpdateJob(sent);
+  ExpectEqual(store_->GetJob(job.id).value(), changed);
+}
+
+TEST_P(StoreContract, DeletesAJobWithItsFrames) {
+  const std::shared_ptr<FrameStore> frames = MakeFrames();
+  const SampleFrame frame = MakeSampleFrame(0, 100);
+  frames->PutFrame(frame.record, frame.bytes, "c");
+  EXPECT_TRUE(store_->DeleteJob(SampleJob(1).id));
+  EXPECT_FALSE(store_->DeleteJob(SampleJob(1).id));
+  EXPECT_FALSE(store_->GetJob(SampleJob(1).id).has_value());
+  EXPECT_EQ(store_->OpenFrames(SampleJob(1).id), nullptr);
+}
+
+TEST_P(StoreContract, FramesStayUsableUntilReleasedWhenTheJobIsDeleted) {
+  const std::shared_ptr<FrameStore> frames = MakeFrames();
+  for (int i = 0; i < 3; ++i) {
+    const SampleFrame frame = MakeSampleFrame(i, 5000);
+    frames->PutFrame(frame.record, frame.bytes, "");
+  }
+  store_->DeleteJob(SampleJob(1).id);
+  std::vector<std::thread> readers;  // more at once than there were connections before
+  for (int t = 0; t < 4; ++t) {
+    readers.emplace_back([&] {
+      for (int i = 0; i < 3; ++i) EXPECT_EQ(ReadFrame(*frames, i), MakeSampleFrame(i, 5000).bytes);
+    });
+  }
+  for (std::thread& reader : readers) reader.join();
+  const SampleFrame next = MakeSampleFrame(3, 5000);
+  frames->PutFrame(next.record, next.bytes, "");
+  EXPECT_EQ(frames->frame_count(), 4);
+}
+
+TEST_P(StoreContract, AJobHasOneFrameStore) {
+  const std::shared_ptr<FrameStore> frames = MakeFrames();
+  EXPECT_EQ(frames, store_->OpenFrames(SampleJob(1).id));
+}
+
+TEST_P(StoreContract, FramesOutliveTheStore) {
+  std::shared_ptr<FrameStore> frames = MakeFrames();
+  store_.reset();
+  const SampleFrame frame = MakeSampleFrame(0, 100);
+  frames->PutFrame(frame.record, frame.bytes, "");
+  EXPECT_EQ(ReadFrame(*frames, 0), frame.bytes);
+}
+
+TEST_P(StoreContract, KeepsGeometryOfAnySize) {
+  const std::shared_ptr<FrameStore> frames = MakeFrames();
+  EXPECT_FALSE(frames->GetGeometry().has_value());
+  for (std::size_t size : {std::size_t{0}, std::size_t{10}, std::size_t{FrameStore::kChunkSize},
+                           std::size_t{3 * FrameStore::kChunkSize + 1}, std::size_t{5}}) {
+    frames->PutGeometry(SampleBytes(size, size));
+    EXPECT_EQ(frames->GetGeometry().value(), SampleBytes(size, size));
+    EXPECT_EQ(frames->stored_bytes(), static_cast<std::int64_t>(size));
+  }
+}
+
+TEST_P(StoreContract, KeepsFramesInChunks) {
+  const std::shared_ptr<FrameStore> frames = MakeFrames();
+  const std::vector<std::size_t> sizes = {0, 1, FrameStore::kChunkSize - 1, FrameStore::kChunkSize,
+                                          2 * FrameStore::kChunkSize + 5};
+  std::int64_t total = 0;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const SampleFrame frame = MakeSampleFrame(static_cast<std::int64_t>(i), sizes[i]);
+    EXPECT_FALSE(frames->PutFrame(frame.record, frame.bytes, ""));
+    total += static_cast<std::int64_t>(sizes[i]);
+  }
+  EXPECT_EQ(frames->frame_count(), 5);
+  EXPECT_EQ(frames->stored_bytes(), total);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const auto index = static_cast<std::int64_t>(i);
+    EXPECT_EQ(ReadFrame(*frames, index), MakeSampleFrame(index, sizes[i]).bytes);
+    EXPECT_TRUE(frames->ReadChunk(index, 0).has_value());
+  }
+  EXPECT_EQ(frames->ReadChunk(4, 0)->size(), std::size_t{FrameStore::kChunkSize});
+  EXPECT_EQ(frames->ReadChunk(4, 2)->size(), 5u);
+  EXPECT_FALSE(frames->ReadChunk(4, 3).has_value());
+  EXPECT_FALSE(frames->ReadChunk(3, 1).has_value());
+  EXPECT_FALSE(frames->ReadChunk(5, 0).has_value());
+  EXPECT_FALSE(frames->ReadChunk(-1, 0).has_value());
+  EXPECT_FALSE(frames->ReadChunk(0, -1).has_value());
+}
+
+TEST_P(StoreContract, ListsFramesFromAnIndex) {
+  const std::shared_ptr<FrameStore> frames = MakeFrames();
+  for (int i = 0; i < 5; ++i) frames->PutFrame(MakeSampleFrame(i, 10).record, MakeSampleFrame(i, 10).bytes, "");
+  const std::vector<FrameRecord> listed = frames->ListFrames(2, 2);
+  ASSERT_EQ(listed.size(), 2u);
+  EXPECT_TRUE(listed[0] == MakeSampleFrame(2, 10).record);
+  EXPECT_TRUE(listed[1] == MakeSampleFrame(3, 10).record);
+  EXPECT_EQ(frames->ListFrames(-3, 100).size(), 5u);
+  EXPECT_THAT(frames->ListFrames(5, 100), IsEmpty());
+  EXPECT_THAT(frames->ListFrames(0, 0), IsEmpty());
+}
+
+TEST_P(StoreContract, ReplacesTheCheckpointWithAFrame) {
+  const std::shared_ptr<FrameStore> frames = MakeFrames();
+  EXPECT_FALSE(frames->GetCheckpoint().has_value());
+  const auto put = [&](int i, std::string_view checkpoint) {
+    return frames->PutFrame(MakeSampleFrame(i, 10).record, MakeSampleFrame(i, 10).bytes, checkpoint);
+  };
+  put(0, "first");
+  put(1, "");
+  EXPECT_EQ(frames->GetCheckpoint(), "first");
+  put(2, std::string_view("sec\0nd", 6));
+  EXPECT_EQ(frames->GetCheckpoint(), std::string_view("sec\0nd", 6));
+  // The same frame again leaves the frames and takes the checkpoint.
+  EXPECT_FALSE(put(1, "again"));
+  EXPECT_EQ(frames->GetCheckpoint(), "again");
+  EXPECT_EQ(frames->frame_count(), 3);
+}
+
+TEST_P(StoreContract, AFrameWithAnotherDigestReplacesItAndAllLaterOnes) {
+  const std::shared_ptr<FrameStore> frames = MakeFrames();
+  for (int i = 0; i < 4; ++i) {
+    frames->PutFrame(MakeSampleFrame(i, 100).record, MakeSampleFrame(i, 100).bytes, i == 2 ? "of frame 2" : "");
+  }
+  const SampleFrame other = MakeSampleFrame(1, 60, 9);
+  EXPECT_TRUE(frames->PutFrame(other.record, other.bytes, ""));
+  EXPECT_EQ(frames->frame_count(), 2);
+  EXPECT_EQ(frames->stored_bytes(), 160);
+  EXPECT_EQ(ReadFrame(*frames, 0), MakeSampleFrame(0, 100).bytes);
+  EXPECT_EQ(ReadFrame(*frames, 1), other.bytes);
+  EXPECT_FALSE(frames->ReadChunk(2, 0).has_value());
+  // The checkpoint led past frames that are no longer there.
+  EXPECT_FALSE(frames->GetCheckpoint().has_value());
+}
+
+TEST_P(StoreContract, RefusesAFrameThatLeavesAGap) {
+  const std::shared_ptr<FrameStore> frames = MakeFrames();
+  EXPECT_THROW(frames->PutFrame(MakeSampleFrame(1, 10).record, "x", ""), std::invalid_argument);
+  EXPECT_THROW(frames->PutFrame(MakeSampleFrame(-1, 10).record, "x", ""), std::invalid_argument);
+  EXPECT_EQ(frames->frame_count(), 0);
+}
+
+TEST_P(StoreContract, ReadersGoOnWhileFramesAreWritten) {
+  const std::shared_ptr<FrameStore> frames = MakeFrames();
+  constexpr int kFrames = 40;
+  constexpr std::size_t kSize = 50'000;
+  std::atomic<int> wrong = 0;
+  std::vector<std::thread> readers;
+  for (int t = 0; t < 3; ++t) {
+    readers.emplace_back([&] {
+      for (std::int64_t next = 0; next < kFrames;) {
+        const std::int64_t count = frames->frame_count();
+        wrong += static_cast<std::int64_t>(frames->ListFrames(0, 1000).size()) < count;
+        for (; next < count; ++next) wrong += ReadFrame(*frames, next) != MakeSampleFrame(next, kSize).bytes;
+      }
+    });
+  }
+  for (int i = 0; i < kFrames; ++i) {
+    const SampleFrame frame = MakeSampleFrame(i, kSize);
+    frames->PutFrame(frame.record, frame.bytes, SampleBytes(1, 1000));
+  }
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_EQ(wrong, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Stores, StoreContract, testing::Values(Kind::kMemory, Kind::kSqlite),
+                         [](const auto& test) { return test.param == Kind::kMemory ? "Memory" : "Sqlite"; });
+
+}  // namespace
+}  // namespace fascicle::server

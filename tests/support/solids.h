@@ -1,0 +1,84 @@
+#ifndef FASCICLE_TESTS_SUPPORT_SOLIDS_H_
+#define FASCICLE_TESTS_SUPPORT_SOLIDS_H_
+
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "core/eulerian/solver.h"
+#include "core/eulerian/surface.h"
+
+namespace fascicle::testing {
+
+// The surface of a cube around the origin, in n x n squares a side; `round`: of the ball in it.
+inline TriangleMesh CubeSurface(double side, int n, bool round = false) {
+  TriangleMesh surface;
+  std::map<std::array<int, 3>, std::int32_t> numbers;
+  const auto node = [&](const std::array<int, 3>& at) {
+    const auto [found, is_new] = numbers.try_emplace(at, static_cast<std::int32_t>(surface.nodes.size()));
+    if (!is_new) return found->second;
+    Vec3 p = 2.0 / n * Vec3(at[0], at[1], at[2]) - Vec3::Ones();
+    if (round) {
+      const Vec3 s = p.cwiseAbs2();
+      for (int d = 0; d < 3; ++d) {
+        const double a = s[(d + 1) % 3], b = s[(d + 2) % 3];
+        p[d] *= std::sqrt(1 - a / 2 - b / 2 + a * b / 3);
+      }
+    }
+    surface.nodes.push_back(side / 2 * p);
+    return found->second;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const bool far : {false, true}) {
+      for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) {
+          const auto corner = [&](int a, int b) {
+            std::array<int, 3> at = {};
+            at[axis] = far ? n : 0;
+            at[(axis + 1) % 3] = i + a;
+            at[(axis + 2) % 3] = j + b;
+            return node(at);
+          };
+          const std::int32_t a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
+          if (far) {
+            surface.triangles.insert(surface.triangles.end(), {{a, b, c}, {a, c, d}});
+          } else {
+            surface.triangles.insert(surface.triangles.end(), {{a, c, b}, {a, d, c}});
+          }
+        }
+      }
+    }
+  }
+  return surface;
+}
+
+inline constexpr double kSide = 0.1;  // [m]
+
+// Neo-Hookean, in a box of 2.2 sides of n^3 cells around it; its surface in so many squares a side.
+inline EulerianBody MakeSolid(int n, bool round, double young, double poisson, ThreadTeam& team, int squares = 12) {
+  EulerianGrid grid;
+  grid.cells = {n, n, n};
+  grid.spacing = 2.2 * kSide / n;
+  grid.origin = Vec3::Constant(-1.1 * kSide);
+  const std::array<double, 2> values = {young, poisson};
+  EulerianBody body{grid, SolidShape(CubeSurface(kSide, squares, round), grid.spacing / 2, team), NeoHookean(values)};
+  body.density = 1000;
+  body.volume = VolumeTreatment::kNone;
+  return body;
+}
+
+// Material above a height rests.
+inline void HoldAbove(double z, EulerianBody& body) {
+  body.supports = 1;
+  body.support_of = [z](const Vec3& X) { return X[2] > z ? 0 : -1; };
+  body.support_velocity = [](int, const Vec3&, double, double) { return Vec3(Vec3::Zero()); };
+}
+
+// The volume on the surface, relative to that at rest.
+inline double VolumeRatio(const EulerianBody& body, const EulerianState& state) {
+  return SurfaceVolume(body, state) / body.shape.volume();
+}
+
+}  // namespace fascicle::testing
+
+#endif  // FASCICLE_TESTS_SUPPORT_SOLIDS_H_

@@ -1,0 +1,60 @@
+#ifndef FASCICLE_TESTS_SUPPORT_STATIC_RUN_H_
+#define FASCICLE_TESTS_SUPPORT_STATIC_RUN_H_
+
+#include "core/tet/diagnostics.h"
+#include "tests/support/tet_scenes.h"
+
+namespace fascicle::testing {
+
+// A scene stepped by hand, one thread.
+struct SteppedRun {
+  explicit SteppedRun(Scene s) : scene(std::move(s)), model(scene), solver(model, team), state(solver.InitialState()) {}
+
+  // As many steps to `end` [s] as it takes; false on a problem.
+  bool To(double end) {
+    while (state.time < end) {
+      if (solver.Advance(state, end).problem != StepProblem::kNone) return false;
+    }
+    return true;
+  }
+
+  std::size_t FreeComponents() const {
+    std::size_t free = 0;
+    for (const Vec3& m : model.inverse_mass()) free += (m.array() != 0).count();
+    return free;
+  }
+  // The node at rest position X, of mesh or edges.
+  std::size_t NodeAt(const Vec3& X) const {
+    std::size_t best = 0;
+    for (std::size_t n = 0; n < model.nodes(); ++n) {
+      if ((model.rest_positions()[n] - X).norm() < (model.rest_positions()[best] - X).norm()) best = n;
+    }
+    return best;
+  }
+  Vec3 Displacement(std::size_t node) const { return state.positions[node] - model.rest_positions()[node]; }
+  Vec3 DisplacementAt(const Vec3& X) const { return Displacement(NodeAt(X)); }
+  // Force of a support on the body [N].
+  Vec3 Reaction(std::size_t support) { return Reactions(model, state, team).at(support); }
+
+  const Scene scene;
+  const TetModel model;
+  ThreadTeam team{1};
+  TetSolver solver;
+  TetState state;
+};
+
+// Rises from 0 at 0 s to `value` at 1 s.
+inline Curve Ramp(double value) { return {{0, 1}, {0, value}, Curve::Interpolation::kLinear}; }
+
+// A scene of one second without inertia, all settings but the element as they are by default.
+inline Scene StaticScene(Body body, ElementOrder element) {
+  Scene scene = OneBody(std::move(body));
+  scene.output.frame_interval = 1;
+  scene.tet.stepping = Stepping::kQuasiStatic;
+  scene.tet.element = element;
+  return scene;
+}
+
+}  // namespace fascicle::testing
+
+#endif  // FASCICLE_TESTS_SUPPORT_STATIC_RUN_H_
