@@ -30,7 +30,7 @@ std::string RoomOf(const std::string& path) {
 }
 
 std::vector<Include> ReadIncludes() {
-  const fs::path root = testing::ProjectRoot();
+  const fs::path root = fascicle::testing::ProjectRoot();
   const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
   std::vector<Include> includes;
   for (const char* top : {"core", "server", "client", "proto"}) {

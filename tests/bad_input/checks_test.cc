@@ -39,7 +39,7 @@ bool IsReported(const Problems& problems, const Expectation& expected) {
   });
 }
 
-class BadInput : public testing::TestWithParam<BadCase> {};
+class BadInput : public ::testing::TestWithParam<BadCase> {};
 
 TEST_P(BadInput, IsReportedInFull) {
   const auto before = Listing(GetParam().folder);
@@ -57,7 +57,7 @@ TEST_P(BadInput, IsReportedInFull) {
   EXPECT_EQ(Listing(GetParam().folder), before) << "something was left behind";
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, BadInput, testing::ValuesIn(AllCases()),
+INSTANTIATE_TEST_SUITE_P(Cases, BadInput, ::testing::ValuesIn(AllCases()),
                          [](const auto& bad) { return bad.param.name; });
 
 TEST(BadInputCases, AreMany) { EXPECT_GE(AllCases().size(), 40u); }
@@ -70,7 +70,7 @@ TEST(BadInputFiles, ASceneThatIsNotThereOrIsAFolder) {
 }
 
 // Links and sparse files can't be kept in a repository everywhere.
-class GeneratedFiles : public testing::Test {
+class GeneratedFiles : public ::testing::Test {
  protected:
   void SetUp() override {
     std::filesystem::create_directories(folder_ / "scene");
@@ -80,7 +80,7 @@ class GeneratedFiles : public testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) / ("bad_input_" + std::to_string(::getpid()));
+      std::filesystem::path(::testing::TempDir()) / ("bad_input_" + std::to_string(::getpid()));
 };
 
 TEST_F(GeneratedFiles, ALinkOutOfTheFolder) {

@@ -164,7 +164,7 @@ TEST_F(MeshTest, AHoleIsRefusedWithItsPlace) {
 }
 
 TEST_F(MeshTest, AMuscleIsMeshedWithItsAttachmentsAndContracts) {
-  if (!fs::exists(Muscle("Muscle_PeroneusLongus"))) GTEST_SKIP() << Data() << " is not there; set FASCICLE_DATA";
+  if (!fs::exists(Muscle("Muscle_PeroneusLongus"))) GTEST_SKIP() << DataFolder() << " is not there; set FASCICLE_DATA";
   const Finished made =
       Fascicle({"mesh", Muscle("Muscle_PeroneusLongus"), "--json", "--out", folder_ / "m/peroneus.msh", "--tets",
                 "3000", "--region", "origin=end:0,0,1:40", "--region", "insertion=end:0,0,-1:25", "--region",
@@ -190,7 +190,7 @@ TEST_F(MeshTest, AMuscleIsMeshedWithItsAttachmentsAndContracts) {
 }
 
 TEST_F(MeshTest, LabelsOfAnImage) {
-  const fs::path image = Data() / "voxel_labels/upper_arm_biceps1_triceps2_1mm.mha";
+  const fs::path image = DataFolder() / "voxel_labels/upper_arm_biceps1_triceps2_1mm.mha";
   if (!fs::exists(image)) GTEST_SKIP() << image << " is not there; set FASCICLE_DATA";
   const Finished made =
       Fascicle({"mesh", image, "--label", "1", "--json", "--out", folder_ / "biceps.msh", "--tets", "4000"});

@@ -22,7 +22,7 @@ struct RealMesh {
   std::string problem;  // what is wrong with it, if anything
 };
 
-class RealMeshes : public testing::TestWithParam<RealMesh> {};
+class RealMeshes : public ::testing::TestWithParam<RealMesh> {};
 
 TEST_P(RealMeshes, AreReadAndChecked) {
   const RealMesh& expected = GetParam();
@@ -45,31 +45,31 @@ TEST_P(RealMeshes, AreReadAndChecked) {
     EXPECT_TRUE(problems.empty()) << problems.ToString();
   } else {
     EXPECT_EQ(problems.count(), 1u);
-    EXPECT_THAT(problems.ToString(), testing::HasSubstr(expected.problem));
+    EXPECT_THAT(problems.ToString(), ::testing::HasSubstr(expected.problem));
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Files, RealMeshes,
-    testing::Values(RealMesh{"opendihu_upper_arm/biceps_coarse.msh", 1e-3, 1677, 6673, 0, 308.9, ""},
-                    RealMesh{"opendihu_upper_arm/biceps_medium.msh", 1e-3, 7079, 32578, 0, 317.2, ""},
-                    RealMesh{"opendihu_upper_arm/triceps_coarse.msh", 1e-3, 2053, 8358, 0, 612.0, ""},
-                    RealMesh{"opendihu_upper_arm/triceps_medium.msh", 1e-3, 6770, 30719, 0, 627.9, ""},
-                    RealMesh{"vh_muscle_tets/VHF_Left_Muscle_TibialisAnterior.msh", 1e-3, 2490, 8346, 3792, 81.78, ""},
-                    RealMesh{"vh_muscle_tets/VHM_Left_Muscle_BicepsFemorisLongus.msh", 1e-3, 2482, 8865, 3476, 313.1,
-                             ""},
-                    RealMesh{"vh_muscle_tets/VHM_Left_Muscle_TibialisAnterior.msh", 1e-3, 2450, 8287, 3644, 187.5, ""},
-                    RealMesh{"odedstein_meshes/penguin/penguin_coarse.msh", 1e-3, 532, 1876, 0, 1759, ""},
-                    RealMesh{"odedstein_meshes/penguin/penguin_medium.msh", 1e-3, 1960, 7846, 0, 1914, ""},
-                    RealMesh{"stanford/bunny/bunny_polyfem_19k_tets.msh", 1e-1, 4670, 19379, 0, 6010, ""},
-                    RealMesh{"polyfem_tets/bar-186.msh", 1e-2, 86, 186, 0, 5, ""},
-                    RealMesh{"polyfem_tets/bar-651.msh", 1e-2, 292, 651, 0, 5, ""},
-                    RealMesh{"polyfem_tets/bar-2523.msh", 1e-2, 886, 2523, 0, 5, ""},
-                    RealMesh{"polyfem_tets/torus.msh", 1e-1, 200, 491, 0, 72.65, ""},
-                    // Sets of four nodes near one circle, which Delaunay's rule leaves as slivers without volume.
-                    RealMesh{"artisynth/muscle.1.node", 1e-2, 65, 150, 0, 78.04, "tetrahedra are degenerate (flat)"},
-                    RealMesh{"artisynth/sphere2.1.node", 1e-2, 54, 174, 0, 3.659, ""},
-                    RealMesh{"artisynth/torus546.1.node", 1e-2, 297, 770, 0, 0.3554, ""}),
+    ::testing::Values(
+        RealMesh{"opendihu_upper_arm/biceps_coarse.msh", 1e-3, 1677, 6673, 0, 308.9, ""},
+        RealMesh{"opendihu_upper_arm/biceps_medium.msh", 1e-3, 7079, 32578, 0, 317.2, ""},
+        RealMesh{"opendihu_upper_arm/triceps_coarse.msh", 1e-3, 2053, 8358, 0, 612.0, ""},
+        RealMesh{"opendihu_upper_arm/triceps_medium.msh", 1e-3, 6770, 30719, 0, 627.9, ""},
+        RealMesh{"vh_muscle_tets/VHF_Left_Muscle_TibialisAnterior.msh", 1e-3, 2490, 8346, 3792, 81.78, ""},
+        RealMesh{"vh_muscle_tets/VHM_Left_Muscle_BicepsFemorisLongus.msh", 1e-3, 2482, 8865, 3476, 313.1, ""},
+        RealMesh{"vh_muscle_tets/VHM_Left_Muscle_TibialisAnterior.msh", 1e-3, 2450, 8287, 3644, 187.5, ""},
+        RealMesh{"odedstein_meshes/penguin/penguin_coarse.msh", 1e-3, 532, 1876, 0, 1759, ""},
+        RealMesh{"odedstein_meshes/penguin/penguin_medium.msh", 1e-3, 1960, 7846, 0, 1914, ""},
+        RealMesh{"stanford/bunny/bunny_polyfem_19k_tets.msh", 1e-1, 4670, 19379, 0, 6010, ""},
+        RealMesh{"polyfem_tets/bar-186.msh", 1e-2, 86, 186, 0, 5, ""},
+        RealMesh{"polyfem_tets/bar-651.msh", 1e-2, 292, 651, 0, 5, ""},
+        RealMesh{"polyfem_tets/bar-2523.msh", 1e-2, 886, 2523, 0, 5, ""},
+        RealMesh{"polyfem_tets/torus.msh", 1e-1, 200, 491, 0, 72.65, ""},
+        // Sets of four nodes near one circle, which Delaunay's rule leaves as slivers without volume.
+        RealMesh{"artisynth/muscle.1.node", 1e-2, 65, 150, 0, 78.04, "tetrahedra are degenerate (flat)"},
+        RealMesh{"artisynth/sphere2.1.node", 1e-2, 54, 174, 0, 3.659, ""},
+        RealMesh{"artisynth/torus546.1.node", 1e-2, 297, 770, 0, 0.3554, ""}),
     [](const auto& test) {
       std::string name = std::filesystem::path(test.param.file).stem().string();
       for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
@@ -83,7 +83,7 @@ TEST(RealMeshTest, AttachmentsAreTagged) {
   Problems problems;
   const std::optional<TetMesh> mesh = ReadMesh({path.string(), ReadFile(path), ""}, problems);
   ASSERT_TRUE(mesh) << problems.ToString();
-  EXPECT_THAT(mesh->tetrahedron_tags, testing::Each(10));
+  EXPECT_THAT(mesh->tetrahedron_tags, ::testing::Each(10));
   const std::vector<Triangle> surface = BoundaryTriangles(*mesh);
   std::size_t triangles = 0;
   for (const std::int32_t tag : {1, 2, 3}) {

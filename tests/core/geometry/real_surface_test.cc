@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-fs::path LegFolder() { return DataFolder() / "vh_muscle_surfaces"; }
+fs::path LegFolder() { return testing::DataFolder() / "vh_muscle_surfaces"; }
 
 TriangleMesh ReadLeg(const std::string& name) {
   const fs::path path = LegFolder() / ("VHM_Left_" + name + "_4k.stl");

@@ -39,7 +39,7 @@ void ExpectSound(const std::string& name, const std::string& bytes) {
   for (const Vec3& node : surface->nodes) ASSERT_TRUE(node.allFinite());
 }
 
-class EverySurface : public testing::TestWithParam<SurfaceSample> {};
+class EverySurface : public ::testing::TestWithParam<SurfaceSample> {};
 
 TEST_P(EverySurface, IsRead) {
   const auto surface = Read(GetParam().name, GetParam().bytes);
@@ -68,7 +68,7 @@ TEST_P(EverySurface, DamagedAnywhere) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, EverySurface, testing::ValuesIn(SurfaceSamples()), [](const auto& test) {
+INSTANTIATE_TEST_SUITE_P(Formats, EverySurface, ::testing::ValuesIn(SurfaceSamples()), [](const auto& test) {
   std::string name = test.param.name;
   std::replace(name.begin(), name.end(), '.', '_');
   return name;
@@ -96,7 +96,7 @@ TEST(SurfaceReaderTest, SaysWhatIsWrongAndWhere) {
 
 // Bones as OpenSim has them.
 TEST(SurfaceReaderTest, RealVtp) {
-  const auto path = DataFolder() / "opensim_arm26/Geometry/arm_r_humerus.vtp";
+  const auto path = testing::DataFolder() / "opensim_arm26/Geometry/arm_r_humerus.vtp";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there; set FASCICLE_DATA";
   const auto surface = Read(path, FileBytes(path));
   ASSERT_TRUE(surface);

@@ -43,7 +43,7 @@ struct ClosedForm {
   double volume;
 };
 
-class ClosedForms : public testing::TestWithParam<ClosedForm> {};
+class ClosedForms : public ::testing::TestWithParam<ClosedForm> {};
 
 TEST_P(ClosedForms, HaveTheirVolumeAndGoodAngles) {
   const ClosedForm& form = GetParam();
@@ -64,11 +64,11 @@ TEST_P(ClosedForms, HaveTheirVolumeAndGoodAngles) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, ClosedForms,
-                         testing::Values(ClosedForm{"sphere", SurfaceOf(MakeSphere(1, 24)), 4 * std::numbers::pi / 3},
-                                         ClosedForm{"torus", SurfaceOf(MakeTorus({1, 0.4, 96, 16})),
-                                                    2 * std::numbers::pi* std::numbers::pi * 0.16},
-                                         ClosedForm{"box", SurfaceOf(MakeBox({0, 0, 0}, {1, 0.6, 0.8}, {1, 1, 1})),
-                                                    0.48}),
+                         ::testing::Values(ClosedForm{"sphere", SurfaceOf(MakeSphere(1, 24)), 4 * std::numbers::pi / 3},
+                                           ClosedForm{"torus", SurfaceOf(MakeTorus({1, 0.4, 96, 16})),
+                                                      2 * std::numbers::pi* std::numbers::pi * 0.16},
+                                           ClosedForm{"box", SurfaceOf(MakeBox({0, 0, 0}, {1, 0.6, 0.8}, {1, 1, 1})),
+                                                      0.48}),
                          [](const auto& test) { return test.param.name; });
 
 TEST(TetrahedralizeTest, TheSameBitsForAnyNumberOfThreads) {

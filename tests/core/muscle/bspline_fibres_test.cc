@@ -174,7 +174,7 @@ TEST(BsplineFibres, LeanToBothSidesInABipennateSolid) {
 
 // --- Outside ---------------------------------------------------------------------------------------------------------
 
-class PartlyOutside : public testing::Test {
+class PartlyOutside : public ::testing::Test {
  protected:
   // A solid on [0, 1]^3, fibres along z.
   const BsplineLocator locator_ = SolidOf([](const Vec3& p) { return p; });
@@ -213,7 +213,7 @@ TEST_F(PartlyOutside, IsAProblemWithoutLength) {
 
 // --- Fitted solids ---------------------------------------------------------------------------------------------------
 
-class FittedToASpindle : public testing::Test {
+class FittedToASpindle : public ::testing::Test {
  protected:
   static constexpr double kLength = 0.2, kBelly = 0.02, kEnd = 0.008;
   const TetMesh mesh_ = MakeFusiform(
@@ -244,7 +244,7 @@ TEST_F(FittedToASpindle, FibresKeepTheirShareOfTheRadius) {
   }
   const Angles angles = Between(mesh_, field.fibres, expected);
   const Angles untreated = Between(mesh_, ConstantFibres(mesh_, Vec3::UnitZ()), expected);
-  RecordProperty("mean_degrees", testing::PrintToString(angles.mean / kDegree));
+  RecordProperty("mean_degrees", ::testing::PrintToString(angles.mean / kDegree));
   EXPECT_LE(angles.mean, 0.7 * kDegree);
   EXPECT_LE(angles.p95, 2 * kDegree);
   EXPECT_GT(untreated.mean, 4 * kDegree) << "or the comparison says nothing";
@@ -334,7 +334,7 @@ struct RealMuscle {
 
 void PrintTo(const RealMuscle& muscle, std::ostream* out) { *out << muscle.name; }
 
-class FittedToRealMuscle : public testing::TestWithParam<RealMuscle> {};
+class FittedToRealMuscle : public ::testing::TestWithParam<RealMuscle> {};
 
 // Against the fibres that were published with the mesh for the same two attachments.
 TEST_P(FittedToRealMuscle, FibresAgreeWithThePublished) {
@@ -377,8 +377,8 @@ TEST_P(FittedToRealMuscle, FibresAgreeWithThePublished) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, FittedToRealMuscle,
-    testing::Values(RealMuscle{"VHM_Left_Muscle_BicepsFemorisLongus", {2.7, 3.4, 2.7}, {6.0, 6.6, 5.4}},
-                    RealMuscle{"VHM_Left_Muscle_TibialisAnterior", {2.7, 3.8, 3.0}, {7.2, 8.1, 6.6}}),
+    ::testing::Values(RealMuscle{"VHM_Left_Muscle_BicepsFemorisLongus", {2.7, 3.4, 2.7}, {6.0, 6.6, 5.4}},
+                      RealMuscle{"VHM_Left_Muscle_TibialisAnterior", {2.7, 3.8, 3.0}, {7.2, 8.1, 6.6}}),
     [](const auto& muscle) {
       const std::string name = muscle.param.name;
       return name.substr(name.rfind('_') + 1);

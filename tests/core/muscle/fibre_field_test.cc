@@ -46,7 +46,7 @@ TEST(ConstantFibres, AreUnitWhateverTheLength) {
 
 // --- File ------------------------------------------------------------------------------------------------------------
 
-class ReadFibresTest : public testing::Test {
+class ReadFibresTest : public ::testing::Test {
  protected:
   // Six tetrahedra.
   const TetMesh box_ = MakeBox(Vec3::Zero(), Vec3::Ones(), {1, 1, 1});
@@ -304,7 +304,7 @@ TEST(HarmonicFibres, AgreeWithThoseOfARealMuscle) {
     volume += v;
   }
   const double mean_degrees = sum / volume * 180 / std::numbers::pi;
-  RecordProperty("mean_angle_degrees", testing::PrintToString(mean_degrees));
+  RecordProperty("mean_angle_degrees", ::testing::PrintToString(mean_degrees));
   EXPECT_LE(mean_degrees, 5);
 }
 
