@@ -4,6 +4,7 @@
 #   fascicle_room(core/geometry SOURCES a.cc b.cc DEPS core/base Eigen3::Eigen PRIVATE_DEPS ZLIB::ZLIB)
 #
 # makes the target fascicle_core_geometry. A DEPS entry that is a folder of the project stands for that room's target.
+# Everything that a room includes is in its own DEPS: tests/architecture compares both.
 function(fascicle_room room)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
   string(REPLACE "/" "_" suffix ${room})
@@ -30,6 +31,14 @@ function(fascicle_room room)
   target_include_directories(${target} ${visibility} ${exported})
   fascicle_link(${target} ${visibility} ${ARG_DEPS})
   fascicle_link(${target} ${private} ${ARG_PRIVATE_DEPS})
+  set_property(GLOBAL APPEND PROPERTY FASCICLE_ROOMS ${room})
+  fascicle_arrows(${room} ${ARG_DEPS} ${ARG_PRIVATE_DEPS})
+endfunction()
+
+# Notes what a room links, for tests/architecture.
+function(fascicle_arrows room)
+  list(JOIN ARGN "\", \"" deps)
+  set_property(GLOBAL APPEND_STRING PROPERTY FASCICLE_ARROWS "{\"${room}\", {\"${deps}\"}},\n")
 endfunction()
 
 # The loops over elements of a room, once for each instruction set; which one runs is decided at run time. Sets `sources` to

@@ -48,59 +48,89 @@ std::vector<Include> ReadIncludes() {
   return includes;
 }
 
-// What each room may include beside itself. A room that is not listed here is an error.
-const std::map<std::string, std::set<std::string>>& AllowedRooms() {
-  static const std::map<std::string, std::set<std::string>> allowed = {
-      {"core/base", {}},
-      {"core/geometry", {"core/base"}},
-      {"core/imaging", {"core/base", "core/geometry"}},
-      {"core/linalg", {"core/base"}},
-      {"core/materials", {"core/base"}},
-      {"core/muscle", {"core/base", "core/geometry", "core/linalg", "core/materials"}},
-      {"core/scene", {"core/base", "core/geometry", "core/materials", "core/muscle"}},
-      {"core/tet", {"core/base", "core/geometry", "core/linalg", "core/materials", "core/muscle", "core/scene"}},
-      {"core/eulerian", {"core/base", "core/geometry", "core/linalg", "core/materials", "core/muscle", "core/scene"}},
-      {"core/voxel", {"core/base", "core/geometry", "core/linalg", "core/materials", "core/muscle", "core/scene"}},
-      {"core/sim",
-       {"core/base", "core/eulerian", "core/geometry", "core/materials", "core/muscle", "core/scene", "core/tet",
-        "core/voxel"}},
-      {"proto/rules", {"core/base", "fascicle/v1"}},
-      {"server/store", {"core/base"}},
-      {"server/jobs", {"core/base", "core/scene", "core/sim", "server/store"}},
-      {"server/translate",
-       {"core/base", "core/eulerian", "core/geometry", "core/imaging", "core/materials", "core/muscle", "core/scene",
-        "core/sim", "core/voxel", "fascicle/v1", "proto/rules", "server/jobs", "server/store"}},
-      {"server/rpc",
-       {"core/base", "fascicle/v1", "google/rpc", "server/jobs", "server/store", "server/translate", "proto/rules"}},
-      {"server", {"core/base", "server/jobs", "server/store", "server/translate", "server/rpc"}},
-      {"client/lib", {"core/base", "fascicle/v1", "google/rpc", "proto/rules"}},
-      {"client/image", {"core/base", "core/geometry"}},
-      {"client/export", {"core/base", "client/lib", "fascicle/v1"}},
-      {"client/import", {"core/base", "core/geometry", "fascicle/v1", "proto/rules"}},
-      {"client/render", {"core/base", "client/lib", "fascicle/v1"}},
-      {"client/cli",
-       {"core/base", "core/geometry", "core/imaging", "core/materials", "client/lib", "client/import", "client/export",
-        "client/image", "client/render", "fascicle/v1", "proto/rules"}},
+// What each room links: rooms by their folders, and libraries.
+using Arrows = std::map<std::string, std::set<std::string>>;
+const Arrows& LinkedBy() {
+  static const Arrows arrows = {
+#include "arrows.inc"
   };
-  return allowed;
+  return arrows;
 }
 
-bool IsOurs(const std::string& target) {
-  return std::regex_search(target, std::regex("^(core|server|client|proto|fascicle/v1|google/rpc)/"));
+// The one door through which other programs start a server in their own process.
+constexpr const char* kDoor = "server/embedded_server.h";
+constexpr const char* kBehindTheDoor = "fascicle_server_embedded";
+
+// What a room must link to include a header of the project; empty for headers of others.
+std::string LinkedFor(const std::string& header) {
+  if (header == kDoor) return kBehindTheDoor;
+  if (std::regex_search(header, std::regex("^(fascicle/v1|google/rpc)/"))) return "proto";
+  return std::regex_search(header, std::regex("^(core|server|client|proto)/")) ? RoomOf(header) : "";
 }
 
-TEST(IncludeDirection, RoomsIncludeOnlyTheRoomsBelowThem) {
+TEST(IncludeDirection, RoomsIncludeWhatTheyLinkAndLinkWhatTheyInclude) {
   const std::vector<Include> includes = ReadIncludes();
   ASSERT_GT(includes.size(), 200u) << "the sources were not found";
+  Arrows included;
   for (const Include& include : includes) {
-    if (!IsOurs(include.target)) continue;
-    const std::string target_room = RoomOf(include.target);
-    if (target_room == include.room) continue;
-    // The command line alone may start a server in its own process, through this one door.
-    if (include.room == "client/cli" && include.target == "server/embedded_server.h") continue;
-    const auto allowed = AllowedRooms().find(include.room);
-    ASSERT_NE(allowed, AllowedRooms().end()) << include.file << ": room " << include.room << " is not in the table";
-    EXPECT_TRUE(allowed->second.contains(target_room)) << include.file << " includes " << include.target;
+    const std::string target = LinkedFor(include.target);
+    if (target.empty() || RoomOf(include.target) == include.room) continue;
+    included[include.room].insert(target);
+    const auto linked = LinkedBy().find(include.room);
+    ASSERT_NE(linked, LinkedBy().end()) << include.file << ": CMake knows no room " << include.room;
+    EXPECT_TRUE(linked->second.contains(target)) << include.file << " includes " << include.target << ", but "
+                                                 << include.room << " does not name " << target << " in its DEPS";
+  }
+  for (const auto& [room, linked] : LinkedBy()) {
+    for (const std::string& target : linked) {
+      const bool is_room = LinkedBy().contains(target) || target == "proto" || target == kBehindTheDoor;
+      EXPECT_TRUE(!is_room || included[room].contains(target)) << room << " includes nothing of " << target;
+    }
+  }
+}
+
+// All that comes with a room.
+std::set<std::string> Reached(const std::string& room) {
+  std::set<std::string> reached;
+  std::vector<std::string> open = {room};
+  while (!open.empty()) {
+    const auto linked = LinkedBy().find(open.back());
+    open.pop_back();
+    if (linked == LinkedBy().end()) continue;
+    for (const std::string& target : linked->second) {
+      if (reached.insert(target).second) open.push_back(target);
+    }
+  }
+  return reached;
+}
+
+TEST(IncludeDirection, ArrowsPointOneWay) {
+  struct Rule {
+    std::regex rooms;
+    std::regex never;
+  };
+  const std::vector<Rule> rules = {
+      {std::regex("^core/"), std::regex("^(proto|server|client)|fascicle_server|GRPC|protobuf|SQLite")},
+      {std::regex("^core/materials$"), std::regex("^core/geometry$")},
+      {std::regex("^core/tet$"), std::regex("^core/(voxel|eulerian)$")},
+      {std::regex("^core/voxel$"), std::regex("^core/(tet|eulerian)$")},
+      {std::regex("^core/eulerian$"), std::regex("^core/(tet|voxel)$")},
+      {std::regex("^proto"), std::regex("^(server|client)")},
+      {std::regex("^server"), std::regex("^client")},
+      {std::regex("^server/store$"), std::regex("^proto|^core/(?!base)")},
+      {std::regex("^server/jobs$"), std::regex("^proto|^server/(rpc|translate)|GRPC")},
+      {std::regex("^client/(?!cli)"), std::regex("^server|fascicle_server|^core/(scene|sim|tet|voxel|eulerian)")},
+      {std::regex("^client/cli$"), std::regex("^server")},
+  };
+  for (const auto& [room, linked] : LinkedBy()) {
+    const std::set<std::string> reached = Reached(room);
+    EXPECT_FALSE(reached.contains(room)) << room << " comes with itself";
+    for (const Rule& rule : rules) {
+      if (!std::regex_search(room, rule.rooms)) continue;
+      for (const std::string& target : reached) {
+        EXPECT_FALSE(std::regex_search(target, rule.never)) << room << " comes with " << target;
+      }
+    }
   }
 }
 
