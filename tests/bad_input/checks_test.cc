@@ -3,14 +3,13 @@
 #include <fstream>
 #include <optional>
 
-#include <unistd.h>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "cases.h"
 #include "client/lib/scene_file.h"
 #include "server/translate/translate.h"
+#include "tests/support/files.h"
 #include "tests/support/paths.h"
 
 namespace fascicle {
@@ -77,10 +76,8 @@ class GeneratedFiles : public ::testing::Test {
     std::filesystem::copy_file(testing::ProjectRoot() / "tests/bad_input/cases/mesh_nan/scene.json",
                                folder_ / "scene/scene.json");
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / ("bad_input_" + std::to_string(::getpid()));
+  const testing::TemporaryFolder folder_;
 };
 
 TEST_F(GeneratedFiles, ALinkOutOfTheFolder) {

@@ -1,11 +1,11 @@
 // The same wrong scenes against the real programs: exit code 2, every problem printed, nothing left behind, and a
 // server that goes on serving.
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <string>
+#include <vector>
 
+#include <gmock/gmock.h>
 #include <google/rpc/error_details.pb.h>
 #include <google/rpc/status.pb.h>
 #include <grpcpp/grpcpp.h>
@@ -14,45 +14,39 @@
 #include "cases.h"
 #include "client/lib/client.h"
 #include "fascicle/v1/simulation_service.grpc.pb.h"
+#include "tests/support/files.h"
+#include "tests/support/paths.h"
 #include "tests/support/server_process.h"
 
 namespace fascicle {
 namespace {
 
 namespace fs = std::filesystem;
-using service_test::ServerProcess;
-using service_test::TemporaryFolder;
+using ::testing::AllOf;
+using testing::Finished;
+using ::testing::HasSubstr;
+using testing::Program;
+using testing::RunProgram;
+using testing::ServerProcess;
+using testing::TemporaryFolder;
 
-struct Answer {
-  int exit_code = -1;
-  std::string output;
-};
-
-class BadInputService : public testing::Test {
+class BadInputService : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto address = server_.Address();
-    ASSERT_TRUE(address.has_value()) << server_.ErrorOutput();
-    address_ = *address;
+    address_ = server_.AwaitAddress();
+    ASSERT_NE(address_, "") << server_.ErrorOutput();
   }
 
-  // Runs `fascicle` with arguments without blanks or quotes.
-  Answer Fascicle(const std::string& arguments) const {
-    const std::string out = scratch_.path() + "/out";
-    const int status = std::system((std::string(FASCICLE_PROGRAM) + " " + arguments + " >" + out + " 2>&1").c_str());
-    std::ifstream in(out);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-            {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()}};
-  }
-
-  void ExpectRefused(const BadCase& bad, const std::string& arguments) const {
-    const Answer answer = Fascicle(arguments);
-    EXPECT_EQ(answer.exit_code, 2) << bad.name << ": " << arguments << "\n" << answer.output;
-    for (const Expectation& expected : bad.expected) {
-      EXPECT_NE(answer.output.find(expected.path), std::string::npos) << bad.name << ": " << arguments << "\n"
-                                                                      << answer.output;
-      EXPECT_NE(answer.output.find(expected.text), std::string::npos) << bad.name << ": " << arguments << "\n"
-                                                                      << answer.output;
+  static void ExpectRefused(const BadCase& bad, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), Program("fascicle"));
+    const Finished answer = RunProgram(arguments);
+    const std::string output = answer.out + answer.err;
+    EXPECT_EQ(answer.exit_code, 2) << bad.name << ": " << arguments[1]
+                                   << "
+                                      " << output;
+        for (const Expectation& expected : bad.expected) {
+      EXPECT_THAT(output, AllOf(HasSubstr(expected.path), HasSubstr(expected.text)))
+          << bad.name << ": " << arguments[1];
     }
   }
 
@@ -74,11 +68,11 @@ class BadInputService : public testing::Test {
 TEST_F(BadInputService, ProgramsRefuseEveryCase) {
   for (const BadCase& bad : AllCases()) {
     const auto before = Listing(bad.folder);
-    ExpectRefused(bad, "--server " + address_ + " submit " + bad.scene().string());
-    ExpectRefused(bad, "--server " + address_ + " validate " + bad.scene().string());
-    ExpectRefused(bad, "run " + bad.scene().string() + " --out " + scratch_.path() + "/results");
+    ExpectRefused(bad, {"--server", address_, "submit", bad.scene()});
+    ExpectRefused(bad, {"--server", address_, "validate", bad.scene()});
+    ExpectRefused(bad, {"run", bad.scene(), "--out", scratch_ / "results"});
     EXPECT_EQ(Listing(bad.folder), before) << bad.name;
-    EXPECT_FALSE(fs::exists(scratch_.path() + "/results")) << bad.name;
+    EXPECT_FALSE(fs::exists(scratch_ / "results")) << bad.name;
   }
   ExpectServes();
   // Whole assets are kept for later jobs; jobs and parts of uploads are not.

@@ -11,8 +11,8 @@
 
 #include "ratio.h"
 #include "server/store/store.h"
+#include "tests/support/files.h"
 #include "tests/support/store_samples.h"
-#include "tests/support/temporary_directory.h"
 
 namespace fascicle::server {
 namespace {
@@ -23,7 +23,7 @@ constexpr int kSubmissions = 320;
 void WriteAndReadFrames() {
   constexpr int kFrames = 24;
   constexpr std::size_t kFrameSize = 4 * FrameStore::kChunkSize;
-  TemporaryDirectory directory;
+  testing::TemporaryFolder directory;
   const std::unique_ptr<Store> store = OpenSqliteStore(directory.path());
   JobRecord existing;
   store->CreateJob(SampleJob(1), &existing);
@@ -86,9 +86,9 @@ JobRecord NextJob(std::atomic<int>& number) {
 }
 
 void CompareSubmissions() {
-  TemporaryDirectory directory;
+  testing::TemporaryFolder directory;
   const std::unique_ptr<Store> store = OpenSqliteStore(directory.path());
-  RawSqlite raw(directory.path() + "/raw.db");
+  RawSqlite raw(directory / "raw.db");
   std::atomic<int> number = 0;
   const auto submit = [&](int clients) {
     std::vector<std::thread> threads;

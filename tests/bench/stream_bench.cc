@@ -23,6 +23,7 @@
 #include "server/rpc/rpc_server.h"
 #include "server/store/store.h"
 #include "server/translate/job_codec.h"
+#include "tests/support/files.h"
 
 namespace fascicle::server {
 namespace {
@@ -41,18 +42,6 @@ std::string RandomBytes(std::size_t size) {
   }
   return bytes;
 }
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path_((std::filesystem::temp_directory_path() / "fascicle-bench-XXXXXX").string()) {
-    if (mkdtemp(path_.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 // The frames of a finished job.
 std::string PutJob(Store& store, const std::string& frame) {
@@ -210,7 +199,7 @@ v1::Job GetMany(v1::JobService::Stub& stub, const std::string& name, int calls) 
 
 void Run() {
   const std::string frame = RandomBytes(static_cast<std::size_t>(kFrameSize));
-  TemporaryFolder folder;
+  testing::TemporaryFolder folder;
   const auto store = OpenSqliteStore(folder.path());
   const std::string name = "jobs/" + PutJob(*store, frame);
   JobManager jobs(*store, MakeJobCodec(), {});

@@ -4,5 +4,4 @@ target_link_libraries(store_crash_writer PRIVATE fascicle_settings Threads::Thre
 fascicle_link(store_crash_writer PRIVATE tests/support server/store)
 
 fascicle_test(store_crash_test SOURCES store_crash_test.cc DEPS server/store TIMEOUT 180)
-target_compile_definitions(store_crash_test PRIVATE CRASH_WRITER="$<TARGET_FILE:store_crash_writer>")
 add_dependencies(store_crash_test store_crash_writer)

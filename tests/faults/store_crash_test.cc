@@ -1,12 +1,9 @@
 // Kills a writing process at random times: what the store has acknowledged is there, bit-equal, and the store opens
 // quickly and whole. (The kernel lives on, so this shows the order of commits and acknowledgements, not fsync.)
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <map>
 #include <random>
@@ -17,13 +14,17 @@
 #include "crash_samples.h"
 #include "server/store/database.h"
 #include "server/store/store.h"
+#include "tests/support/child_process.h"
+#include "tests/support/files.h"
+#include "tests/support/paths.h"
 #include "tests/support/store_samples.h"
-#include "tests/support/temporary_directory.h"
-
-extern char** environ;
 
 namespace fascicle::server {
 namespace {
+
+using testing::ChildProcess;
+using testing::Finished;
+using testing::Program;
 
 constexpr int kRounds = 50;
 
@@ -49,37 +50,17 @@ struct Acknowledged {
 
 // Runs the writer and kills it `delay` after it has reported something; returns all that it has reported.
 std::string RunAndKill(const std::string& directory, int round, std::chrono::microseconds delay) {
-  int ends[2];
-  if (pipe(ends) != 0) return {};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  posix_spawn_file_actions_addclose(&actions, ends[0]);
-  std::string program = CRASH_WRITER, path = directory, number = std::to_string(round);
-  char* arguments[] = {program.data(), path.data(), number.data(), nullptr};
-  pid_t child = 0;
-  const int error = posix_spawn(&child, CRASH_WRITER, &actions, nullptr, arguments, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(ends[1]);
-  EXPECT_EQ(error, 0);
-
-  std::string report;
-  char buffer[65536];
+  ChildProcess writer({Program("store_crash_writer"), directory, std::to_string(round)});
   // One round in four is not given the time to open the store: it dies wherever it is then.
-  ssize_t size = round % 4 == 3 ? 0 : read(ends[0], buffer, sizeof buffer);
-  report.append(buffer, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-  std::thread killer([&] {
-    std::this_thread::sleep_for(delay);
-    kill(child, SIGKILL);
-  });
-  while ((size = read(ends[0], buffer, sizeof buffer)) > 0) report.append(buffer, static_cast<std::size_t>(size));
-  killer.join();
-  close(ends[0]);
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
-      << "the writer ended by itself: " << report.substr(0, 200);
-  return report;
+  const std::string first = round % 4 == 3 ? ""
+                                           : writer.ReadLine() +
+                                                 "
+                                                 ";
+                                                 std::this_thread::sleep_for(delay);
+  writer.Signal(SIGKILL);
+  const Finished finished = writer.Wait();
+  EXPECT_EQ(finished.exit_code, -SIGKILL) << "the writer ended by itself: " << finished.err;
+  return first + finished.out;
 }
 
 void ExpectWhole(const std::string& path) {
@@ -109,11 +90,11 @@ void ExpectFrames(Store& store, int number, std::int64_t acknowledged) {
 }
 
 TEST(StoreCrash, NothingAcknowledgedIsLost) {
-  TemporaryDirectory directory;
+  testing::TemporaryFolder directory;
   std::mt19937 random(20260);
   Acknowledged all;
   double slowest_opening = 0;
-  for (int round = 0; round < kRounds && !testing::Test::HasFailure(); ++round) {
+  for (int round = 0; round < kRounds && !::testing::Test::HasFailure(); ++round) {
     const std::chrono::microseconds delay(random() % 60'000);
     Acknowledged now;
     now.Read(RunAndKill(directory.path(), round, delay));
@@ -129,9 +110,9 @@ TEST(StoreCrash, NothingAcknowledgedIsLost) {
     }
     for (const auto& [number, count] : now.frames) {
       ExpectFrames(*store, number, count);
-      ExpectWhole(directory.path() + "/jobs/" + SampleJob(number).id + ".db");
+      ExpectWhole(directory / "jobs/" + SampleJob(number).id + ".db");
     }
-    ExpectWhole(directory.path() + "/control.db");
+    ExpectWhole(directory / "control.db");
     all.jobs.merge(now.jobs);
     all.frames.merge(now.frames);
   }

@@ -2,7 +2,7 @@
 //
 //   store_crash_writer DIRECTORY ROUND
 //
-// "J number" for a job, "F number index" for a frame of a job; see samples.h for what they hold.
+// "J number" for a job, "F number index" for a frame of a job; see store_samples.h for what they hold.
 #include <unistd.h>
 
 #include <cstdlib>

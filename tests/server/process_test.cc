@@ -6,11 +6,15 @@
 #include <vector>
 
 #include "client/lib/client.h"
+#include "tests/support/files.h"
 #include "tests/support/server_process.h"
 #include "tests/support/service_fixture.h"
 
 namespace fascicle::service_test {
 namespace {
+
+using testing::ServerProcess;
+using testing::TemporaryFolder;
 
 TEST(CommandLine, HelpAndVersion) {
   for (const char* option : {"--help", "--version"}) {
@@ -35,15 +39,15 @@ TEST(CommandLine, BadOptionsEndWith2) {
 TEST(CommandLine, WhatCannotStartEndsWith1AndSaysWhy) {
   TemporaryFolder data, other;
   ServerProcess first({"--listen", "127.0.0.1:0", "--data", data.path()});
-  const auto address = first.Address();
-  ASSERT_TRUE(address);
+  const std::string address = first.AwaitAddress();
+  ASSERT_NE(address, "");
   const auto expect_refused = [](std::vector<std::string> arguments, const std::string& reason) {
     ServerProcess process(std::move(arguments));
     EXPECT_EQ(process.Wait(10s), 1) << reason;
     EXPECT_NE(process.ErrorOutput().find(reason), std::string::npos) << process.ErrorOutput();
   };
-  expect_refused({"--listen", *address, "--data", other.path()}, "in use");
-  expect_refused({"--listen", "127.0.0.1:0", "--data", data.path()}, data.path());
+  expect_refused({"--listen", address, "--data", other.path()}, "in use");
+  expect_refused({"--listen", "127.0.0.1:0", "--data", data.path()}, data.path().string());
   expect_refused({"--listen", "0.0.0.0:0", "--data", other.path()}, "refusing to listen");
   expect_refused({"--listen", "nonsense", "--data", other.path()}, "HOST:PORT");
   expect_refused({"--listen", "127.0.0.1:0", "--data", "/proc/fascicle"}, "/proc/fascicle");
@@ -53,21 +57,20 @@ TEST(CommandLine, SignalsStopIt) {
   for (const int signal : {SIGTERM, SIGINT}) {
     TemporaryFolder data;
     ServerProcess process({"--listen", "127.0.0.1:0", "--data", data.path()});
-    ASSERT_TRUE(process.Address());
+    ASSERT_NE(process.AwaitAddress(), "");
     process.Signal(signal);
     EXPECT_EQ(process.Wait(10s), 0);
   }
 }
 
-class ProcessTest : public testing::Test {
+class ProcessTest : public ::testing::Test {
  protected:
   // Starts a server on the data of this test, on the same port each time.
   void Start() {
     process_ = std::make_unique<ServerProcess>(
         std::vector<std::string>{"--listen", address_, "--data", data_.path(), "--checkpoint", "0.05"});
-    const auto address = process_->Address();
-    ASSERT_TRUE(address) << process_->ErrorOutput();
-    address_ = *address;
+    address_ = process_->AwaitAddress();
+    ASSERT_NE(address_, "") << process_->ErrorOutput();
   }
 
   TemporaryFolder data_;
@@ -133,7 +136,7 @@ TEST_F(ProcessTest, KilledInMidJobItGoesOnAndNoWatcherNotices) {
   for (; kills < 6 && !done; ++kills) {
     std::this_thread::sleep_for(std::chrono::milliseconds(pause(random)));
     process_->Signal(SIGKILL);
-    ASSERT_EQ(process_->Wait(10s), 128 + SIGKILL);
+    ASSERT_EQ(process_->Wait(10s), -SIGKILL);
     const auto begin = std::chrono::steady_clock::now();
     Start();
     EXPECT_LT(std::chrono::steady_clock::now() - begin, 2s) << "ready again";
@@ -163,7 +166,7 @@ TEST_F(ProcessTest, AProfileSurvivesAKillAndTheNextRunAddsToIt) {
     EXPECT_GT(first.wall_seconds(), 0.5);
   }
   process_->Signal(SIGKILL);
-  ASSERT_EQ(process_->Wait(10s), 128 + SIGKILL);
+  ASSERT_EQ(process_->Wait(10s), -SIGKILL);
   Start();
   v1::Job last;
   {

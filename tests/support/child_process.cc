@@ -1,124 +1,109 @@
 #include "tests/support/child_process.h"
 
 #include <fcntl.h>
-#include <poll.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <stdexcept>
+#include <thread>
 
 namespace fascicle::testing {
 namespace {
 
-namespace fs = std::filesystem;
+using std::chrono::steady_clock;
 
-std::string TemporaryName(const char* pattern) { return (fs::temp_directory_path() / pattern).string(); }
+void Redirect(int descriptor, const std::string& file, int flags) { dup2(open(file.c_str(), flags, 0600), descriptor); }
 
 }  // namespace
 
-ChildProcess::ChildProcess(const std::vector<std::string>& command,
-                           const std::map<std::string, std::string>& environment) {
-  std::string err_name = TemporaryName("fascicle-test-err-XXXXXX");
-  const int err = mkostemp(err_name.data(), O_CLOEXEC);
-  err_file_ = err_name;
-  int ends[2];
-  if (err < 0 || pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("can't make a pipe");
-  std::vector<std::string> arguments = command;
+ChildProcess::ChildProcess(std::vector<std::string> command, const std::map<std::string, std::string>& environment) {
+  const std::string out = output_ / "out", err = output_ / "err";
   std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
+  for (std::string& argument : command) argv.push_back(argument.data());
   argv.push_back(nullptr);
   pid_ = fork();
-  if (pid_ == 0) {
-    const int nothing = open("/dev/null", O_RDONLY);
-    dup2(nothing, STDIN_FILENO);
-    dup2(ends[1], STDOUT_FILENO);
-    dup2(err, STDERR_FILENO);
-    for (const auto& [name, value] : environment) {
-      if (value.empty()) {
-        unsetenv(name.c_str());
-      } else {
-        setenv(name.c_str(), value.c_str(), 1);
-      }
+  if (pid_ < 0) throw std::runtime_error("can't start " + command.front());
+  if (pid_ > 0) return;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  Redirect(STDIN_FILENO, "/dev/null", O_RDONLY);
+  Redirect(STDOUT_FILENO, out, O_WRONLY | O_CREAT | O_APPEND);
+  Redirect(STDERR_FILENO, err, O_WRONLY | O_CREAT | O_APPEND);
+  for (const auto& [name, value] : environment) {
+    if (value.empty()) {
+      unsetenv(name.c_str());
+    } else {
+      setenv(name.c_str(), value.c_str(), 1);
     }
-    execv(argv[0], argv.data());
-    _exit(127);
   }
-  close(ends[1]);
-  close(err);
-  out_ = ends[0];
+  execv(argv[0], argv.data());
+  _exit(127);
 }
 
 ChildProcess::~ChildProcess() {
-  if (pid_ > 0) {
-    kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
-  }
-  if (out_ >= 0) close(out_);
-  std::error_code ignored;
-  fs::remove(err_file_, ignored);
+  Signal(SIGKILL);
+  Wait(std::chrono::seconds(10));
 }
 
-std::string ChildProcess::ReadLine(double seconds) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  std::string line;
-  for (char c = 0;;) {
-    const auto left = std::chrono::duration<double>(deadline - std::chrono::steady_clock::now()).count();
-    pollfd waiting = {out_, POLLIN, 0};
-    if (left <= 0 || poll(&waiting, 1, static_cast<int>(1e3 * left) + 1) <= 0) return "";
-    if (read(out_, &c, 1) != 1) return line;
-    if (c == '\n') return line;
-    line += c;
+std::string ChildProcess::ReadLine(std::chrono::milliseconds timeout) {
+  const auto deadline = steady_clock::now() + timeout;
+  for (;;) {
+    const bool ended = Wait(std::chrono::milliseconds(0)).has_value();  // asked first: then nothing more is written
+    const std::string text = Output();
+    const std::size_t end = text.find('\n', read_);
+    if (end != std::string::npos || ended) {
+      std::string line = text.substr(read_, end == std::string::npos ? end : end - read_);
+      read_ = end == std::string::npos ? text.size() : end + 1;
+      return line;
+    }
+    if (steady_clock::now() > deadline) return "";
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }
 
-void ChildProcess::Signal(int signal) const { kill(pid_, signal); }
+void ChildProcess::Signal(int signal) const {
+  if (!exit_code_) kill(pid_, signal);
+}
+
+std::optional<int> ChildProcess::Wait(std::chrono::milliseconds timeout) {
+  const auto deadline = steady_clock::now() + timeout;
+  while (!exit_code_) {
+    int status = 0;
+    if (waitpid(pid_, &status, WNOHANG) == pid_) {
+      exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    } else if (steady_clock::now() >= deadline) {
+      return std::nullopt;
+    } else {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+  return exit_code_;
+}
 
 Finished ChildProcess::Wait() {
   Finished finished;
-  char buffer[65536];
-  for (;;) {
-    const ssize_t count = read(out_, buffer, sizeof buffer);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
-    finished.out.append(buffer, static_cast<std::size_t>(count));
-  }
-  int status = 0;
-  while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-  }
-  pid_ = -1;
-  finished.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-  finished.err = ReadText(err_file_);
+  finished.exit_code = *Wait(std::chrono::hours(24));
+  finished.out = Output().substr(read_);
+  finished.err = ErrorOutput();
   return finished;
+}
+
+std::int64_t ChildProcess::ResidentBytes() const {
+  std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+  for (std::string word; status >> word;) {
+    if (word != "RssAnon:") continue;
+    std::int64_t kib = 0;
+    status >> kib;
+    return kib * 1024;
+  }
+  return 0;
 }
 
 Finished RunProgram(const std::vector<std::string>& command, const std::map<std::string, std::string>& environment) {
   return ChildProcess(command, environment).Wait();
-}
-
-ScratchFolder::ScratchFolder() {
-  std::string name = TemporaryName("fascicle-test-XXXXXX");
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("can't make " + name);
-  path_ = fs::canonical(name);
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
-std::string ReadText(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void WriteText(const fs::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
 }
 
 }  // namespace fascicle::testing

@@ -3,10 +3,14 @@
 
 #include <sys/types.h>
 
-#include <filesystem>
+#include <chrono>
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "tests/support/files.h"
 
 namespace fascicle::testing {
 
@@ -17,47 +21,38 @@ struct Finished {
   std::string err;
 };
 
-// A program that runs beside the test; killed in the end.
+// A program that runs beside the test, and ends with it at the latest. Not thread-safe.
 class ChildProcess {
  public:
   // `environment` is added to this process's own; an empty value removes a variable.
-  explicit ChildProcess(const std::vector<std::string>& command,
-                        const std::map<std::string, std::string>& environment = {});
+  explicit ChildProcess(std::vector<std::string> command, const std::map<std::string, std::string>& environment = {});
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  // The next line of its stdout; empty at the end, or when none comes within `seconds`.
-  std::string ReadLine(double seconds = 30);
+  // The next line of its stdout; empty at the end, or when none comes within `timeout`.
+  std::string ReadLine(std::chrono::milliseconds timeout = std::chrono::seconds(30));
   void Signal(int signal) const;
-  // Waits for its end and returns what it wrote since.
+  // The exit code, or the signal that ended it, negative; nothing when it still runs after `timeout`.
+  std::optional<int> Wait(std::chrono::milliseconds timeout);
+  // Waits for its end; `out` is what ReadLine has not returned.
   Finished Wait();
 
+  // All that it has written until now.
+  std::string Output() const { return ReadFile(output_ / "out"); }
+  std::string ErrorOutput() const { return ReadFile(output_ / "err"); }
+  // Memory of the process that is in RAM and not of files [byte].
+  std::int64_t ResidentBytes() const;
+
  private:
+  TemporaryFolder output_;
+  std::size_t read_ = 0;  // [byte] of the output, by ReadLine
   pid_t pid_ = -1;
-  int out_ = -1;
-  std::filesystem::path err_file_;
+  std::optional<int> exit_code_;
 };
 
 Finished RunProgram(const std::vector<std::string>& command,
                     const std::map<std::string, std::string>& environment = {});
-
-// An empty folder that is removed in the end.
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
-std::string ReadText(const std::filesystem::path& path);
-void WriteText(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace fascicle::testing
 

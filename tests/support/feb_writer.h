@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "core/geometry/shapes.h"
-#include "tests/support/paths.h"
 
 // Writes models as FEBio reads them, version 3.0 and 4.0, for tests: of the reference problems among others.
 namespace fascicle::testing {
@@ -136,13 +135,6 @@ class FebWriter {
   FebMesh mesh_;
   std::string material_, sets_, boundary_, loads_;
 };
-
-// One of the FEBio reference results; none when it is not there.
-inline std::optional<nlohmann::json> ReadReference(const std::string& name) {
-  std::ifstream file(ReferenceFolder() / "febio" / (name + ".json"));
-  if (!file) return std::nullopt;
-  return nlohmann::json::parse(file);
-}
 
 // The box of the reference problems, with x fastest and hexahedra split around one diagonal.
 inline FebMesh Box(const Vec3& size, const std::array<int, 3>& divisions) {

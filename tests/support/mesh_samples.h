@@ -261,11 +261,6 @@ inline std::vector<MeshSample> MeshSamples() {
   return samples;
 }
 
-inline std::string ReadFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 }  // namespace fascicle
 
 #endif  // FASCICLE_TESTS_SUPPORT_MESH_SAMPLES_H_

@@ -14,6 +14,8 @@ std::filesystem::path FolderOf(const char* variable, const char* beside) {
 
 std::filesystem::path ProjectRoot() { return FASCICLE_ROOT; }
 
+std::string Program(const std::string& name) { return std::string(FASCICLE_PROGRAMS) + "/" + name; }
+
 std::filesystem::path DataFolder() { return FolderOf("FASCICLE_DATA", "data"); }
 
 std::filesystem::path ReferenceFolder() { return FolderOf("FASCICLE_REFERENCE", "reference"); }

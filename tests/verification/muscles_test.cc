@@ -1,6 +1,5 @@
 // The example scenes of isometric contraction, on the built-in spindle and on two real muscles, brought to rest.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -8,6 +7,7 @@
 
 #include "client/lib/scene_file.h"
 #include "server/translate/translate.h"
+#include "tests/support/files.h"
 #include "tests/support/paths.h"
 #include "tests/support/tet_scenes.h"
 
@@ -16,23 +16,9 @@ namespace {
 
 using namespace fascicle::testing;
 
-// A folder of its own that is gone at the end of the test.
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(const std::string& name)
-      : path_(std::filesystem::temp_directory_path() / ("fascicle_" + name + "_" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 // Reads an example scene as a user would, with its data files copied beside it.
 std::shared_ptr<const Scene> LoadExample(const std::string& name, const std::vector<std::filesystem::path>& data) {
-  const TemporaryFolder folder(name);
+  const TemporaryFolder folder;
   std::filesystem::copy(ProjectRoot() / "client/examples" / name, folder.path() / name);
   for (const auto& file : data) std::filesystem::copy(file, folder.path() / file.filename());
   Problems problems;

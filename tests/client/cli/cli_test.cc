@@ -10,7 +10,8 @@
 #include <sstream>
 #include <thread>
 
-#include "tests/support/child_process.h"
+#include "fascicle_fixture.h"
+#include "tests/support/server_process.h"
 
 namespace fascicle::testing {
 namespace {
@@ -43,23 +44,7 @@ std::vector<json> Lines(const std::string& text) {
   return lines;
 }
 
-class CliTest : public ::testing::Test {
- protected:
-  Finished Fascicle(std::vector<std::string> arguments, const std::string& server = "") {
-    arguments.insert(arguments.begin(), FASCICLE_PROGRAM);
-    return RunProgram(arguments, {{"FASCICLE_SERVER", server}, {"DISPLAY", ""}, {"TMPDIR", Temporary()}});
-  }
-  std::string Scene(const std::string& name, const std::string& text) {
-    WriteText(folder_ / name, text);
-    return folder_ / name;
-  }
-  std::string Temporary() {
-    fs::create_directories(folder_.path() / "tmp");
-    return folder_ / "tmp";
-  }
-
-  ScratchFolder folder_;
-};
+using CliTest = FascicleTest;
 
 TEST_F(CliTest, HelpTellsExitCodesAndExamples) {
   const Finished help = Fascicle({"--help"});
@@ -94,7 +79,7 @@ TEST_F(CliTest, WrongCommandLinesAreInvalidInput) {
 }
 
 TEST_F(CliTest, WithoutServerEveryCommandSaysSo) {
-  const std::string scene = Scene("scene.json", SceneText(2, 5));
+  const std::string scene = File("scene.json", SceneText(2, 5));
   for (const std::vector<std::string>& command :
        std::vector<std::vector<std::string>>{{"submit", scene}, {"list"}, {"show", "x"}}) {
     const Finished finished = Fascicle(command, kNobody);
@@ -104,7 +89,7 @@ TEST_F(CliTest, WithoutServerEveryCommandSaysSo) {
 }
 
 TEST_F(CliTest, InvalidScenesListEveryProblem) {
-  const std::string scene = Scene("bad.json", R"({"duraton": 1, "bodies": [{"unit": "inch"}]})");
+  const std::string scene = File("bad.json", R"({"duraton": 1, "bodies": [{"unit": "inch"}]})");
   for (const char* command : {"run", "validate", "submit"}) {
     const Finished human = Fascicle({command, scene});
     EXPECT_EQ(human.exit_code, 2) << command;
@@ -122,7 +107,7 @@ TEST_F(CliTest, InvalidScenesListEveryProblem) {
 TEST_F(CliTest, TheServersProblemsComeTheSameWay) {
   std::string text = SceneText(2, 5);
   text.replace(text.find("1e4"), 3, "-10");
-  const std::string scene = Scene("bad.json", text);
+  const std::string scene = File("bad.json", text);
   for (const char* command : {"run", "validate"}) {
     const Finished finished = Fascicle({command, scene});
     EXPECT_EQ(finished.exit_code, 2) << finished.err;
@@ -131,7 +116,7 @@ TEST_F(CliTest, TheServersProblemsComeTheSameWay) {
 }
 
 TEST_F(CliTest, RunLeavesTablesSeriesAndPictures) {
-  const std::string scene = Scene("scene.json", SceneText(4, 20));
+  const std::string scene = File("scene.json", SceneText(4, 20));
   const Finished finished = Fascicle({"run", scene, "--out", folder_ / "out", "--data", folder_ / "data", "--json"});
   ASSERT_EQ(finished.exit_code, 0) << finished.err;
   const json summary = json::parse(finished.out);
@@ -145,12 +130,12 @@ TEST_F(CliTest, RunLeavesTablesSeriesAndPictures) {
        {"series.csv", "series.png", "last.png", "frames.pvd", "frames/block_000004.vtu", "summary.json"}) {
     EXPECT_GT(fs::file_size(folder_.path() / "out" / file), 100u) << file;
   }
-  EXPECT_EQ(json::parse(ReadText(folder_ / "out/summary.json")), summary);
+  EXPECT_EQ(json::parse(ReadFile(folder_ / "out/summary.json")), summary);
   EXPECT_FALSE(fs::is_empty(folder_.path() / "data"));
 }
 
 TEST_F(CliTest, RunWithoutDataLeavesNothing) {
-  const Finished finished = Fascicle({"run", Scene("scene.json", SceneText(2, 5))});
+  const Finished finished = Fascicle({"run", File("scene.json", SceneText(2, 5))});
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
   EXPECT_THAT(finished.out, AllOf(HasSubstr("succeeded"), HasSubstr("energy/elastic")));
   EXPECT_THAT(finished.err, Not(HasSubstr("\x1b"))) << "no bar without a terminal";
@@ -158,7 +143,7 @@ TEST_F(CliTest, RunWithoutDataLeavesNothing) {
 }
 
 TEST_F(CliTest, RunTellsWhereTheTimeWent) {
-  const std::string scene = Scene("scene.json", SceneText(20, 50));
+  const std::string scene = File("scene.json", SceneText(20, 50));
   const Finished text = Fascicle({"run", scene, "--profile"});
   EXPECT_EQ(text.exit_code, 0) << text.err;
   EXPECT_THAT(text.out, AllOf(HasSubstr("\nstage "), HasSubstr("\nset-up "), HasSubstr("\n  elastic force "),
@@ -181,7 +166,7 @@ TEST_F(CliTest, RunTellsWhereTheTimeWent) {
 }
 
 TEST_F(CliTest, SettingsChangeTheScene) {
-  const std::string scene = Scene("scene.json", SceneText(2, 5));
+  const std::string scene = File("scene.json", SceneText(2, 5));
   const auto set = [&](const std::string& setting) { return Fascicle({"validate", scene, "--set", setting}); };
   const Finished shorter =
       Fascicle({"run", scene, "--json", "--set", "duration=0.0005", "--set",
@@ -209,7 +194,7 @@ TEST_F(CliTest, AFailedJobSaysWhy) {
   const std::string regions = R"("regions": [)";
   text.replace(text.find(regions), regions.size(),
                regions + R"({"name": "lid", "plane": {"point": [0, 0, 1], "normal": [0, 0, 1]}}, )");
-  const Finished finished = Fascicle({"run", Scene("scene.json", text), "--json"});
+  const Finished finished = Fascicle({"run", File("scene.json", text), "--json"});
   EXPECT_EQ(finished.exit_code, 1) << finished.out << finished.err;
   const json summary = json::parse(finished.out);
   EXPECT_EQ(summary["state"], "failed");
@@ -217,7 +202,7 @@ TEST_F(CliTest, AFailedJobSaysWhy) {
 }
 
 TEST_F(CliTest, CtrlCCancelsARun) {
-  ChildProcess run({FASCICLE_PROGRAM, "run", Scene("scene.json", SceneText(1000, 1000)), "--json"},
+  ChildProcess run({Program("fascicle"), "run", File("scene.json", SceneText(1000, 1000)), "--json"},
                    {{"TMPDIR", Temporary()}});
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   run.Signal(SIGINT);
@@ -266,7 +251,7 @@ TEST_F(CliTest, MaterialCurvesAsTableAndPlot) {
   EXPECT_EQ(curve.exit_code, 0) << curve.err;
   EXPECT_THAT(curve.out, HasSubstr("activation 1"));
   EXPECT_GT(fs::file_size(folder_ / "curve.png"), 1000u);
-  const std::string csv = ReadText(folder_ / "curve.csv");
+  const std::string csv = ReadFile(folder_ / "curve.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
   const std::vector<json> curves = Lines(Fascicle({"materials", "curve", "muscle", "--activation", "0", "1",
                                                    "--stretch", "1", "1.4", "--points", "5", "--json"})
@@ -296,7 +281,7 @@ TEST_F(CliTest, CompletionKnowsCommandsAndOptions) {
     EXPECT_EQ(script.exit_code, 0);
     EXPECT_THAT(script.out, AllOf(HasSubstr("materials"), HasSubstr("digests"))) << shell;
   }
-  WriteText(folder_ / "completion.bash", Fascicle({"completion", "bash"}).out);
+  WriteFile(folder_ / "completion.bash", Fascicle({"completion", "bash"}).out);
   const auto complete = [&](const std::string& words, int index) {
     return RunProgram({"/bin/bash", "-c",
                        "source " + (folder_ / "completion.bash") + "; COMP_WORDS=(" + words +
@@ -314,19 +299,19 @@ class ServerTest : public CliTest {
  protected:
   void SetUp() override {
     server_ = std::make_unique<ChildProcess>(
-        std::vector<std::string>{FASCICLED_PROGRAM, "--listen", "127.0.0.1:0", "--data", folder_ / "server"});
+        std::vector<std::string>{Program("fascicled"), "--listen", "127.0.0.1:0", "--data", folder_ / "server"});
     const std::string line = server_->ReadLine();
     ASSERT_THAT(line, HasSubstr("listening on ")) << server_->Wait().err;
     address_ = line.substr(line.find("listening on ") + 13);
   }
   Finished Call(const std::vector<std::string>& arguments) { return Fascicle(arguments, address_); }
   std::string Submit(int frames, int steps) {
-    const Finished finished = Call({"submit", Scene("scene.json", SceneText(frames, steps))});
+    const Finished finished = Call({"submit", File("scene.json", SceneText(frames, steps))});
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
     return finished.out.substr(0, finished.out.find('\n'));
   }
 
-  std::unique_ptr<ChildProcess> server_;
+  std::unique_ptr<ServerProcess> server_;
   std::string address_;
 };
 
@@ -344,12 +329,12 @@ TEST_F(ServerTest, AJobsWholeLife) {
   EXPECT_EQ(profile["runs"], 1);
   EXPECT_EQ(json::parse(Call({"watch", job, "--profile", "--json"}).out)["profile"], profile);
   // The scene comes back as a scene file.
-  EXPECT_EQ(Call({"validate", Scene("again.json", Call({"show", job, "--scene"}).out)}).exit_code, 0);
+  EXPECT_EQ(Call({"validate", File("again.json", Call({"show", job, "--scene"}).out)}).exit_code, 0);
 
   EXPECT_EQ(Call({"export", job, "--out", folder_ / "out", "--from", "1", "--to", "4", "--every", "3"}).exit_code, 0);
   EXPECT_TRUE(fs::exists(folder_ / "out/frames/block_000004.vtu"));
   EXPECT_FALSE(fs::exists(folder_ / "out/frames/block_000002.vtu"));
-  const std::string csv = ReadText(folder_ / "out/series.csv");
+  const std::string csv = ReadFile(folder_ / "out/series.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
   EXPECT_EQ(Call({"export", job, "--out", folder_ / "out", "--from", "99"}).exit_code, 2);
 
@@ -394,7 +379,7 @@ TEST_F(ServerTest, RunningJobsCanBeCancelledButNotDeleted) {
 
 TEST_F(ServerTest, CtrlCLeavesAWatchedJobRunning) {
   const std::string job = Submit(1000, 1000);
-  ChildProcess watch({FASCICLE_PROGRAM, "--server", address_, "watch", job});
+  ChildProcess watch({Program("fascicle"), "--server", address_, "watch", job});
   std::this_thread::sleep_for(std::chrono::milliseconds(1000));
   watch.Signal(SIGINT);
   const Finished finished = watch.Wait();
@@ -409,7 +394,7 @@ TEST_F(ServerTest, AKilledWatcherGoesOnWithTheSameDigests) {
   const std::string job = Submit(30, 100);
   std::vector<std::string> seen;
   {
-    ChildProcess watch({FASCICLE_PROGRAM, "--server", address_, "watch", job, "--digests"});
+    ChildProcess watch({Program("fascicle"), "--server", address_, "watch", job, "--digests"});
     for (int i = 0; i < 7; ++i) seen.push_back(watch.ReadLine());
     watch.Signal(SIGKILL);
     EXPECT_EQ(watch.Wait().exit_code, -SIGKILL);

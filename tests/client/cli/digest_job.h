@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/child_process.h"
+#include "tests/support/files.h"
+#include "tests/support/paths.h"
+#include "tests/support/server_process.h"
 
 namespace fascicle::testing {
 
@@ -29,19 +31,17 @@ class DigestJob {
  public:
   void StartServer() {
     server_.reset();
-    server_ = std::make_unique<ChildProcess>(
-        std::vector<std::string>{FASCICLED_PROGRAM, "--listen", "127.0.0.1:0", "--data", folder_ / "server"});
-    const std::string line = server_->ReadLine();
-    ASSERT_THAT(line, ::testing::HasSubstr("listening on "));
-    address_ = line.substr(line.find("listening on ") + 13);
+    server_ = std::make_unique<ServerProcess>(
+        std::vector<std::string>{"--listen", "127.0.0.1:0", "--data", folder_ / "server"});
+    address_ = server_->AwaitAddress();
+    ASSERT_NE(address_, "") << server_->ErrorOutput();
   }
   Finished Call(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), {FASCICLE_PROGRAM, "--server", address_});
+    arguments.insert(arguments.begin(), {Program("fascicle"), "--server", address_});
     return RunProgram(arguments);
   }
   std::string Submit(const std::string& scene) const {
-    WriteText(folder_ / "scene.json", scene);
-    const Finished submitted = Call({"submit", folder_ / "scene.json"});
+    const Finished submitted = Call({"submit", folder_.Write("scene.json", scene)});
     EXPECT_EQ(submitted.exit_code, 0) << submitted.err;
     return submitted.out.substr(0, submitted.out.find('\n'));
   }
@@ -53,14 +53,15 @@ class DigestJob {
     const std::string job = Submit(scene);
     std::vector<std::string> seen;
     {
-      ChildProcess watch({FASCICLE_PROGRAM, "--server", address_, "watch", job, "--digests"});
+      ChildProcess watch({Program("fascicle"), "--server", address_, "watch", job, "--digests"});
       for (int i = 0; i < 4; ++i) seen.push_back(watch.ReadLine());
       server_->Signal(SIGKILL);
       server_->Wait();
     }
     StartServer();
     const std::vector<std::string> streamed = FrameLines(Call({"watch", job, "--digests"}).out);
-    const Finished run = RunProgram({FASCICLE_PROGRAM, "run", folder_ / "scene.json", "--threads", "2", "--digests"});
+    const Finished run =
+        RunProgram({Program("fascicle"), "run", folder_ / "scene.json", "--threads", "2", "--digests"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     ASSERT_EQ(streamed.size(), frames + 1);
     EXPECT_EQ(streamed, FrameLines(run.out));
@@ -71,7 +72,7 @@ class DigestJob {
   void ExpectCanBeCancelled(const std::string& scene) {
     StartServer();
     const std::string job = Submit(scene);
-    ChildProcess watch({FASCICLE_PROGRAM, "--server", address_, "watch", job, "--digests"});
+    ChildProcess watch({Program("fascicle"), "--server", address_, "watch", job, "--digests"});
     for (int i = 0; i < 3; ++i) EXPECT_THAT(watch.ReadLine(), ::testing::StartsWith("frame "));
     EXPECT_EQ(Call({"cancel", job}).exit_code, 0);
     const Finished watched = watch.Wait();
@@ -79,11 +80,11 @@ class DigestJob {
     EXPECT_THAT(watched.out, ::testing::HasSubstr("cancelled"));
   }
 
-  const ScratchFolder& folder() const { return folder_; }
+  const TemporaryFolder& folder() const { return folder_; }
 
  private:
-  ScratchFolder folder_;
-  std::unique_ptr<ChildProcess> server_;
+  TemporaryFolder folder_;
+  std::unique_ptr<ServerProcess> server_;
   std::string address_;
 };
 

@@ -32,8 +32,8 @@ constexpr const char* kCube =
 
 class EulerianTest : public ::testing::Test {
  protected:
-  EulerianTest() { WriteText(folder() / "cube.obj", kCube); }
-  const ScratchFolder& folder() const { return job_.folder(); }
+  EulerianTest() { WriteFile(folder() / "cube.obj", kCube); }
+  const TemporaryFolder& folder() const { return job_.folder(); }
 
   DigestJob job_;
 };
@@ -48,7 +48,7 @@ TEST_F(EulerianTest, IsExportedAndDrawn) {
   EXPECT_EQ(job_.Call({"watch", job}).exit_code, 0);
   EXPECT_EQ(job_.Call({"export", job, "--out", folder() / "out"}).exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder() / "out/frames/cube_000002.vtu"));
-  EXPECT_THAT(ReadText(folder() / "out/series.csv"), HasSubstr("cube/reaction/top/z [N]"));
+  EXPECT_THAT(ReadFile(folder() / "out/series.csv"), HasSubstr("cube/reaction/top/z [N]"));
   for (const char* style : {"surface", "wireframe"}) {
     const Finished drawn =
         job_.Call({"render", job, "--out", folder() / "cube.png", "--style", style, "--colour", "volume_ratio"});
@@ -68,9 +68,9 @@ TEST_F(EulerianTest, IsExportedAndDrawn) {
 }
 
 TEST_F(EulerianTest, SettingsCanBeChangedOnTheWay) {
-  WriteText(folder() / "scene.json", SceneText(2));
+  WriteFile(folder() / "scene.json", SceneText(2));
   const auto digests = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> command = {FASCICLE_PROGRAM, "run", folder() / "scene.json", "--digests"};
+    std::vector<std::string> command = {Program("fascicle"), "run", folder() / "scene.json", "--digests"};
     command.insert(command.end(), more.begin(), more.end());
     const Finished finished = RunProgram(command);
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
@@ -80,7 +80,7 @@ TEST_F(EulerianTest, SettingsCanBeChangedOnTheWay) {
   EXPECT_EQ(digests({"--set", "eulerian.volume=preserved"}), plain);
   EXPECT_NE(digests({"--set", "eulerian.volume=none"}), plain);
   const Finished wrong =
-      RunProgram({FASCICLE_PROGRAM, "validate", folder() / "scene.json", "--set", "eulerian.cell_size=0.03"});
+      RunProgram({Program("fascicle"), "validate", folder() / "scene.json", "--set", "eulerian.cell_size=0.03"});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.err + wrong.out, HasSubstr("bodies[0].mesh.surface"));
 }

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/child_process.h"
+#include "fascicle_fixture.h"
 #include "tests/support/feb_writer.h"
 
 namespace fascicle::testing {
@@ -29,17 +29,9 @@ FebWriter StretchedCube(const std::string& version) {
   return feb;
 }
 
-class ImportCommandTest : public ::testing::Test {
+class ImportCommandTest : public FascicleTest {
  protected:
-  Finished Fascicle(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), FASCICLE_PROGRAM);
-    return RunProgram(arguments, {{"FASCICLE_SERVER", ""}, {"DISPLAY", ""}});
-  }
-  std::string Model(const std::string& text) {
-    WriteText(folder_ / "model.feb", text);
-    return folder_ / "model.feb";
-  }
-  ScratchFolder folder_;
+  std::string Model(const std::string& text) const { return File("model.feb", text); }
 };
 
 // The last value of a series in the summary of `run --json`.

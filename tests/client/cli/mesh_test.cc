@@ -9,8 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/support/child_process.h"
-#include "tests/support/paths.h"
+#include "fascicle_fixture.h"
 
 namespace fascicle::testing {
 namespace {
@@ -41,20 +40,7 @@ f 3 4 8 7
 f 4 1 5 8
 )";
 
-class MeshTest : public ::testing::Test {
- protected:
-  Finished Fascicle(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), FASCICLE_PROGRAM);
-    return RunProgram(arguments, {{"DISPLAY", ""}});
-  }
-  std::string File(const std::string& name, const std::string& text) {
-    WriteText(folder_ / name, text);
-    return folder_ / name;
-  }
-  bool HasFile(const std::string& name) { return fs::exists(folder_ / name); }
-
-  ScratchFolder folder_;
-};
+using MeshTest = FascicleTest;
 
 TEST_F(MeshTest, TellsAboutTheMesh) {
   const std::string bar = File("bar.obj", kBar);
@@ -64,7 +50,7 @@ TEST_F(MeshTest, TellsAboutTheMesh) {
   EXPECT_THAT(made.out, AllOf(HasSubstr("tetrahedra"), HasSubstr("dihedral angles"), HasSubstr("of the surface's"),
                               HasSubstr("region top"), HasSubstr("physical tag 1")));
   EXPECT_TRUE(HasFile("bar.msh"));
-  EXPECT_EQ(ReadText(folder_ / "bar.png").substr(1, 3), "PNG");
+  EXPECT_EQ(ReadFile(folder_ / "bar.png").substr(1, 3), "PNG");
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path())) {
     EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
   }
@@ -74,7 +60,7 @@ TEST_F(MeshTest, TheSameMeshForAnyNumberOfThreads) {
   const std::string bar = File("bar.obj", kBar);
   EXPECT_EQ(Fascicle({"mesh", bar, "--out", folder_ / "a.msh", "--tets", "2000", "--threads", "1"}).exit_code, 0);
   EXPECT_EQ(Fascicle({"mesh", bar, "--out", folder_ / "b.msh", "--tets", "2000", "--threads", "3"}).exit_code, 0);
-  EXPECT_EQ(ReadText(folder_ / "a.msh"), ReadText(folder_ / "b.msh"));
+  EXPECT_EQ(ReadFile(folder_ / "a.msh"), ReadFile(folder_ / "b.msh"));
 }
 
 TEST_F(MeshTest, TellsAllMistakesAtOnceAndWritesNothing) {
@@ -177,7 +163,7 @@ TEST_F(MeshTest, AMuscleIsMeshedWithItsAttachmentsAndContracts) {
 
   const Finished run = Fascicle({"run", folder_ / "scene.json", "--json", "--out", folder_ / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const json series = json::parse(ReadText(folder_ / "out/summary.json"))["series"];
+  const json series = json::parse(ReadFile(folder_ / "out/summary.json"))["series"];
   const auto last = [&](const char* name) { return series.at(name).at("final").get<double>(); };
   EXPECT_NEAR(last("muscle/volume_ratio"), 1, 0.01);
   EXPECT_GT(last("muscle/min_volume_ratio"), 0.2);
@@ -230,7 +216,7 @@ TEST_F(MeshTest, AnImageLiesWhereItsHeaderSays) {
       Fascicle({"mesh", image, "--label", "3", "--smooth", "0.6", "--out", folder_ / "ball.msh", "--size", "1"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   // The centre (9, 10, 11) along the turned axes: x runs along y, and y against x.
-  std::istringstream in(ReadText(folder_ / "ball.msh"));
+  std::istringstream in(ReadFile(folder_ / "ball.msh"));
   std::string line;
   while (line != "$Nodes") std::getline(in, line);
   int count = 0;

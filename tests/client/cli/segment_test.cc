@@ -6,8 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/child_process.h"
-#include "tests/support/paths.h"
+#include "fascicle_fixture.h"
 
 namespace fascicle::testing {
 namespace {
@@ -17,12 +16,8 @@ using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-class SegmentTest : public ::testing::Test {
+class SegmentTest : public FascicleTest {
  protected:
-  Finished Fascicle(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), FASCICLE_PROGRAM);
-    return RunProgram(arguments, {{"DISPLAY", ""}});
-  }
   // A label image of a bar of 4 x 2 x 2 voxels of 2 mm, label 3.
   std::string Bar() {
     std::string bytes(8 * 4 * 4, '\0');
@@ -31,15 +26,11 @@ class SegmentTest : public ::testing::Test {
         for (int i = 2; i < 6; ++i) bytes[i + 8 * (j + 4 * k)] = 3;
       }
     }
-    WriteText(folder_ / "bar.mha",
-              "ObjectType = Image\nNDims = 3\nBinaryData = True\nElementSpacing = 2 2 2\nDimSize = 8 4 4\n"
-              "ElementType = MET_UCHAR\nElementDataFile = LOCAL\n" +
-                  bytes);
-    return folder_ / "bar.mha";
+    return File("bar.mha",
+                "ObjectType = Image\nNDims = 3\nBinaryData = True\nElementSpacing = 2 2 2\nDimSize = 8 4 4\n"
+                "ElementType = MET_UCHAR\nElementDataFile = LOCAL\n" +
+                    bytes);
   }
-  std::string File(const std::string& name) { return folder_ / name; }
-
-  ScratchFolder folder_;
 };
 
 TEST_F(SegmentTest, ThePhantomsAnconeusIsFound) {
@@ -54,7 +45,7 @@ TEST_F(SegmentTest, ThePhantomsAnconeusIsFound) {
   EXPECT_GE(report["dice"].get<double>(), 0.95);
   EXPECT_EQ(report["classes"].size(), 3u);
   EXPECT_EQ(report["wanted_class"], 1);
-  EXPECT_EQ(ReadText(File("anconeus.png")).substr(1, 3), "PNG");
+  EXPECT_EQ(ReadFile(File("anconeus.png")).substr(1, 3), "PNG");
   // What was written is the same body.
   const Finished levels = Fascicle({"voxelize", File("anconeus.nii.gz"), "--mask", "--json"});
   ASSERT_EQ(levels.exit_code, 0) << levels.err << levels.out;
@@ -87,7 +78,7 @@ TEST_F(SegmentTest, LevelsAsATable) {
 }
 
 TEST_F(SegmentTest, TellsAllMistakesAtOnceAndWritesNothing) {
-  WriteText(File("empty.mha"), "");
+  File("empty.mha", "");
   const Finished wrong =
       Fascicle({"segment", File("empty.mha"), "--json", "--out", File("x.mha"), "--region", "1,2", "--filter",
                 "sharpen", "--filter", "curvature:0", "--seed", "1,2,x", "--thresholds", "2,1"});

@@ -12,6 +12,8 @@
 #include <sstream>
 
 #include "tests/support/child_process.h"
+#include "tests/support/files.h"
+#include "tests/support/paths.h"
 
 namespace fascicle::testing {
 namespace {
@@ -23,19 +25,19 @@ class ExampleTest : public ::testing::Test {
   // The summary of `fascicle run` of an example.
   json RunExample(const std::string& name, const std::vector<std::string>& more = {}) {
     const Finished written =
-        RunProgram({FASCICLE_PROGRAM, "examples", "write", name, "--out", folder_.path().string()});
+        RunProgram({Program("fascicle"), "examples", "write", name, "--out", folder_.path().string()});
     EXPECT_EQ(written.exit_code, 0) << written.err;
     return Run(folder_ / (name + ".json"), more);
   }
   // The same of an example whose first body has other fibres.
   json RunWithFibres(const std::string& name, const std::function<void(json&)>& change) {
-    json scene = json::parse(RunProgram({FASCICLE_PROGRAM, "examples", "show", name}).out, nullptr, true, true);
+    json scene = json::parse(RunProgram({Program("fascicle"), "examples", "show", name}).out, nullptr, true, true);
     change(scene["bodies"][0]["fibres"]);
-    WriteText(folder_ / "changed.json", scene.dump());
+    WriteFile(folder_ / "changed.json", scene.dump());
     return Run(folder_ / "changed.json", {});
   }
   static json Run(const std::string& scene, const std::vector<std::string>& more) {
-    std::vector<std::string> command = {FASCICLE_PROGRAM, "run", scene, "--json", "--threads", "2"};
+    std::vector<std::string> command = {Program("fascicle"), "run", scene, "--json", "--threads", "2"};
     command.insert(command.end(), more.begin(), more.end());
     const Finished finished = RunProgram(command);
     EXPECT_EQ(finished.exit_code, 0) << finished.out << finished.err;
@@ -47,19 +49,19 @@ class ExampleTest : public ::testing::Test {
 
   // Nominal stress [Pa] of a law at a stretch, from `fascicle materials curve`.
   static double NominalStress(const std::string& law, const std::vector<std::string>& settings, double stretch) {
-    std::vector<std::string> command = {FASCICLE_PROGRAM, "materials", "curve",     law, "--json",
-                                        "--points",       "2",         "--stretch", "1", std::to_string(stretch)};
+    std::vector<std::string> command = {Program("fascicle"), "materials", "curve",     law, "--json",
+                                        "--points",          "2",         "--stretch", "1", std::to_string(stretch)};
     for (const std::string& setting : settings) command.insert(command.end(), {"--set", setting});
     return json::parse(RunProgram(command).out)["nominal_stress"][1];
   }
 
-  ScratchFolder folder_;
+  TemporaryFolder folder_;
 };
 
 // A test for each example stands below; this finds those that have none.
 TEST_F(ExampleTest, NoneIsForgotten) {
   std::set<std::string> names;
-  std::istringstream list(RunProgram({FASCICLE_PROGRAM, "examples", "--json"}).out);
+  std::istringstream list(RunProgram({Program("fascicle"), "examples", "--json"}).out);
   for (std::string line; std::getline(list, line);) names.insert(json::parse(line)["example"]);
   // The last four need real anatomy and are run in tests/verification; the isometric spindle takes the demonstration's
   // time.
@@ -302,7 +304,7 @@ TEST_F(ExampleTest, TendonPull) {
 
 TEST_F(ExampleTest, TorusRinging) {
   RunExample("torus_ringing", {"--out", folder_ / "out"});
-  std::istringstream csv(ReadText(folder_ / "out/series.csv"));
+  std::istringstream csv(ReadFile(folder_ / "out/series.csv"));
   std::string line;
   std::getline(csv, line);
   ASSERT_TRUE(line.starts_with("frame,time [s],step,energy/elastic [J],energy/kinetic [J]")) << line;
@@ -320,7 +322,7 @@ TEST_F(ExampleTest, TorusRinging) {
 
 TEST_F(ExampleTest, TorusBounce) {
   const json summary = RunExample("torus_bounce", {"--out", folder_ / "out"});
-  std::istringstream csv(ReadText(folder_ / "out/series.csv"));
+  std::istringstream csv(ReadFile(folder_ / "out/series.csv"));
   std::string line;
   std::getline(csv, line);
   const auto column = [header = line](const std::string& name) {
@@ -362,8 +364,8 @@ TEST_F(ExampleTest, Twitch) {
 TEST_F(ExampleTest, PartsOfBodiesAreValid) {
   for (const std::string name :
        {"bar_of_two_materials", "graded_bar", "two_compartments", "partial_recruitment", "let_go"}) {
-    RunProgram({FASCICLE_PROGRAM, "examples", "write", name, "--out", folder_.path().string()});
-    const Finished finished = RunProgram({FASCICLE_PROGRAM, "validate", folder_ / (name + ".json")});
+    RunProgram({Program("fascicle"), "examples", "write", name, "--out", folder_.path().string()});
+    const Finished finished = RunProgram({Program("fascicle"), "validate", folder_ / (name + ".json")});
     EXPECT_EQ(finished.exit_code, 0) << finished.out << finished.err;
   }
 }

@@ -16,7 +16,7 @@
 #include "client/lib/decode.h"
 #include "client/lib/replace_file.h"
 #include "client/lib/series_table.h"
-#include "tests/support/child_process.h"
+#include "tests/support/files.h"
 #include "tests/support/sample_job.h"
 
 namespace fascicle::client {
@@ -24,19 +24,19 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::fascicle::testing::Bytes;
-using ::fascicle::testing::ReadText;
+using ::fascicle::testing::ReadFile;
 using ::fascicle::testing::SampleJob;
-using ::fascicle::testing::ScratchFolder;
+using ::fascicle::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 
 TEST(VtkSeriesWriter, WritesWhatVtkReadsBack) {
   const SampleJob job;
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   VtkSeriesWriter writer(job.geometry(), folder.path());
   writer.Add(job.frame(0));
   writer.Add(job.frame(7));
   writer.Finish();
-  const std::string pvd = ReadText(folder / "frames.pvd");
+  const std::string pvd = ReadFile(folder / "frames.pvd");
   EXPECT_THAT(pvd, HasSubstr(R"(timestep="0.35000000000000003" part="0" name="belly" file="frames/belly_000007.vtu")"));
 
   vtkNew<vtkXMLUnstructuredGridReader> reader;
@@ -92,7 +92,7 @@ TEST(VtkSeriesWriter, WritesSurfacesAsTriangles) {
   field.set_location(v1::FieldValues::LOCATION_NODE);
   field.set_components(6);
   field.set_values(Bytes(std::vector<double>(24, 2.5)));
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   VtkSeriesWriter writer(geometry, folder.path());
   writer.Add(frame);
   vtkNew<vtkXMLUnstructuredGridReader> reader;
@@ -115,7 +115,7 @@ TEST(VtkSeriesWriter, WritesSurfacesAsTriangles) {
 
 TEST(VtkSeriesWriter, LeavesNoOtherFiles) {
   const SampleJob job;
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   VtkSeriesWriter writer(job.geometry(), folder.path());
   writer.Add(job.frame(0));
   writer.Finish();
@@ -187,20 +187,20 @@ TEST(MatchesGlob, StarsAndQuestionMarks) {
 }
 
 TEST(ReplaceFile, KeepsTheOldFileWhenWritingFails) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const fs::path path = folder.path() / "deep/er/file.txt";
   ReplaceFile(path, "old");
-  EXPECT_EQ(ReadText(path), "old");
+  EXPECT_EQ(ReadFile(path), "old");
   EXPECT_THROW(ReplaceFile(path,
                            [](const fs::path& beside) {
-                             ::fascicle::testing::WriteText(beside, "half");
+                             ::fascicle::testing::WriteFile(beside, "half");
                              throw std::runtime_error("disk full");
                            }),
                std::runtime_error);
-  EXPECT_EQ(ReadText(path), "old");
+  EXPECT_EQ(ReadFile(path), "old");
   EXPECT_EQ(std::distance(fs::directory_iterator(path.parent_path()), {}), 1);
   ReplaceFile(path, "new");
-  EXPECT_EQ(ReadText(path), "new");
+  EXPECT_EQ(ReadFile(path), "new");
   EXPECT_THROW(ReplaceFile(folder.path() / "deep", "x"), std::runtime_error);
   EXPECT_THROW(ReplaceFile("/proc/none/file", "x"), std::runtime_error);
 }

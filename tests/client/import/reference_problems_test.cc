@@ -9,6 +9,7 @@
 #include "client/lib/scene_json.h"
 #include "core/geometry/mesh_io.h"
 #include "tests/support/feb_writer.h"
+#include "tests/support/reference_file.h"
 
 namespace fascicle::testing {
 namespace {
@@ -140,10 +141,7 @@ class ReferenceProblemTest : public ::testing::TestWithParam<Case> {
     if (!fields.contains(GetParam().element)) return std::nullopt;
     return MeshOf(fields.at(GetParam().element));
   }
-  std::string Skipped() const {
-    return problem_ ? "the problem has no field of " + GetParam().element
-                    : "no reference results in " + ReferenceFolder().string() + " (set FASCICLE_REFERENCE)";
-  }
+  std::string Skipped() const { return problem_ ? "the problem has no field of " + GetParam().element : NoReference(); }
 
   // A cantilever along x: its end pulled down by `force` [N] over an area of 1 mm^2.
   FebWriter Cantilever(FebMesh mesh, double force) {

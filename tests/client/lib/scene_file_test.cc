@@ -8,14 +8,14 @@
 #include <string>
 
 #include "core/base/digest.h"
-#include "tests/support/child_process.h"
+#include "tests/support/files.h"
 
 namespace fascicle::client {
 namespace {
 
 namespace fs = std::filesystem;
-using ::fascicle::testing::ScratchFolder;
-using ::fascicle::testing::WriteText;
+using ::fascicle::testing::TemporaryFolder;
+using ::fascicle::testing::WriteFile;
 using ::testing::HasSubstr;
 
 TEST(ParseScene, ReadsEveryKindOfField) {
@@ -142,7 +142,7 @@ class LoadSceneTest : public ::testing::Test {
     fs::create_directories(scratch_.path() / folder);
     const std::string path = scratch_ / (folder + "/scene.json");
     // All that a scene must have is there, so that only its file can be wrong.
-    WriteText(path, R"({"bodies": [{"name": "a", "unit": "mm", "mesh": {"file": {"path": ")" + mesh_path + R"("}},
+    WriteFile(path, R"({"bodies": [{"name": "a", "unit": "mm", "mesh": {"file": {"path": ")" + mesh_path + R"("}},
       "material": {"neo_hookean": {"young_modulus": 1e4}}}],
       "duration": 1, "output": {"frame_interval": 0.1}, "tet": {}})");
     return path;
@@ -156,13 +156,13 @@ class LoadSceneTest : public ::testing::Test {
     return problems.empty() ? Problem{} : problems.kept().front();
   }
 
-  ScratchFolder scratch_;
+  TemporaryFolder scratch_;
 };
 
 TEST_F(LoadSceneTest, ReadsFilesAndSetsTheirDigests) {
   const std::string scene = WriteScene("meshes/a.msh");
   fs::create_directories(scratch_.path() / "scenes/meshes");
-  WriteText(scratch_ / "scenes/meshes/a.msh", std::string("bytes\0with zero", 15));
+  WriteFile(scratch_ / "scenes/meshes/a.msh", std::string("bytes\0with zero", 15));
   Problems problems;
   const auto package = LoadScene(scene, problems);
   ASSERT_TRUE(package) << problems.ToString();
@@ -174,8 +174,8 @@ TEST_F(LoadSceneTest, ReadsFilesAndSetsTheirDigests) {
 
 TEST_F(LoadSceneTest, FindsTheElementsOfATetGenMeshAndPacksEqualFilesOnce) {
   const std::string scene = WriteScene("a.node");
-  WriteText(scratch_ / "scenes/a.node", "same");
-  WriteText(scratch_ / "scenes/a.ele", "same");
+  WriteFile(scratch_ / "scenes/a.node", "same");
+  WriteFile(scratch_ / "scenes/a.ele", "same");
   Problems problems;
   const auto package = LoadScene(scene, problems);
   ASSERT_TRUE(package) << problems.ToString();
@@ -186,14 +186,14 @@ TEST_F(LoadSceneTest, FindsTheElementsOfATetGenMeshAndPacksEqualFilesOnce) {
 
 TEST_F(LoadSceneTest, SaysThatTheElementFileIsMissing) {
   fs::create_directories(scratch_.path() / "scenes");
-  WriteText(scratch_ / "scenes/a.node", "x");
+  WriteFile(scratch_ / "scenes/a.node", "x");
   const Problem problem = ProblemOf("a.node");
   EXPECT_EQ(problem.path, "bodies[0].mesh.elements.path");
   EXPECT_THAT(problem.message, HasSubstr("a.ele"));
 }
 
 TEST_F(LoadSceneTest, RefusesFilesOutsideTheFolder) {
-  WriteText(scratch_ / "secret.msh", "x");
+  WriteFile(scratch_ / "secret.msh", "x");
   EXPECT_THAT(ProblemOf("../secret.msh").message, HasSubstr("leads out of the scene's folder"));
   EXPECT_THAT(ProblemOf("sub/../../secret.msh").message, HasSubstr("leads out of the scene's folder"));
   EXPECT_THAT(ProblemOf(scratch_ / "secret.msh").message, HasSubstr("leads out of the scene's folder"));
@@ -204,14 +204,14 @@ TEST_F(LoadSceneTest, RefusesFilesOutsideTheFolder) {
   EXPECT_THAT(ProblemOf("up/secret.msh").message, HasSubstr("link that leads out"));
   // A folder whose name merely begins like the scene's.
   fs::create_directories(scratch_.path() / "scenes2");
-  WriteText(scratch_ / "scenes2/a.msh", "x");
+  WriteFile(scratch_ / "scenes2/a.msh", "x");
   fs::create_symlink(scratch_.path() / "scenes2/a.msh", scratch_.path() / "scenes/near.msh");
   EXPECT_THAT(ProblemOf("near.msh").message, HasSubstr("link that leads out"));
 }
 
 TEST_F(LoadSceneTest, FollowsLinksThatStayInside) {
   const std::string scene = WriteScene("link.msh");
-  WriteText(scratch_ / "scenes/real.msh", "x");
+  WriteFile(scratch_ / "scenes/real.msh", "x");
   fs::create_symlink("real.msh", scratch_.path() / "scenes/link.msh");
   Problems problems;
   EXPECT_TRUE(LoadScene(scene, problems)) << problems.ToString();
@@ -226,7 +226,7 @@ TEST_F(LoadSceneTest, RefusesWhatIsNoUsableFile) {
   fs::create_symlink("/dev/zero", scratch_.path() / "scenes/zero.msh");
   EXPECT_THAT(ProblemOf("zero.msh").message, HasSubstr("leads out"));
   // Takes no space: a hole.
-  WriteText(scratch_ / "scenes/huge.msh", "");
+  WriteFile(scratch_ / "scenes/huge.msh", "");
   fs::resize_file(scratch_ / "scenes/huge.msh", (std::uintmax_t{4} << 30) + 1);
   EXPECT_THAT(ProblemOf("huge.msh").message, HasSubstr("larger than 4 GiB"));
 }
@@ -234,7 +234,7 @@ TEST_F(LoadSceneTest, RefusesWhatIsNoUsableFile) {
 TEST_F(LoadSceneTest, TellsProblemsOfSceneAndFilesTogether) {
   fs::create_directories(scratch_.path() / "scenes");
   const std::string path = scratch_ / "scenes/scene.json";
-  WriteText(path, R"({"duration": "long", "bodies": [{"mesh": {"file": {"path": "none.msh"}}, "unti": "mm"}]})");
+  WriteFile(path, R"({"duration": "long", "bodies": [{"mesh": {"file": {"path": "none.msh"}}, "unti": "mm"}]})");
   Problems problems;
   EXPECT_FALSE(LoadScene(path, problems));
   for (const char* field : {"duration: ", "bodies[0].mesh.file.path: ", "bodies[0].unti: "}) {
@@ -246,7 +246,7 @@ TEST_F(LoadSceneTest, RefusesWhatIsNoSceneFile) {
   Problems problems;
   EXPECT_FALSE(LoadScene(scratch_ / "none.json", problems));
   EXPECT_FALSE(LoadScene(scratch_.path().string(), problems));
-  WriteText(scratch_ / "huge.json", "");
+  WriteFile(scratch_ / "huge.json", "");
   fs::resize_file(scratch_ / "huge.json", (16u << 20) + 1);
   EXPECT_FALSE(LoadScene(scratch_ / "huge.json", problems));
   EXPECT_EQ(problems.count(), 3u) << problems.ToString();

@@ -16,7 +16,7 @@
 #include "client/render/field_values.h"
 #include "client/render/picture.h"
 #include "client/render/plot.h"
-#include "tests/support/child_process.h"
+#include "tests/support/files.h"
 #include "tests/support/sample_job.h"
 
 namespace fascicle::client {
@@ -24,7 +24,7 @@ namespace {
 
 using ::fascicle::testing::Bytes;
 using ::fascicle::testing::SampleJob;
-using ::fascicle::testing::ScratchFolder;
+using ::fascicle::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 
 using Pixel = std::array<int, 3>;
@@ -72,7 +72,7 @@ class RenderTest : public ::testing::Test {
   }
 
   SampleJob job_;
-  ScratchFolder folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(RenderTest, ShowsTheBellyInTheColoursOfItsField) {

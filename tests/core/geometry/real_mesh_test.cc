@@ -8,6 +8,7 @@
 #include "core/geometry/mesh_checks.h"
 #include "core/geometry/mesh_io.h"
 #include "core/geometry/region.h"
+#include "tests/support/files.h"
 #include "tests/support/mesh_samples.h"
 #include "tests/support/paths.h"
 
@@ -29,9 +30,9 @@ TEST_P(RealMeshes, AreReadAndChecked) {
   const std::filesystem::path path = testing::DataFolder() / expected.file;
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there; set FASCICLE_DATA";
   const std::string elements =
-      path.extension() == ".node" ? ReadFile(std::filesystem::path(path).replace_extension(".ele")) : "";
+      path.extension() == ".node" ? testing::ReadFile(std::filesystem::path(path).replace_extension(".ele")) : "";
   Problems problems;
-  std::optional<TetMesh> mesh = ReadMesh({expected.file, ReadFile(path), elements}, problems);
+  std::optional<TetMesh> mesh = ReadMesh({expected.file, testing::ReadFile(path), elements}, problems);
   ASSERT_TRUE(mesh) << problems.ToString();
   EXPECT_EQ(mesh->nodes.size(), expected.nodes);
   EXPECT_EQ(mesh->tetrahedra.size(), expected.tetrahedra);
@@ -81,7 +82,7 @@ TEST(RealMeshTest, AttachmentsAreTagged) {
   const std::filesystem::path path = testing::DataFolder() / "vh_muscle_tets/VHM_Left_Muscle_BicepsFemorisLongus.msh";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there; set FASCICLE_DATA";
   Problems problems;
-  const std::optional<TetMesh> mesh = ReadMesh({path.string(), ReadFile(path), ""}, problems);
+  const std::optional<TetMesh> mesh = ReadMesh({path.string(), testing::ReadFile(path), ""}, problems);
   ASSERT_TRUE(mesh) << problems.ToString();
   EXPECT_THAT(mesh->tetrahedron_tags, ::testing::Each(10));
   const std::vector<Triangle> surface = BoundaryTriangles(*mesh);

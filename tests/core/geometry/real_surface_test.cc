@@ -11,6 +11,8 @@
 #include "core/geometry/mesh_checks.h"
 #include "core/geometry/tetrahedralize.h"
 #include "surface_samples.h"
+#include "tests/support/files.h"
+#include "tests/support/paths.h"
 
 namespace fascicle {
 namespace {
@@ -25,7 +27,7 @@ fs::path LegFolder() { return testing::DataFolder() / "vh_muscle_surfaces"; }
 TriangleMesh ReadLeg(const std::string& name) {
   const fs::path path = LegFolder() / ("VHM_Left_" + name + "_4k.stl");
   Problems problems;
-  auto surface = ReadSurface(path.string(), FileBytes(path), problems);
+  auto surface = ReadSurface(path.string(), testing::ReadFile(path), problems);
   EXPECT_TRUE(surface) << problems.ToString();
   return surface ? std::move(*surface) : CornerSurface();
 }
@@ -60,7 +62,7 @@ TEST(RealSurfaceTest, EveryMuscleAndBoneOfTheLeg) {
     SCOPED_TRACE(entry.path().filename());
     muscles += entry.path().string().find("Muscle") != std::string::npos ? 1 : 0;
     Problems problems;
-    const auto surface = ReadSurface(entry.path().string(), FileBytes(entry.path()), problems);
+    const auto surface = ReadSurface(entry.path().string(), testing::ReadFile(entry.path()), problems);
     ASSERT_TRUE(surface) << problems.ToString();
     const auto result = Mesh(*surface, 4000, problems);
     ASSERT_TRUE(result) << problems.ToString();

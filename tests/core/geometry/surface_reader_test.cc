@@ -5,6 +5,8 @@
 #include <random>
 
 #include "surface_samples.h"
+#include "tests/support/files.h"
+#include "tests/support/paths.h"
 
 namespace fascicle {
 namespace {
@@ -98,7 +100,7 @@ TEST(SurfaceReaderTest, SaysWhatIsWrongAndWhere) {
 TEST(SurfaceReaderTest, RealVtp) {
   const auto path = testing::DataFolder() / "opensim_arm26/Geometry/arm_r_humerus.vtp";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there; set FASCICLE_DATA";
-  const auto surface = Read(path, FileBytes(path));
+  const auto surface = Read(path, testing::ReadFile(path));
   ASSERT_TRUE(surface);
   EXPECT_NEAR(Diagonal(surface->nodes), 0.36, 0.04);  // an upper arm [m]
 }

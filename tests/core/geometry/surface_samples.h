@@ -13,7 +13,6 @@
 
 #include "core/geometry/shapes.h"
 #include "core/geometry/triangle_mesh.h"
-#include "tests/support/paths.h"
 
 namespace fascicle {
 
@@ -198,11 +197,6 @@ inline TriangleMesh WithHole(TriangleMesh surface, const Vec3& point, double rad
     return std::any_of(t.begin(), t.end(), [&](std::int32_t n) { return (surface.nodes[n] - point).norm() < radius; });
   });
   return surface;
-}
-
-inline std::string FileBytes(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 }  // namespace fascicle

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/imaging/volume_reader.h"
+#include "tests/support/files.h"
 #include "volume_samples.h"
 
 namespace fascicle::testing {
@@ -25,7 +26,7 @@ std::vector<DicomSlice> Sagittal(int count) {
   return slices;
 }
 
-std::vector<path> WriteAll(const Folder& folder, const std::vector<DicomSlice>& slices) {
+std::vector<path> WriteAll(const TemporaryFolder& folder, const std::vector<DicomSlice>& slices) {
   std::vector<path> paths;
   for (std::size_t s = 0; s < slices.size(); ++s) {
     paths.push_back(folder.Write("slice" + std::to_string(s) + ".dcm", DicomBytes(slices[s])));
@@ -34,7 +35,7 @@ std::vector<path> WriteAll(const Folder& folder, const std::vector<DicomSlice>& 
 }
 
 std::string Refusal(const std::vector<DicomSlice>& slices) {
-  const Folder folder;
+  const TemporaryFolder folder;
   Problems problems;
   EXPECT_FALSE(ReadVolumeFiles(WriteAll(folder, slices), {}, problems));
   EXPECT_FALSE(problems.empty());
@@ -57,7 +58,7 @@ void ExpectSagittal(const std::optional<VolumeImage>& image, const Problems& pro
 }
 
 TEST(Dicom, StacksSlicesAlongTheirNormal) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::vector<path> paths = WriteAll(folder, Sagittal(5));
   Problems problems;
   ExpectSagittal(ReadVolumeFiles(paths, {}, problems), problems);
@@ -79,7 +80,7 @@ TEST(Dicom, RescalesEachSliceByItself) {
   std::vector<DicomSlice> slices = Sagittal(3);
   slices[1].slope = "2";
   slices[1].intercept = "-50";
-  const Folder folder;
+  const TemporaryFolder folder;
   Problems problems;
   const std::optional<VolumeImage> image = ReadVolumeFiles(WriteAll(folder, slices), {}, problems);
   ASSERT_TRUE(image) << problems.ToString();
@@ -88,7 +89,7 @@ TEST(Dicom, RescalesEachSliceByItself) {
 }
 
 TEST(Dicom, ASliceAloneIsAVolumeOfOneLayer) {
-  const Folder folder;
+  const TemporaryFolder folder;
   Problems problems;
   const std::optional<VolumeImage> image = ReadVolumeFiles(WriteAll(folder, Sagittal(1)), {}, problems);
   ASSERT_TRUE(image) << problems.ToString();
@@ -124,7 +125,7 @@ TEST(Dicom, RefusesWhatIsNoSeries) {
 }
 
 TEST(Dicom, TellsAllBrokenSlicesAtOnce) {
-  const Folder folder;
+  const TemporaryFolder folder;
   std::vector<path> paths = WriteAll(folder, Sagittal(5));
   folder.Write("slice1.dcm", DicomBytes(Sagittal(5)[1]).substr(0, 300));
   folder.Write("slice3.dcm", "no DICOM at all");
@@ -141,7 +142,7 @@ TEST(Dicom, TellsAllBrokenSlicesAtOnce) {
 }
 
 TEST(Dicom, AFolderWithoutSlicesIsToldApart) {
-  const Folder folder;
+  const TemporaryFolder folder;
   Problems problems;
   EXPECT_FALSE(ReadVolumeFiles({folder.path()}, {}, problems));
   EXPECT_THAT(problems.ToString(), HasSubstr("no DICOM file is in the folder"));

@@ -8,6 +8,7 @@
 
 #include "core/imaging/volume_reader.h"
 #include "core/imaging/volume_writer.h"
+#include "tests/support/files.h"
 #include "volume_samples.h"
 
 namespace fascicle::testing {
@@ -77,10 +78,10 @@ TEST(MalformedVolume, Huge) {
   EXPECT_THAT(Refusal("a.nii", NiftiBytes({10000, 10000, 10000}, kVoxels, false)), HasSubstr("voxels"));
   // Below 2^31, but far above what the file can hold, compressed or not.
   EXPECT_THAT(Refusal("a.mha", Meta("1000 1000 1000") + kVoxels), HasSubstr("the file is too short"));
-  const Folder folder;
+  const TemporaryFolder folder;
   Problems written;
   WriteVolume(ObliqueImage(), VoxelType::kInt16, folder / "a.mha", written);
-  std::string compressed = ReadBytes(folder / "a.mha");
+  std::string compressed = ReadFile(folder / "a.mha");
   compressed.replace(compressed.find("DimSize = 7 5 4"), 15, "DimSize = 700 500 400");
   EXPECT_THAT(Refusal("a.mha", compressed), HasSubstr("the file is too short"));
   EXPECT_THAT(Refusal("a.mha", Meta("4 3 2", "CompressedData = True\nCompressedDataSize = 1000000000000\n") + kVoxels),
@@ -111,7 +112,7 @@ TEST(MalformedVolume, Empty) {
 
 // Whatever the length at which a file breaks off, it is refused.
 TEST(MalformedVolume, Truncated) {
-  const Folder folder;
+  const TemporaryFolder folder;
   VolumeImage image = ObliqueImage();
   std::vector<std::pair<std::string, std::string>> files = {{"raw.mha", Meta("4 3 2") + kVoxels},
                                                             {"raw.nrrd", Nrrd("4 3 2") + kVoxels},
@@ -120,7 +121,7 @@ TEST(MalformedVolume, Truncated) {
   for (const char* name : {"a.mha", "a.nrrd", "a.nii.gz"}) {
     Problems problems;
     WriteVolume(image, VoxelType::kInt16, folder / name, problems);
-    files.emplace_back(name, ReadBytes(folder / name));
+    files.emplace_back(name, ReadFile(folder / name));
   }
   for (const auto& [name, bytes] : files) {
     Problems whole;
@@ -183,13 +184,13 @@ TEST(MalformedVolume, NoVolumeOfOneNumberAVoxel) {
   }
   Refusal("a.nrrd",
           Nrrd("4 3 2", "encoding: raw\nspace dimension: 3\nspace directions: (1,0,0) (1,1,0) (0,0,1)\n") + kVoxels);
-  const Folder folder;
+  const TemporaryFolder folder;
   VolumeImage image = ObliqueImage();
   image.values[9] = std::numeric_limits<float>::quiet_NaN();
   image.values[50] = std::numeric_limits<float>::infinity();
   Problems problems;
   WriteVolume(image, VoxelType::kFloat32, folder / "nan.mha", problems);
-  EXPECT_THAT(Refusal("nan.mha", ReadBytes(folder / "nan.mha")),
+  EXPECT_THAT(Refusal("nan.mha", ReadFile(folder / "nan.mha")),
               HasSubstr("2 voxels are infinite or no numbers: the first is (2, 1, 0)"));
 }
 
@@ -212,7 +213,7 @@ TEST(MalformedVolume, Raw) {
 }
 
 TEST(MalformedVolume, WhatIsGivenIsNoFile) {
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const std::vector<path>& paths : std::vector<std::vector<path>>{
            {folder / "none.mha"},
            {folder / "none.dcm"},

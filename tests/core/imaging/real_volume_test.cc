@@ -5,6 +5,7 @@
 
 #include "core/imaging/image_stage.h"
 #include "core/imaging/volume_reader.h"
+#include "tests/support/paths.h"
 #include "volume_samples.h"
 
 namespace fascicle::testing {

@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/imaging/volume_reader.h"
 #include "core/imaging/volume_writer.h"
+#include "tests/support/files.h"
 #include "volume_samples.h"
 
 namespace fascicle::testing {
@@ -32,7 +33,7 @@ void ExpectSamePlace(const VolumeImage& image, const VolumeImage& expected, doub
 class RoundTrip : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(RoundTrip, KeepsVoxelsAndPlace) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::string name = std::string("image") + GetParam();
   // NIfTI has floats of 32 bits for the place [mm].
   const bool nifti = name.find("nii") != std::string::npos || name.find("NII") != std::string::npos;
@@ -48,7 +49,7 @@ TEST_P(RoundTrip, KeepsVoxelsAndPlace) {
       ExpectSamePlace(read, image, tolerance);
       EXPECT_EQ(read.values, image.values) << NameOf(type);
       // From bytes, wherever they were.
-      const std::string bytes = ReadBytes(folder / name);
+      const std::string bytes = ReadFile(folder / name);
       const std::optional<VolumeImage> again = ReadVolume({{"/a/b/" + name, bytes}}, {}, problems);
       ASSERT_TRUE(again) << problems.ToString();
       EXPECT_EQ(again->values, image.values);
@@ -67,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, RoundTrip, ::testing::Values(".mha", ".nrrd", 
                          });
 
 TEST(VolumeWriter, RoundsAndCutsOffWholeNumbers) {
-  const Folder folder;
+  const TemporaryFolder folder;
   VolumeImage image = ObliqueImage();
   image.values[0] = -3.6F;
   image.values[1] = 300;
@@ -81,7 +82,7 @@ TEST(VolumeWriter, RoundsAndCutsOffWholeNumbers) {
 }
 
 TEST(VolumeWriter, TellsWhatCantBeWritten) {
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const char* name : {"a.dcm", "a.raw", "a.mhd", "a.png", "none/a.mha"}) {
     Problems problems;
     WriteVolume(ObliqueImage(), VoxelType::kInt16, folder / name, problems);
@@ -129,7 +130,7 @@ void ExpectByHand(const VolumeImage& image) {
 }
 
 TEST(VolumeReader, ReadsEitherByteOrder) {
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const bool big : {false, true}) {
     const std::string shorts = Shorts(24, big);
     ExpectByHand(Read({folder.Write("a.mha", Filled(kMeta, big ? "True" : "False", "LOCAL") + shorts)}));
@@ -142,7 +143,7 @@ TEST(VolumeReader, ReadsEitherByteOrder) {
 }
 
 TEST(VolumeReader, ReadsHeadersWithTheirFileOfVoxels) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::string shorts = Shorts(24, false);
   const path raw = folder.Write("voxels.raw", shorts);
   const std::string meta = Filled(kMeta, "False", "voxels.raw"),
@@ -162,14 +163,14 @@ TEST(VolumeReader, ReadsHeadersWithTheirFileOfVoxels) {
 }
 
 TEST(VolumeReader, RescalesAsNiftiSays) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const VolumeImage image = Read({folder.Write("a.nii", NiftiBytes({4, 3, 2}, Shorts(24, false), false, 0.5F, 100))});
   for (std::size_t v = 0; v < 24; ++v)
     ASSERT_FLOAT_EQ(image.values[v], 0.5F * (static_cast<float>(v * 300) - 5000) + 100);
 }
 
 TEST(VolumeReader, ReadsRawNumbersOfEveryType) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto expect = [&]<class T>(VoxelType type, T) {
     for (const bool big : {false, true}) {
       std::string bytes = "header";
@@ -194,7 +195,7 @@ TEST(VolumeReader, ReadsRawNumbersOfEveryType) {
 }
 
 TEST(VolumeReader, SeveralThreadsReadAtOnce) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const path meta = folder.Write("a.mha", Filled(kMeta, "False", "LOCAL") + Shorts(24, false));
   const path nifti = folder.Write("a.nii", NiftiBytes({4, 3, 2}, Shorts(24, false), false));
   ThreadTeam team(4);

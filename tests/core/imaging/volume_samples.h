@@ -1,49 +1,16 @@
 #ifndef FASCICLE_TESTS_CORE_IMAGING_VOLUME_SAMPLES_H_
 #define FASCICLE_TESTS_CORE_IMAGING_VOLUME_SAMPLES_H_
 
-#include <stdlib.h>
-
 #include <Eigen/Geometry>
 #include <bit>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include "core/imaging/volume_image.h"
-#include "tests/support/paths.h"
 
 namespace fascicle::testing {
-
-// A folder that goes with the test.
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "imaging-test-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  std::filesystem::path Write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path_ / name, std::ios::binary) << bytes;
-    return path_ / name;
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-inline std::string ReadBytes(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 // Different whole numbers in all voxels, some below 0; every axis of another length and spacing, none along x, y or z.
 inline VolumeImage ObliqueImage() {

@@ -21,6 +21,7 @@
 #include "core/geometry/region.h"
 #include "core/geometry/shapes.h"
 #include "core/muscle/muscle_solid.h"
+#include "tests/support/files.h"
 #include "tests/support/paths.h"
 
 namespace fascicle {
@@ -318,13 +319,6 @@ TEST(FitMuscleSolid, OneTetrahedronIsTooShort) {
 
 // --- Real anatomy ----------------------------------------------------------------------------------------------------
 
-std::string ReadAll(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 struct RealMuscle {
   const char* name;
   // What was measured when this was written, and a fifth more [degree]: B-spline against published, harmonic against
@@ -341,7 +335,7 @@ TEST_P(FittedToRealMuscle, FibresAgreeWithThePublished) {
   const std::filesystem::path data = testing::DataFolder();
   const std::string base = (data / "vh_muscle_tets" / GetParam().name).string();
   if (!std::filesystem::exists(base + ".msh")) GTEST_SKIP() << "no anatomy in " << data << "; set FASCICLE_DATA";
-  const std::string bytes = ReadAll(base + ".msh");
+  const std::string bytes = testing::ReadFile(base + ".msh");
   Problems problems;
   auto mesh = ReadMesh({.name = "muscle.msh", .bytes = bytes, .element_bytes = {}}, problems);
   ASSERT_TRUE(mesh) << problems.ToString();
@@ -350,7 +344,7 @@ TEST_P(FittedToRealMuscle, FibresAgreeWithThePublished) {
   const Region first = SelectRegion(*mesh, surface, "attach1", TagSelector{1});
   const Region second = SelectRegion(*mesh, surface, "attach2", TagSelector{2});
   const FibreField harmonic = HarmonicFibres(*mesh, first.nodes, second.nodes, problems);
-  const FibreField published = ReadFibres(*mesh, ReadAll(base + ".fibres.txt"), problems);
+  const FibreField published = ReadFibres(*mesh, testing::ReadFile(base + ".fibres.txt"), problems);
   const auto fit = FitMuscleSolid(*mesh, first.nodes, second.nodes, {}, problems);
   ASSERT_TRUE(fit) << problems.ToString();
   ThreadTeam team(2);

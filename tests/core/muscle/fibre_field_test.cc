@@ -16,6 +16,7 @@
 #include "core/geometry/mesh_io.h"
 #include "core/geometry/region.h"
 #include "core/geometry/shapes.h"
+#include "tests/support/files.h"
 #include "tests/support/paths.h"
 
 namespace fascicle {
@@ -269,13 +270,6 @@ TEST(HarmonicFibres, ReportFlatTetrahedra) {
 
 // --- Real anatomy ----------------------------------------------------------------------------------------------------
 
-std::string ReadAll(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 // The biceps femoris of the Visible Human, against the fibres that were published with it for the same two attachments
 // (means over the ten nodes of quadratic tetrahedra). Measured when this was written: 3.40 degrees on average.
 TEST(HarmonicFibres, AgreeWithThoseOfARealMuscle) {
@@ -283,7 +277,7 @@ TEST(HarmonicFibres, AgreeWithThoseOfARealMuscle) {
   const std::filesystem::path base = data / "vh_muscle_tets/VHM_Left_Muscle_BicepsFemorisLongus";
   if (!std::filesystem::exists(base.string() + ".msh"))
     GTEST_SKIP() << "no anatomy in " << data << "; set FASCICLE_DATA";
-  const std::string bytes = ReadAll(base.string() + ".msh");
+  const std::string bytes = testing::ReadFile(base.string() + ".msh");
   Problems problems;
   const auto mesh = ReadMesh({.name = "muscle.msh", .bytes = bytes, .element_bytes = {}}, problems);
   ASSERT_TRUE(mesh) << problems.ToString();
@@ -291,7 +285,7 @@ TEST(HarmonicFibres, AgreeWithThoseOfARealMuscle) {
   const Region first = SelectRegion(*mesh, surface, "attach1", TagSelector{1});
   const Region second = SelectRegion(*mesh, surface, "attach2", TagSelector{2});
   const FibreField harmonic = HarmonicFibres(*mesh, first.nodes, second.nodes, problems);
-  const FibreField published = ReadFibres(*mesh, ReadAll(base.string() + ".fibres.txt"), problems);
+  const FibreField published = ReadFibres(*mesh, testing::ReadFile(base.string() + ".fibres.txt"), problems);
   ASSERT_TRUE(problems.empty()) << problems.ToString();
   ASSERT_EQ(harmonic.size(), published.size());
 

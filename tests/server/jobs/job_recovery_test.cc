@@ -6,13 +6,13 @@
 
 #include "server/jobs/job_manager.h"
 #include "tests/support/box_jobs.h"
+#include "tests/support/files.h"
 #include "tests/support/store_samples.h"
-#include "tests/support/temporary_directory.h"
 
 namespace fascicle::server {
 namespace {
 
-class JobRecoveryTest : public testing::TestWithParam<bool> {
+class JobRecoveryTest : public ::testing::TestWithParam<bool> {
  protected:
   // Ends the process, as far as the store is concerned.
   void ReopenStore() {
@@ -21,7 +21,7 @@ class JobRecoveryTest : public testing::TestWithParam<bool> {
     store_ = OpenSqliteStore(directory_.path());
   }
 
-  TemporaryDirectory directory_;
+  testing::TemporaryFolder directory_;
   std::unique_ptr<Store> store_ = GetParam() ? OpenSqliteStore(directory_.path()) : MakeMemoryStore();
 };
 
@@ -77,8 +77,9 @@ TEST_P(JobRecoveryTest, TheProfileOfARunIsKeptAndTheNextOneAddsToIt) {
     manager.Drain();
     first = manager.Get(id)->record.profile;
   }
-  EXPECT_THAT(first, testing::AllOf(testing::HasSubstr("set-up/scene 1\n"), testing::HasSubstr("\nstep/elastic force "),
-                                    testing::HasSubstr("\ncommit "), testing::HasSubstr("\ncheckpoint ")));
+  EXPECT_THAT(first,
+              ::testing::AllOf(::testing::HasSubstr("set-up/scene 1\n"), ::testing::HasSubstr("\nstep/elastic force "),
+                               ::testing::HasSubstr("\ncommit "), ::testing::HasSubstr("\ncheckpoint ")));
   ReopenStore();
   JobManager manager(*store_, BoxCodec(), Workers(1));
   EXPECT_TRUE(manager.Get(id)->record.profile.starts_with(first));
@@ -188,11 +189,11 @@ TEST_P(JobRecoveryTest, AJobCanBeCancelledAfterTheDrain) {
   EXPECT_EQ(store_->GetJob(id)->state, JobState::kCancelled);
 }
 
-INSTANTIATE_TEST_SUITE_P(Stores, JobRecoveryTest, testing::Bool(),
+INSTANTIATE_TEST_SUITE_P(Stores, JobRecoveryTest, ::testing::Bool(),
                          [](const auto& test) { return test.param ? "Sqlite" : "Memory"; });
 
 TEST(JobRecovery, ADamagedFrameFileFailsItsJobAlone) {
-  TemporaryDirectory directory;
+  testing::TemporaryFolder directory;
   std::string damaged, good;
   {
     const std::unique_ptr<Store> store = OpenSqliteStore(directory.path());
@@ -201,14 +202,14 @@ TEST(JobRecovery, ADamagedFrameFileFailsItsJobAlone) {
     good = manager.Submit(BoxJob({.duration = 1}), nullptr).record.id;
     ASSERT_TRUE(WaitForFrames(manager, damaged, 2));
   }
-  const std::string path = directory.path() + "/jobs/" + damaged + ".db";
+  const std::string path = directory / "jobs/" + damaged + ".db";
   std::filesystem::resize_file(path, 0);
   std::filesystem::resize_file(path, 100'000);  // zeros
   const std::unique_ptr<Store> store = OpenSqliteStore(directory.path());
   JobManager manager(*store, BoxCodec(), Workers(1));
   const JobView failed = WaitForEnd(manager, damaged);
   EXPECT_EQ(failed.record.state, JobState::kFailed);
-  EXPECT_THAT(failed.record.failure, testing::StartsWith("STORAGE: " + path));
+  EXPECT_THAT(failed.record.failure, ::testing::StartsWith("STORAGE: " + path));
   EXPECT_EQ(WaitForEnd(manager, good).record.state, JobState::kSucceeded);
 }
 

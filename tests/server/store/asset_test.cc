@@ -6,8 +6,8 @@
 
 #include "core/base/digest.h"
 #include "server/store/store.h"
+#include "tests/support/files.h"
 #include "tests/support/store_samples.h"
-#include "tests/support/temporary_directory.h"
 
 namespace fascicle::server {
 namespace {
@@ -29,9 +29,9 @@ int CountFiles(const std::string& directory) {
   return count;
 }
 
-class AssetContract : public testing::TestWithParam<bool> {
+class AssetContract : public ::testing::TestWithParam<bool> {
  protected:
-  TemporaryDirectory directory_;
+  testing::TemporaryFolder directory_;
   std::unique_ptr<Store> store_ = GetParam() ? OpenSqliteStore(directory_.path()) : MakeMemoryStore();
 };
 
@@ -71,12 +71,12 @@ TEST_P(AssetContract, TakesNothingButADigestForAName) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Stores, AssetContract, testing::Bool(),
+INSTANTIATE_TEST_SUITE_P(Stores, AssetContract, ::testing::Bool(),
                          [](const auto& test) { return test.param ? "Sqlite" : "Memory"; });
 
 TEST(AssetFiles, AreLeftByCommitAlone) {
-  TemporaryDirectory directory;
-  const std::string assets = directory.path() + "/assets";
+  testing::TemporaryFolder directory;
+  const std::string assets = directory / "assets";
   const std::unique_ptr<Store> store = OpenSqliteStore(directory.path());
   const std::string bytes = SampleBytes(3, 10'000);
   store->BeginUpload(HexOf(bytes), 10'000)->Write(bytes);
@@ -89,31 +89,31 @@ TEST(AssetFiles, AreLeftByCommitAlone) {
 }
 
 TEST(AssetFiles, WriteNoMoreThanAnnounced) {
-  TemporaryDirectory directory;
+  testing::TemporaryFolder directory;
   const std::unique_ptr<Store> store = OpenSqliteStore(directory.path());
   const std::unique_ptr<AssetStore::Upload> upload = store->BeginUpload(HexOf(""), 1000);
   for (int i = 0; i < 100; ++i) upload->Write(SampleBytes(1, 1000));
   std::uintmax_t written = 0;
-  for (const auto& entry : fs::directory_iterator(directory.path() + "/assets/uploads")) written += entry.file_size();
+  for (const auto& entry : fs::directory_iterator(directory / "assets/uploads")) written += entry.file_size();
   EXPECT_LE(written, 1000u);
 }
 
 TEST(AssetFiles, OfInterruptedUploadsAreRemovedAndOthersSurvive) {
-  TemporaryDirectory directory;
+  testing::TemporaryFolder directory;
   const std::string bytes = SampleBytes(4, 500);
   { Put(*OpenSqliteStore(directory.path()), HexOf(bytes), 500, bytes); }
-  std::ofstream(directory.path() + "/assets/uploads/17") << "half";
+  std::ofstream(directory / "assets/uploads/17") << "half";
   const std::unique_ptr<Store> store = OpenSqliteStore(directory.path());
-  EXPECT_EQ(CountFiles(directory.path() + "/assets"), 1);
+  EXPECT_EQ(CountFiles(directory / "assets"), 1);
   EXPECT_EQ(store->ReadAsset(HexOf(bytes)), bytes);
 }
 
 TEST(AssetFiles, ThatAreDamagedAreToldByName) {
-  TemporaryDirectory directory;
+  testing::TemporaryFolder directory;
   const std::unique_ptr<Store> store = OpenSqliteStore(directory.path());
   const std::string bytes = SampleBytes(5, 500);
   Put(*store, HexOf(bytes), 500, bytes);
-  const std::string path = directory.path() + "/assets/" + HexOf(bytes).substr(0, 2) + "/" + HexOf(bytes);
+  const std::string path = directory / "assets/" + HexOf(bytes).substr(0, 2) + "/" + HexOf(bytes);
   {
     std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
     file.seekp(77);

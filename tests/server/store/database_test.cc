@@ -9,8 +9,8 @@
 
 #include "server/store/file_system.h"
 #include "server/store/store.h"
+#include "tests/support/files.h"
 #include "tests/support/store_samples.h"
-#include "tests/support/temporary_directory.h"
 
 namespace fascicle::server {
 namespace {
@@ -24,10 +24,10 @@ constexpr std::array<const char*, 1> kOld = {kCreate};
 constexpr std::array<const char*, 2> kNew = {kCreate, kAddSize};
 constexpr std::array<const char*, 2> kBroken = {kCreate, "ALTER TABLE notes ADD COLUMN size INTEGER; CREATE nonsense"};
 
-class DatabaseTest : public testing::Test {
+class DatabaseTest : public ::testing::Test {
  protected:
-  TemporaryDirectory directory_;
-  const std::string path_ = directory_.path() + "/notes.db";
+  testing::TemporaryFolder directory_;
+  const std::string path_ = directory_ / "notes.db";
   const std::string backup_ = path_ + ".format-1.backup";
 };
 
@@ -100,10 +100,9 @@ TEST_F(DatabaseTest, RefusesANewerFormat) {
 TEST_F(DatabaseTest, RefusesFilesOfOthers) {
   { OpenFormatted(path_, kId, kOld); }
   EXPECT_NE(ErrorOf([&] { OpenFormatted(path_, kId + 1, kOld); }).find(path_), std::string::npos);
-  std::ofstream(directory_.path() + "/text.db") << std::string(5000, 'x');
-  EXPECT_NE(ErrorOf([&] { OpenFormatted(directory_.path() + "/text.db", kId, kOld); }).find("text.db"),
-            std::string::npos);
-  EXPECT_NE(ErrorOf([&] { OpenFormatted(directory_.path() + "/no/such/folder.db", kId, kOld); }), "");
+  std::ofstream(directory_ / "text.db") << std::string(5000, 'x');
+  EXPECT_NE(ErrorOf([&] { OpenFormatted(directory_ / "text.db", kId, kOld); }).find("text.db"), std::string::npos);
+  EXPECT_NE(ErrorOf([&] { OpenFormatted(directory_ / "no/such/folder.db", kId, kOld); }), "");
 }
 
 TEST(FileSystem, KnowsNetworkFilesystems) {

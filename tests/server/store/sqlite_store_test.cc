@@ -13,18 +13,18 @@
 #include "server/store/database.h"
 #include "server/store/group_commit.h"
 #include "server/store/store.h"
+#include "tests/support/files.h"
 #include "tests/support/store_samples.h"
-#include "tests/support/temporary_directory.h"
 
 namespace fascicle::server {
 namespace {
 
 namespace fs = std::filesystem;
 
-class SqliteStoreTest : public testing::Test {
+class SqliteStoreTest : public ::testing::Test {
  protected:
   std::unique_ptr<Store> Open() { return OpenSqliteStore(directory_.path()); }
-  std::string FramesPath(int job) { return directory_.path() + "/jobs/" + SampleJob(job).id + ".db"; }
+  std::string FramesPath(int job) { return directory_ / "jobs/" + SampleJob(job).id + ".db"; }
   void Fill(Store& store, int job, int frames, std::size_t size) {
     store.CreateJob(SampleJob(job), &existing_);
     const std::shared_ptr<FrameStore> open = store.OpenFrames(SampleJob(job).id);
@@ -34,13 +34,13 @@ class SqliteStoreTest : public testing::Test {
     }
   }
   bool AreFilesOf(int job) {
-    for (const auto& entry : fs::directory_iterator(directory_.path() + "/jobs")) {
+    for (const auto& entry : fs::directory_iterator(directory_ / "jobs")) {
       if (entry.path().filename().string().starts_with(SampleJob(job).id)) return true;
     }
     return false;
   }
 
-  TemporaryDirectory directory_;
+  testing::TemporaryFolder directory_;
   JobRecord existing_;
 };
 
@@ -83,7 +83,7 @@ TEST_F(SqliteStoreTest, IsUsedByOneAtATime) {
 
 TEST_F(SqliteStoreTest, RefusesDataOfANewerVersion) {
   { Open(); }
-  { Database(directory_.path() + "/control.db", Database::Mode::kReadWrite).Execute("PRAGMA user_version = 99"); }
+  { Database(directory_ / "control.db", Database::Mode::kReadWrite).Execute("PRAGMA user_version = 99"); }
   EXPECT_NE(ErrorOf([&] { Open(); }).find("newer version"), std::string::npos);
 }
 
@@ -99,7 +99,7 @@ TEST_F(SqliteStoreTest, JobsOfFormat1AreTakenOver) {
            spec BLOB NOT NULL) STRICT;)"};
   const std::string id = SampleJob(1).id;
   {
-    Database old = OpenFormatted(directory_.path() + "/control.db", 0x46534343, kFormat1);
+    Database old = OpenFormatted(directory_ / "control.db", 0x46534343, kFormat1);
     old.Execute(("INSERT INTO jobs VALUES ('" + id +
                  "', 'r', x'01', 'old', 3, 2, x'', 1, 1, 5, 6, 0, 0.5, 0.25, 8, 9, 10);"
                  "INSERT INTO specs VALUES ('" +
@@ -139,11 +139,10 @@ TEST_F(SqliteStoreTest, RemovesOrphansAndFinishesFilesThatWereJustBegun) {
     Fill(*store, 1, 1, 1000);
     store->CreateJob(SampleJob(2), &existing_);
   }
-  for (const char* suffix : {".db", ".db-wal", ".db-shm"})
-    std::ofstream(directory_.path() + "/jobs/orphan" + suffix) << "x";
+  for (const char* suffix : {".db", ".db-wal", ".db-shm"}) std::ofstream(directory_ / "jobs/orphan" + suffix) << "x";
   std::ofstream(FramesPath(2)).close();  // created, and then the process ended
   const std::unique_ptr<Store> store = Open();
-  EXPECT_EQ(std::distance(fs::directory_iterator(directory_.path() + "/jobs"), fs::directory_iterator()), 2);
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory_ / "jobs"), fs::directory_iterator()), 2);
   EXPECT_EQ(store->OpenFrames(SampleJob(1).id)->frame_count(), 1);
   EXPECT_EQ(store->OpenFrames(SampleJob(2).id)->frame_count(), 0);
 }
@@ -222,9 +221,9 @@ TEST_F(SqliteStoreTest, TheLogStaysSmall) {
 }
 
 TEST(GroupCommitTest, OneThatFailsLeavesTheOthers) {
-  TemporaryDirectory directory;
+  testing::TemporaryFolder directory;
   static constexpr std::array<const char*, 1> kFormats = {"CREATE TABLE numbers (n INTEGER PRIMARY KEY) STRICT"};
-  Database database = OpenFormatted(directory.path() + "/numbers.db", 1, kFormats);
+  Database database = OpenFormatted(directory / "numbers.db", 1, kFormats);
   Statement insert = database.Prepare("INSERT INTO numbers VALUES (?)");
   GroupCommit commit(database);
   constexpr int kThreads = 8, kEach = 30;

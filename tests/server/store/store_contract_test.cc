@@ -8,18 +8,18 @@
 #include <thread>
 
 #include "server/store/store.h"
+#include "tests/support/files.h"
 #include "tests/support/store_samples.h"
-#include "tests/support/temporary_directory.h"
 
 namespace fascicle::server {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 enum class Kind { kMemory, kSqlite };
 
-class StoreContract : public testing::TestWithParam<Kind> {
+class StoreContract : public ::testing::TestWithParam<Kind> {
  protected:
   std::unique_ptr<Store> Make() {
     return GetParam() == Kind::kMemory ? MakeMemoryStore() : OpenSqliteStore(directory_.path());
@@ -34,7 +34,7 @@ class StoreContract : public testing::TestWithParam<Kind> {
     return names;
   }
 
-  TemporaryDirectory directory_;
+  testing::TemporaryFolder directory_;
   std::unique_ptr<Store> store_ = Make();
   JobRecord existing_;
 };
@@ -312,7 +312,7 @@ TEST_P(StoreContract, ReadersGoOnWhileFramesAreWritten) {
   EXPECT_EQ(wrong, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Stores, StoreContract, testing::Values(Kind::kMemory, Kind::kSqlite),
+INSTANTIATE_TEST_SUITE_P(Stores, StoreContract, ::testing::Values(Kind::kMemory, Kind::kSqlite),
                          [](const auto& test) { return test.param == Kind::kMemory ? "Memory" : "Sqlite"; });
 
 }  // namespace

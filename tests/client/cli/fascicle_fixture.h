@@ -1,0 +1,39 @@
+#ifndef FASCICLE_TESTS_CLIENT_CLI_FASCICLE_FIXTURE_H_
+#define FASCICLE_TESTS_CLIENT_CLI_FASCICLE_FIXTURE_H_
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/support/child_process.h"
+#include "tests/support/files.h"
+#include "tests/support/paths.h"
+
+namespace fascicle::testing {
+
+// `fascicle` as its users see it, with a folder for its files.
+class FascicleTest : public ::testing::Test {
+ protected:
+  // Runs it without a display, and without a server but the given one.
+  Finished Fascicle(std::vector<std::string> arguments, const std::string& server = "") {
+    arguments.insert(arguments.begin(), Program("fascicle"));
+    return RunProgram(arguments, {{"FASCICLE_SERVER", server}, {"DISPLAY", ""}, {"TMPDIR", Temporary()}});
+  }
+  std::string File(const std::string& name) const { return folder_ / name; }
+  // Writes a file, and returns its path.
+  std::string File(const std::string& name, const std::string& text) const { return folder_.Write(name, text); }
+  bool HasFile(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+  // Where the program puts temporary files.
+  std::string Temporary() const {
+    std::filesystem::create_directories(folder_.path() / "tmp");
+    return folder_ / "tmp";
+  }
+
+  TemporaryFolder folder_;
+};
+
+}  // namespace fascicle::testing
+
+#endif  // FASCICLE_TESTS_CLIENT_CLI_FASCICLE_FIXTURE_H_

@@ -1,0 +1,34 @@
+#ifndef FASCICLE_TESTS_SUPPORT_FILES_H_
+#define FASCICLE_TESTS_SUPPORT_FILES_H_
+
+#include <filesystem>
+#include <string>
+
+// Files of tests. Thread-safe.
+namespace fascicle::testing {
+
+// An empty folder, removed in the end with all that is in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  // The path of something in the folder.
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+  // Writes a file in the folder, and returns its path.
+  std::string Write(const std::string& name, const std::string& bytes) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+// All bytes of a file; none when it can't be read.
+std::string ReadFile(const std::filesystem::path& path);
+void WriteFile(const std::filesystem::path& path, const std::string& bytes);
+
+}  // namespace fascicle::testing
+
+#endif  // FASCICLE_TESTS_SUPPORT_FILES_H_
