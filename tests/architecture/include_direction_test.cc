@@ -45,6 +45,7 @@ std::vector<Include> ReadIncludes() {
       }
     }
   }
+  EXPECT_GT(includes.size(), 1000u) << "the sources were not found";
   return includes;
 }
 
@@ -70,7 +71,6 @@ std::string LinkedFor(const std::string& header) {
 
 TEST(IncludeDirection, RoomsIncludeWhatTheyLinkAndLinkWhatTheyInclude) {
   const std::vector<Include> includes = ReadIncludes();
-  ASSERT_GT(includes.size(), 200u) << "the sources were not found";
   Arrows included;
   for (const Include& include : includes) {
     const std::string target = LinkedFor(include.target);

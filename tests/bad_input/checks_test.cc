@@ -1,16 +1,15 @@
 // Wrong scene files against what reads them in process: the client's reader, then the server's translation.
 #include <algorithm>
 #include <fstream>
-#include <optional>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "cases.h"
 #include "client/lib/scene_file.h"
-#include "server/translate/translate.h"
 #include "tests/support/files.h"
 #include "tests/support/paths.h"
+#include "tests/support/scene_loader.h"
 
 namespace fascicle {
 namespace {
@@ -18,16 +17,7 @@ namespace {
 // All that is said about a scene file.
 Problems ProblemsOf(const std::filesystem::path& file) {
   Problems problems;
-  const auto package = client::LoadScene(file.string(), problems);
-  if (!package) return problems;
-  EXPECT_TRUE(problems.empty());
-  const auto reader = [&](const std::string& digest) -> std::optional<std::string> {
-    for (const client::AssetFile& asset : package->assets) {
-      if (asset.sha256_hex == digest) return asset.bytes;
-    }
-    return std::nullopt;
-  };
-  EXPECT_EQ(server::TranslateScene(package->scene, reader, problems), nullptr);
+  EXPECT_EQ(testing::ReadScene(file, problems), nullptr);
   return problems;
 }
 

@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "child_run.h"
-#include "isometric_muscle.h"
 #include "ratio.h"
+#include "tests/support/isometric_muscle.h"
 
 namespace fascicle::bench {
 namespace {
+
+using namespace fascicle::testing;
 
 constexpr double kActivation = 0.3;
 // Of FEBio's ten-node elements with straight edges (6 x 6 x 20); its finest hexahedra say 25.338 N.

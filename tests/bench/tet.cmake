@@ -1,9 +1,8 @@
 # Forces and whole steps of the tet method.
-set(tet_rooms core/tet core/scene core/muscle core/geometry core/materials core/linalg core/base)
-fascicle_bench(tet_bench SOURCES tet_bench.cc DEPS ${tet_rooms})
+fascicle_bench(tet_bench SOURCES tet_bench.cc DEPS fascicle_tet_scenes)
 
 # Programs of others are compared with where they are installed (deploy/setup bench).
-fascicle_bench(tet_force_bench SOURCES tet_force_bench.cc DEPS ${tet_rooms})
+fascicle_bench(tet_force_bench SOURCES tet_force_bench.cc DEPS fascicle_tet_scenes)
 pkg_check_modules(BULLET QUIET IMPORTED_TARGET bullet)
 if(BULLET_FOUND)
   target_sources(tet_force_bench PRIVATE bullet_box.cc)
@@ -11,7 +10,7 @@ if(BULLET_FOUND)
   target_link_libraries(tet_force_bench PRIVATE PkgConfig::BULLET)
 endif()
 
-fascicle_bench(tet_tangent_bench SOURCES tet_tangent_bench.cc DEPS ${tet_rooms})
+fascicle_bench(tet_tangent_bench SOURCES tet_tangent_bench.cc DEPS fascicle_tet_scenes)
 find_path(GETFEM_INCLUDE_DIR getfem/getfem_models.h)
 find_library(GETFEM_LIBRARY getfem)
 if(GETFEM_INCLUDE_DIR AND GETFEM_LIBRARY)

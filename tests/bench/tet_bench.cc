@@ -4,29 +4,23 @@
 
 #include <memory>
 
-#include "core/geometry/shapes.h"
 #include "core/tet/solver.h"
+#include "tests/support/tet_box.h"
 
 namespace fascicle {
 namespace {
 
-// 26^3 hexahedra of six tetrahedra, moderately deformed and half activated, with strain damping for the mixed step.
+using namespace fascicle::testing;
+
+// Half activated, with strain damping for the mixed step.
 Scene MuscleBox(Stepping stepping) {
-  Body body;
-  body.name = "box";
-  body.mesh = MakeBox(Vec3::Zero(), Vec3::Constant(0.1), {26, 26, 26});
-  body.material = Muscle(std::array{5e2, 5e2, 1e7, 3e5, 1.2, 0.05, 6.6, 1.4});
-  body.fibres = ConstantFibres(body.mesh, Vec3(1, 0.2, 0.1));
-  body.activation = Curve::Constant(0.5);
-  body.damping.viscosity = stepping == Stepping::kMixed ? 20 : 0;
-  Scene scene;
-  scene.bodies.push_back(std::move(body));
+  Scene scene = TetBox::MakeScene(26, Muscle(kMuscle), VolumeForm::kNodal);
+  scene.bodies[0].damping.viscosity = stepping == Stepping::kMixed ? 20 : 0;
   scene.tet.stepping = stepping;
-  scene.duration = 1000;
-  scene.output.frame_interval = 1000;
   return scene;
 }
 
+// Moderately deformed.
 struct Box {
   Box(int threads, Stepping stepping) : scene(MuscleBox(stepping)), model(scene), team(threads), solver(model, team) {
     state = solver.InitialState();
@@ -43,7 +37,7 @@ struct Box {
   TetSolver solver;
   TetState state;
   ForceWorkspace corners;
-  std::array<double, 1> activation = {0.5};
+  std::array<double, 1> activation = {kActivation};
 };
 
 void CountElements(benchmark::State& state, const Box& box) {

@@ -7,13 +7,18 @@
 #include "core/materials/tensor_algebra.h"
 #include "ratio.h"
 #include "scalar_reference.h"
-#include "tet_box.h"
+#include "tests/support/tet_box.h"
 #ifdef FASCICLE_WITH_BULLET
 #include "bullet_box.h"
 #endif
 
 namespace fascicle::bench {
 namespace {
+
+using namespace fascicle::testing;
+
+// Calls that together take some ten milliseconds.
+int CallsFor(const TetBox& box) { return std::max(1, static_cast<int>(0.3 / box.Megatets())); }
 
 std::string wanted;
 

@@ -4,13 +4,15 @@
 #include <cstdlib>
 #include <string>
 
-#include "isometric_muscle.h"
 #include "plain_newton.h"
 #include "ratio.h"
-#include "tet_box.h"
+#include "tests/support/isometric_muscle.h"
+#include "tests/support/tet_box.h"
 
 namespace fascicle::bench {
 namespace {
+
+using namespace fascicle::testing;
 
 constexpr double kMuscleActivation = 0.3;
 
@@ -31,23 +33,9 @@ double Difference(const NodalVector& a, const NodalVector& b, const NodalVector&
   return difference / largest;
 }
 
-// A neo-Hookean box held at one side that falls under its weight: 55,566 tetrahedra, 30,492 free components, backward
-// Euler, a step of 10 ms to a force of 1e-4.
-Scene FallingBox() {
-  constexpr int kDivisions = 21;
-  Body body = testing::BoxBody(Vec3::Constant(0.1), {kDivisions, kDivisions, kDivisions}, NeoHookean(kNeoHookean));
-  body.constraints = {testing::Fix(testing::kX0)};
-  Scene scene = testing::OneBody(std::move(body));
-  scene.gravity.acceleration = Vec3(0, 0, -9.81);
-  scene.tet.stepping = Stepping::kBackwardEuler;
-  scene.tet.newton_tolerance = 1e-4;
-  scene.tet.time_step = 0.01;
-  return scene;
-}
-
 // CHOLMOD solves for the first Newton step of the very step that core makes, so both are one move of the same body.
 void CompareImplicit(const std::string& row) {
-  const Scene scene = FallingBox();
+  const Scene scene = FallingBox(21);  // 55,566 tetrahedra, 30,492 free components
   const double dt = *scene.tet.time_step;
   const TetModel model(scene);
   ThreadTeam team(1);

@@ -8,13 +8,15 @@
 #include "core_tangent.h"
 #include "ratio.h"
 #include "scalar_reference.h"
-#include "tet_box.h"
+#include "tests/support/tet_box.h"
 #ifdef FASCICLE_WITH_GETFEM
 #include "getfem_box.h"
 #endif
 
 namespace fascicle::bench {
 namespace {
+
+using namespace fascicle::testing;
 
 constexpr std::array<double, 1> kNoActivation = {0};
 

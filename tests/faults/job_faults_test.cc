@@ -9,9 +9,9 @@
 namespace fascicle::server {
 namespace {
 
-using testing::StartsWith;
+using ::testing::StartsWith;
 
-class JobFaultsTest : public testing::Test {
+class JobFaultsTest : public ::testing::Test {
  protected:
   // The next job comes through, whatever has happened to the one before.
   void ExpectGoodService(JobManager& manager) {

@@ -6,11 +6,9 @@
 #include <array>
 #include <chrono>
 #include <cstring>
-#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <type_traits>
 #include <vector>
 
@@ -18,6 +16,7 @@
 #include "core/scene/scene.h"
 #include "core/sim/simulation.h"
 #include "server/jobs/job_manager.h"
+#include "tests/support/eventually.h"
 
 // Jobs small enough for tests, with real simulations behind them: an elastic box, held at one end, under gravity.
 namespace fascicle::server {
@@ -114,14 +113,7 @@ inline JobManagerOptions Workers(int count) {
   return {.workers = count, .default_threads = 1, .checkpoint_interval = std::chrono::milliseconds(0)};
 }
 
-// Waits up to 30 s; false when it does not come true.
-inline bool Eventually(const std::function<bool()>& condition) {
-  for (int i = 0; i < 15'000; ++i) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return condition();
-}
+using testing::Eventually;
 
 inline JobView WaitForEnd(JobManager& manager, const std::string& id) {
   EXPECT_TRUE(Eventually([&] { return IsFinal(manager.Get(id)->record.state); }));

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <grpcpp/grpcpp.h>
@@ -18,6 +17,7 @@
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/embedded_server.h"
+#include "tests/support/eventually.h"
 
 namespace fascicle::service_test {
 
@@ -86,15 +86,7 @@ inline std::string ReasonOf(const grpc::Status& status) {
   return std::to_string(status.error_code()) + " " + info->reason();
 }
 
-// Waits until `condition` holds; false after `timeout`.
-inline bool Eventually(const std::function<bool()>& condition, std::chrono::milliseconds timeout = 20s) {
-  const auto deadline = std::chrono::steady_clock::now() + timeout;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(5ms);
-  }
-  return true;
-}
+using testing::Eventually;
 
 // The stubs of a server, without any help of the client library. Connected when they are there: gRPC 1.51 asks for the
 // errno of connect() after other calls that may have changed it (grpc/grpc pull request 35064), so that one attempt in
@@ -231,7 +223,7 @@ inline v1::StreamFramesRequest AllFramesOf(const std::string& name) {
 }
 
 // A server in this process with its data in memory, and stubs.
-class ServiceTest : public testing::Test {
+class ServiceTest : public ::testing::Test {
  protected:
   virtual server::ServerOptions Options() { return {}; }
 

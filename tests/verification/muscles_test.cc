@@ -3,12 +3,10 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <map>
 
-#include "client/lib/scene_file.h"
-#include "server/translate/translate.h"
 #include "tests/support/files.h"
 #include "tests/support/paths.h"
+#include "tests/support/scene_loader.h"
 #include "tests/support/tet_scenes.h"
 
 namespace fascicle {
@@ -19,19 +17,10 @@ using namespace fascicle::testing;
 // Reads an example scene as a user would, with its data files copied beside it.
 std::shared_ptr<const Scene> LoadExample(const std::string& name, const std::vector<std::filesystem::path>& data) {
   const TemporaryFolder folder;
-  std::filesystem::copy(ProjectRoot() / "client/examples" / name, folder.path() / name);
-  for (const auto& file : data) std::filesystem::copy(file, folder.path() / file.filename());
+  std::filesystem::copy(ProjectRoot() / "client/examples" / name, folder.path());
+  for (const auto& file : data) std::filesystem::copy(file, folder.path());
   Problems problems;
-  const auto package = client::LoadScene((folder.path() / name).string(), problems);
-  EXPECT_TRUE(package.has_value()) << problems.ToString();
-  if (!package) return nullptr;
-  std::map<std::string, std::string> bytes;
-  for (const auto& asset : package->assets) bytes[asset.sha256_hex] = asset.bytes;
-  const auto read = [&](const std::string& digest) -> std::optional<std::string> {
-    const auto found = bytes.find(digest);
-    return found == bytes.end() ? std::nullopt : std::optional(found->second);
-  };
-  auto scene = server::TranslateScene(package->scene, read, problems);
+  auto scene = ReadScene(folder / name, problems);
   EXPECT_TRUE(scene != nullptr) << problems.ToString();
   return scene;
 }

@@ -4,7 +4,7 @@
 
 #include "core/imaging/volume_reader.h"
 #include "tests/support/files.h"
-#include "volume_samples.h"
+#include "tests/support/volume_files.h"
 
 namespace fascicle::testing {
 namespace {

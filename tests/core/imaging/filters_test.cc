@@ -5,7 +5,6 @@
 #include <random>
 
 #include "core/imaging/filters.h"
-#include "volume_samples.h"
 
 namespace fascicle::testing {
 namespace {

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "core/imaging/image_stage.h"
-#include "volume_samples.h"
 
 namespace fascicle::testing {
 namespace {

@@ -9,6 +9,7 @@
 #include "core/imaging/volume_reader.h"
 #include "core/imaging/volume_writer.h"
 #include "tests/support/files.h"
+#include "tests/support/volume_files.h"
 #include "volume_samples.h"
 
 namespace fascicle::testing {

@@ -6,7 +6,6 @@
 #include "core/imaging/image_stage.h"
 #include "core/imaging/volume_reader.h"
 #include "tests/support/paths.h"
-#include "volume_samples.h"
 
 namespace fascicle::testing {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "allocation_count.h"
-#include "tests/support/tet_scenes.h"
+#include "tests/support/tet_box.h"
 
 namespace fascicle {
 namespace {
@@ -76,14 +76,8 @@ std::size_t BytesInUse() {
 // Model, state and all that a step needs, but not the scene: linear elements of a nearly incompressible muscle, stepped
 // explicitly, search for the stable step included.
 TEST(MemoryTest, LessThan400BytesForATetrahedron) {
-  Body body = BoxBody(Vec3(0.1, 0.1, 0.1), {26, 26, 26}, Muscle(std::array{5e2, 5e2, 1e7, 3e5, 1.2, 0.05, 6.6, 1.4}));
-  body.fibres = ConstantFibres(body.mesh, Vec3(1, 0.2, 0.1));
-  body.activation = Curve::Constant(0.5);
-  Scene scene;
-  scene.bodies.push_back(std::move(body));
-  scene.duration = 1;
   for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
-    scene.tet.precision = precision;
+    const Scene scene = TetBox::MakeScene(26, Muscle(kMuscle), VolumeForm::kNodal, precision);
     const std::size_t before = BytesInUse();
     const TetModel model(scene);
     ThreadTeam team(1);

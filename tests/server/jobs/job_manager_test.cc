@@ -16,9 +16,9 @@
 namespace fascicle::server {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-class JobManagerTest : public testing::Test {
+class JobManagerTest : public ::testing::Test {
  protected:
   std::unique_ptr<Store> store_ = MakeMemoryStore();
 };

@@ -1,5 +1,5 @@
-#ifndef FASCICLE_TESTS_BENCH_ISOMETRIC_MUSCLE_H_
-#define FASCICLE_TESTS_BENCH_ISOMETRIC_MUSCLE_H_
+#ifndef FASCICLE_TESTS_SUPPORT_ISOMETRIC_MUSCLE_H_
+#define FASCICLE_TESTS_SUPPORT_ISOMETRIC_MUSCLE_H_
 
 #include <array>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include "tests/support/reference_problems.h"
 #include "tests/support/static_run.h"
 
-// Problem d of the reference problems, a muscle held at both ends, in the sizes that benchmarks run: quadratic elements
+// Problem d of the reference problems, a muscle held at both ends, in the sizes that are measured: quadratic elements
 // with curved edges on n x n x lengthwise hexahedra of six tetrahedra each.
-namespace fascicle::bench {
+namespace fascicle::testing {
 
 struct MuscleGrid {
   int n;
@@ -34,10 +34,9 @@ inline MuscleGrid NearestMuscleGrid(double components) {
 
 // Activation t at time t in [0, 1] s, quasi-static.
 inline Scene IsometricMuscle(const MuscleGrid& grid) {
-  return testing::StaticScene(testing::ReferenceMuscle(grid.n, grid.lengthwise, testing::Ramp(1)),
-                              ElementOrder::kQuadratic);
+  return StaticScene(ReferenceMuscle(grid.n, grid.lengthwise, Ramp(1)), ElementOrder::kQuadratic);
 }
 
-}  // namespace fascicle::bench
+}  // namespace fascicle::testing
 
-#endif  // FASCICLE_TESTS_BENCH_ISOMETRIC_MUSCLE_H_
+#endif  // FASCICLE_TESTS_SUPPORT_ISOMETRIC_MUSCLE_H_

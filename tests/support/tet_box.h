@@ -1,14 +1,14 @@
-#ifndef FASCICLE_TESTS_BENCH_TET_BOX_H_
-#define FASCICLE_TESTS_BENCH_TET_BOX_H_
+#ifndef FASCICLE_TESTS_SUPPORT_TET_BOX_H_
+#define FASCICLE_TESTS_SUPPORT_TET_BOX_H_
 
 #include <array>
-#include <string>
+#include <utility>
 
-#include "core/geometry/shapes.h"
 #include "core/tet/forces.h"
+#include "tests/support/tet_scenes.h"
 
-// The box of linear tetrahedra that rows of several sizes are measured on.
-namespace fascicle::bench {
+// The boxes of linear tetrahedra whose speed and memory are measured, in several sizes.
+namespace fascicle::testing {
 
 struct BoxSize {
   int divisions;
@@ -27,7 +27,8 @@ struct TetBox {
   TetBox(int divisions, const Material& material, VolumeForm volume, Precision precision = Precision::kDouble)
       : scene(MakeScene(divisions, material, volume, precision)) {}
 
-  static Scene MakeScene(int divisions, const Material& material, VolumeForm volume, Precision precision) {
+  static Scene MakeScene(int divisions, const Material& material, VolumeForm volume,
+                         Precision precision = Precision::kDouble) {
     Body body;
     body.name = "box";
     body.mesh = MakeBox(Vec3::Zero(), Vec3::Constant(0.1), {divisions, divisions, divisions});
@@ -57,9 +58,19 @@ struct TetBox {
   const TetModel model{scene};
 };
 
-// Calls that together take some ten milliseconds.
-inline int CallsFor(const TetBox& box) { return std::max(1, static_cast<int>(0.3 / box.Megatets())); }
+// A neo-Hookean box held at one side that falls under its weight, in steps of 10 ms of backward Euler to a force of
+// 1e-4.
+inline Scene FallingBox(int divisions) {
+  Body body = BoxBody(Vec3::Constant(0.1), {divisions, divisions, divisions}, NeoHookean(kNeoHookean));
+  body.constraints = {Fix(kX0)};
+  Scene scene = OneBody(std::move(body));
+  scene.gravity.acceleration = Vec3(0, 0, -9.81);
+  scene.tet.stepping = Stepping::kBackwardEuler;
+  scene.tet.newton_tolerance = 1e-4;
+  scene.tet.time_step = 0.01;
+  return scene;
+}
 
-}  // namespace fascicle::bench
+}  // namespace fascicle::testing
 
-#endif  // FASCICLE_TESTS_BENCH_TET_BOX_H_
+#endif  // FASCICLE_TESTS_SUPPORT_TET_BOX_H_

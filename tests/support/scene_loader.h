@@ -1,0 +1,30 @@
+#ifndef FASCICLE_TESTS_SUPPORT_SCENE_LOADER_H_
+#define FASCICLE_TESTS_SUPPORT_SCENE_LOADER_H_
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "client/lib/scene_file.h"
+#include "server/translate/translate.h"
+
+namespace fascicle::testing {
+
+// A scene file and the files that it names as the core has them, read by the client and translated by the server;
+// nullptr with what is wrong in `problems`.
+inline std::shared_ptr<const Scene> ReadScene(const std::filesystem::path& file, Problems& problems) {
+  const auto package = client::LoadScene(file.string(), problems);
+  if (!package) return nullptr;
+  const auto asset = [&](const std::string& digest) -> std::optional<std::string> {
+    for (const client::AssetFile& asset : package->assets) {
+      if (asset.sha256_hex == digest) return asset.bytes;
+    }
+    return std::nullopt;
+  };
+  return server::TranslateScene(package->scene, asset, problems);
+}
+
+}  // namespace fascicle::testing
+
+#endif  // FASCICLE_TESTS_SUPPORT_SCENE_LOADER_H_
