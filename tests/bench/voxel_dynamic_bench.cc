@@ -1,13 +1,13 @@
 // The paper's dynamic release [Zhu, Chen & Kaufman 1998, 6: 219 voxels, 450 nodes, 22 frames in 0.76 s on a 195 MHz
 // R10000]: time per frame of 1/60 s, for bodies of about as many voxels as theirs.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
 #include "core/voxel/dynamic_solver.h"
 #include "core/voxel/static_solver.h"
 #include "ratio.h"
+#include "tests/support/voxel_scenes.h"
 
 namespace fascicle::bench {
 namespace {
@@ -18,15 +18,8 @@ constexpr int kFrames = 22;
 VoxelGrid Spindle(std::int64_t voxels) {
   for (std::int32_t length = 4;; ++length) {
     const std::int32_t width = length / 3 + 1;
-    VoxelGrid grid = MakeVoxelGrid({width, width, length}, Vec3::Constant(0.2 / length));
-    std::int64_t solid = 0;
-    ForVoxels(grid, [&](std::size_t v, const GridIndex& at) {
-      const double z = 2 * (at[2] + 0.5) / length - 1, radius = length * (0.05 + 0.1 * (1 - z * z));
-      if (std::hypot(at[0] + 0.5 - width / 2.0, at[1] + 0.5 - width / 2.0) > radius) return;
-      grid.material[v] = 1;
-      ++solid;
-    });
-    if (solid >= voxels) return grid;
+    const VoxelGrid grid = testing::SpindleGrid({width, width, length}, 0.2 / length, 0.05 * length, 0.15 * length);
+    if (std::count(grid.material.begin(), grid.material.end(), 1) >= voxels) return grid;
   }
 }
 

@@ -1,6 +1,7 @@
 #ifndef FASCICLE_TESTS_SUPPORT_VOXEL_SCENES_H_
 #define FASCICLE_TESTS_SUPPORT_VOXEL_SCENES_H_
 
+#include <cmath>
 #include <cstdint>
 
 #include "core/geometry/voxel_grid.h"
@@ -25,6 +26,17 @@ inline VoxelGrid SpongeGrid(const GridIndex& size, const Vec3& spacing) {
     grid.material[v] = chance < -0.4 ? 0 : chance < 0.4 ? 1 : 2;
     grid.stiffness[v] = static_cast<float>(1 + HashedUnit(v + 1'000'000));
   }
+  return grid;
+}
+
+// A spindle along z from one end of the grid to the other, its radii in voxels.
+inline VoxelGrid SpindleGrid(const GridIndex& size, double spacing, double end_radius, double belly_radius) {
+  VoxelGrid grid = MakeVoxelGrid(size, Vec3::Constant(spacing));
+  ForVoxels(grid, [&](std::size_t v, const GridIndex& at) {
+    const double z = 2 * (at[2] + 0.5) / size[2] - 1, radius = end_radius + (belly_radius - end_radius) * (1 - z * z);
+    const double x = at[0] + 0.5 - 0.5 * size[0], y = at[1] + 0.5 - 0.5 * size[1];
+    grid.material[v] = std::hypot(x, y) <= radius ? 1 : 0;
+  });
   return grid;
 }
 

@@ -160,12 +160,7 @@ std::vector<int> IterationsOfLevels(const VoxelGrid& grid, double nu) {
 
 // A spindle as long and thick as the biceps.
 TEST(Multigrid, IterationsDoNotGrowWithTheLevelsOfASpindle) {
-  VoxelGrid grid = MakeVoxelGrid({60, 60, 320}, Vec3::Constant(1e-3));
-  ForVoxels(grid, [&](std::size_t v, const GridIndex& at) {
-    const double z = (at[2] + 0.5 - 160) / 160, radius = 10 + 20 * (1 - z * z);
-    grid.material[v] = std::hypot(at[0] + 0.5 - 30, at[1] + 0.5 - 30) < radius ? 1 : 0;
-  });
-  const std::vector<int> iterations = IterationsOfLevels(grid, 0.45);
+  const std::vector<int> iterations = IterationsOfLevels(testing::SpindleGrid({60, 60, 320}, 1e-3, 10, 30), 0.45);
   ASSERT_GE(iterations.size(), 4u);
   EXPECT_LE(iterations.front(), iterations.back() + 3);
   EXPECT_LE(*std::max_element(iterations.begin(), iterations.end()), 15);
