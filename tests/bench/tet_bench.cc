@@ -14,9 +14,9 @@ namespace {
 Scene MuscleBox(Stepping stepping) {
   Body body;
   body.name = "box";
-  body.mesh = MakeBox(Vec3::Zero(), Vec3::Constant(0.1), {26, 26, 26});
+  body.tet().mesh = MakeBox(Vec3::Zero(), Vec3::Constant(0.1), {26, 26, 26});
   body.material = Muscle(std::array{5e2, 5e2, 1e7, 3e5, 1.2, 0.05, 6.6, 1.4});
-  body.fibres = ConstantFibres(body.mesh, Vec3(1, 0.2, 0.1));
+  body.tet().fibres = ConstantFibres(body.tet().mesh, Vec3(1, 0.2, 0.1));
   body.activation = Curve::Constant(0.5);
   body.damping.viscosity = stepping == Stepping::kMixed ? 20 : 0;
   Scene scene;

@@ -20,7 +20,7 @@ Scene BusyScene(Stepping stepping) {
   Scene scene;
   for (const Material& material : EveryLaw()) {
     Body body = BoxBody(Vec3(0.02, 0.02, 0.02), {6, 6, 6}, material);
-    body.fibres = ConstantFibres(body.mesh, Vec3(1, 0.3, 0.2));
+    body.tet().fibres = ConstantFibres(body.tet().mesh, Vec3(1, 0.3, 0.2));
     body.activation = Curve{{0, 0.02}, {0, 1}, Curve::Interpolation::kSmooth};
     Constraint moved = Fix(kX1);
     moved.motion.translation[0] = Curve{{0, 0.02}, {0, 1e-3}, Curve::Interpolation::kSmooth};
@@ -77,7 +77,7 @@ std::size_t BytesInUse() {
 // explicitly, search for the stable step included.
 TEST(MemoryTest, LessThan400BytesForATetrahedron) {
   Body body = BoxBody(Vec3(0.1, 0.1, 0.1), {26, 26, 26}, Muscle(std::array{5e2, 5e2, 1e7, 3e5, 1.2, 0.05, 6.6, 1.4}));
-  body.fibres = ConstantFibres(body.mesh, Vec3(1, 0.2, 0.1));
+  body.tet().fibres = ConstantFibres(body.tet().mesh, Vec3(1, 0.2, 0.1));
   body.activation = Curve::Constant(0.5);
   Scene scene;
   scene.bodies.push_back(std::move(body));
