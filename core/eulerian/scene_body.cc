@@ -40,7 +40,7 @@ Material BesidePressure(const Material& material) {
 
 // What a support holds: its region, and half a cell around it.
 RegionPoints SupportPoints(const Body& body, const Constraint& constraint, double cell_size) {
-  return {body.regions[constraint.region], body.surface.nodes, 0.5 * cell_size};
+  return {body.regions[constraint.region], body.nodes(), 0.5 * cell_size};
 }
 
 void SetSupports(const Body& source, double cell_size, EulerianBody& body) {
@@ -70,7 +70,7 @@ void AddLoad(const Body& source, const Load& load, std::vector<Vec3>& forces) {
       forces[node] += force->total / static_cast<double>(region.nodes.size());
     return;
   }
-  const std::vector<Vec3>& X = source.surface.nodes;
+  const std::vector<Vec3>& X = source.nodes();
   for (const Triangle& t : region.triangles) {
     const double area = 0.5 * (X[t[1]] - X[t[0]]).cross(X[t[2]] - X[t[0]]).norm();
     for (const std::int32_t node : t) forces[node] += area / 3 * std::get<Traction>(load.kind).vector;
@@ -81,7 +81,7 @@ void SetLoads(const Body& source, EulerianBody& body) {
   if (source.loads.empty()) return;
   std::vector<std::vector<Vec3>> of_loads;
   for (const Load& load : source.loads) {
-    of_loads.emplace_back(source.surface.nodes.size(), Vec3::Zero());
+    of_loads.emplace_back(source.nodes().size(), Vec3::Zero());
     AddLoad(source, load, of_loads.back());
   }
   body.vertex_forces = [of_loads, &source](double time, std::vector<Vec3>& forces) {
@@ -106,9 +106,10 @@ void SetSqueezes(const Scene& scene, EulerianBody& body) {
 }
 
 void SetFibres(const Body& source, EulerianBody& body) {
-  if (source.fibres.empty()) return;
+  const SurfaceShape& shape = source.surface();
+  if (shape.fibres.empty()) return;
   const auto samples =
-      std::make_shared<const FibreSamples>(source.mesh, source.fibres, body.shape.MaterialGrid(body.grid.spacing / 2));
+      std::make_shared<const FibreSamples>(shape.filling, shape.fibres, body.shape.MaterialGrid(body.grid.spacing / 2));
   body.fibre = [samples, &source](const Vec3& X, double time) {
     return FibreState{samples->At(X), source.activation.At(time)};
   };
@@ -126,7 +127,7 @@ bool HoldsNode(const EulerianGrid& grid, const RegionPoints& points, const Trian
 // Regions are volumes of the body here: a support needs no vertex of the surface.
 void CheckSupports(const EulerianGrid& grid, const Body& body, const std::string& path, Problems& problems) {
   if (body.constraints.empty()) return;
-  const TriangleTree tree(body.surface);
+  const TriangleTree tree(body.surface().mesh);
   for (std::size_t k = 0; k < body.constraints.size(); ++k) {
     const std::int32_t region = body.constraints[k].region;
     if (region < 0 || region >= static_cast<std::int32_t>(body.regions.size())) continue;
@@ -164,8 +165,9 @@ EulerianGrid GridOf(const EulerianMethod& method, const TriangleMesh& surface) {
 
 EulerianBody MakeEulerianBody(const Scene& scene, const Body& source, ThreadTeam& team) {
   const EulerianMethod& method = scene.eulerian;
+  const SurfaceShape& shape = source.surface();
   const bool preserved = method.volume == VolumeTreatment::kPreserved;
-  EulerianBody body{GridOf(method, source.surface), SolidShape(source.surface, method.cell_size / 2, team),
+  EulerianBody body{GridOf(method, shape.mesh), SolidShape(shape.mesh, method.cell_size / 2, team),
                     preserved ? BesidePressure(source.material) : source.material};
   body.density = source.density;
   body.mass_damping = source.damping.mass_proportional;
@@ -173,7 +175,7 @@ EulerianBody MakeEulerianBody(const Scene& scene, const Body& source, ThreadTeam
   body.gravity_scale = scene.gravity.scale;
   body.volume = method.volume;
   body.stabilization = method.stabilization;
-  body.plasticity = source.plasticity;
+  body.plasticity = shape.plasticity;
   body.implicit_elasticity = method.implicit_elasticity;
   body.maccormack = method.maccormack;
   body.time_step = method.time_step;
@@ -189,7 +191,7 @@ void CheckEulerianBodies(const Scene& scene, std::span<const std::string> source
   const EulerianMethod& method = scene.eulerian;
   double cells = 0;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const TriangleMesh& surface = scene.bodies[i].surface;
+    const TriangleMesh& surface = scene.bodies[i].surface().mesh;
     if (surface.nodes.empty()) continue;
     Problems own;
     CheckSolidSurface(surface, method.cell_size, own);
@@ -205,8 +207,8 @@ void CheckEulerianBodies(const Scene& scene, std::span<const std::string> source
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
-    if (body.surface.nodes.empty()) continue;
-    CheckSupports(GridOf(method, body.surface), body, IndexPath("bodies", i), problems);
+    if (body.nodes().empty()) continue;
+    CheckSupports(GridOf(method, body.surface().mesh), body, IndexPath("bodies", i), problems);
   }
 }
 

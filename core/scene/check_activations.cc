@@ -1,15 +1,24 @@
 #include <algorithm>
 
+#include "core/scene/check_parts.h"
 #include "core/scene/checks.h"
 
 namespace fascicle::scene_checks {
 namespace {
 
-void CheckScale(const Body& body, const std::string& path, Problems& problems) {
-  const std::vector<double>& scale = body.activation_scale;
+// Both interpolations stay between the values of neighbouring points.
+void CheckRange(const Curve& curve, const std::string& path, Problems& problems) {
+  if (std::none_of(curve.values.begin(), curve.values.end(), [](double value) { return value < 0 || value > 1; })) {
+    return;
+  }
+  problems.Add(JoinPath(path, "values"), "activation must stay within [0, 1]",
+               "it is a fraction of the full activation, not a percentage");
+}
+
+void CheckScale(const std::vector<double>& scale, std::size_t elements, const std::string& path, Problems& problems) {
   if (scale.empty()) return;
-  if (scale.size() != body.elements()) {
-    problems.Add(path, std::to_string(scale.size()) + " values for " + std::to_string(body.elements()) + " elements");
+  if (scale.size() != elements) {
+    problems.Add(path, std::to_string(scale.size()) + " values for " + std::to_string(elements) + " elements");
   }
   const auto wrong = std::find_if(scale.begin(), scale.end(), [](double s) { return !(s >= 0 && s <= 1); });
   if (wrong != scale.end()) {
@@ -18,15 +27,24 @@ void CheckScale(const Body& body, const std::string& path, Problems& problems) {
   }
 }
 
+void CheckTetrahedra(const TetShape& shape, const std::string& path, Problems& problems) {
+  const std::size_t elements = shape.mesh.tetrahedra.size();
+  const std::string of_regions = JoinPath(path, "region_activations");
+  CheckParts(shape.activations, elements, of_regions, problems);
+  for (std::size_t k = 0; k < shape.activations.more.size(); ++k) {
+    CheckRange(shape.activations.more[k], IndexPath(of_regions, k), problems);
+  }
+  CheckScale(shape.activation_scale, elements, JoinPath(path, "activation_scale"), problems);
+}
+
 }  // namespace
 
 void CheckActivations(const Scene& scene, Problems& problems) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     const std::string path = IndexPath("bodies", i);
-    CheckPartNumbers(body.activation_of, body.elements(), body.more_activations.size(),
-                     JoinPath(path, "region_activations"), problems);
-    CheckScale(body, JoinPath(path, "activation_scale"), problems);
+    CheckRange(body.activation, JoinPath(path, "activation"), problems);
+    if (const auto* tet = std::get_if<TetShape>(&body.shape)) CheckTetrahedra(*tet, path, problems);
   }
 }
 

@@ -6,15 +6,22 @@ namespace fascicle::scene_checks {
 namespace {
 
 // What the method needs and the body has not; null: nothing.
-const char* Lacking(Method method, const Body& body) {
+const char* Lacking(Method method, const Shape& shape) {
   switch (method) {
-    case Method::kVoxel:
-      return body.bricks.bricks.empty() ? "there are no voxels" : nullptr;
-    case Method::kEulerian:
-      return body.surface.triangles.empty() ? "there is no surface" : nullptr;
-    default:
-      return body.mesh.tetrahedra.empty() ? "the mesh has no tetrahedra" : nullptr;
+    case Method::kTet: {
+      const auto* tet = std::get_if<TetShape>(&shape);
+      return tet == nullptr || tet->mesh.tetrahedra.empty() ? "the mesh has no tetrahedra" : nullptr;
+    }
+    case Method::kVoxel: {
+      const auto* bricks = std::get_if<VoxelShape>(&shape);
+      return bricks == nullptr || bricks->mesh.bricks.empty() ? "there are no voxels" : nullptr;
+    }
+    case Method::kEulerian: {
+      const auto* surface = std::get_if<SurfaceShape>(&shape);
+      return surface == nullptr || surface->mesh.triangles.empty() ? "there is no surface" : nullptr;
+    }
   }
+  return nullptr;
 }
 
 }  // namespace
@@ -25,7 +32,7 @@ void CheckBodies(const Scene& scene, Problems& problems) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     const std::string path = IndexPath("bodies", i);
-    if (const char* lacking = Lacking(scene.method, body)) problems.Add(JoinPath(path, "mesh"), lacking);
+    if (const char* lacking = Lacking(scene.method, body.shape)) problems.Add(JoinPath(path, "mesh"), lacking);
     if (!(body.density > 0))
       problems.Add(JoinPath(path, "density"), "a body needs mass", "give a density above 0 kg/m^3");
     if (!names.insert(body.name).second) {

@@ -25,8 +25,9 @@ bool Agree(const Constraint& a, const Constraint& b, int axis) {
          SameRotation(a.motion.rotation, b.motion.rotation);
 }
 
-//   volumes  whether regions are volumes of the body, which may have no nodes of its own
-void CheckBody(const Body& body, bool volumes, const std::string& path, Problems& problems) {
+void CheckBody(const Body& body, const std::string& path, Problems& problems) {
+  // Regions of a surface are volumes of the body, which may have none of its nodes.
+  const bool volumes = std::holds_alternative<SurfaceShape>(body.shape);
   std::map<std::pair<std::int32_t, int>, std::size_t> holder;  // the first constraint on a node and axis
   for (std::size_t k = 0; k < body.constraints.size(); ++k) {
     const Constraint& constraint = body.constraints[k];
@@ -59,7 +60,7 @@ void CheckBody(const Body& body, bool volumes, const std::string& path, Problems
 
 void CheckConstraints(const Scene& scene, Problems& problems) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    CheckBody(scene.bodies[i], scene.method == Method::kEulerian, IndexPath("bodies", i), problems);
+    CheckBody(scene.bodies[i], IndexPath("bodies", i), problems);
   }
 }
 

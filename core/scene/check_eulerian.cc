@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "core/scene/checks.h"
 
@@ -10,18 +11,22 @@ bool DependsOnSpeed(const Material& material) {
   return muscle != nullptr && muscle->DependsOnRate();
 }
 
-void CheckParts(const Body& body, const std::string& path, Problems& problems) {
-  if (!body.more_materials.empty()) {
-    problems.Add(JoinPath(path, "region_materials"), "a body of the eulerian method has one material",
-                 "leave out region_materials and element_parameters, or use the tet method");
+void CheckPlasticity(const Plasticity& plasticity, const std::string& path, Problems& problems) {
+  if (!(plasticity.yield_stress > 0)) {
+    problems.Add(JoinPath(path, "yield_stress"), "must be above 0 Pa", "leave plasticity out of an elastic body");
   }
-  if (!body.more_activations.empty() || !body.activation_scale.empty()) {
-    problems.Add(JoinPath(path, "region_activations"), "a body of the eulerian method has one activation",
-                 "leave out region_activations and activation_scale, or use the tet method");
+  if (!(plasticity.relaxation_time >= 0 && std::isfinite(plasticity.relaxation_time))) {
+    problems.Add(JoinPath(path, "relaxation_time"), "must be a finite time of at least 0 s");
   }
-  if (!body.initial_displacement.empty()) {
-    problems.Add(JoinPath(path, "initial_displacement"), "bodies of the eulerian method start from rest",
-                 "leave it out, or use the tet method");
+}
+
+void CheckSqueeze(const Squeeze& squeeze, const std::string& path, Problems& problems) {
+  if (!(std::abs(squeeze.normal.norm() - 1) < 1e-9) || !squeeze.point.allFinite()) {
+    problems.Add(path, "has no finite point and unit normal");
+  }
+  if (!std::isfinite(squeeze.force_density)) problems.Add(JoinPath(path, "force_density"), "must be finite");
+  if (!(squeeze.width >= 0 && std::isfinite(squeeze.width))) {
+    problems.Add(JoinPath(path, "width"), "must be a finite length of at least 0 m");
   }
 }
 
@@ -37,7 +42,9 @@ void CheckPlace(const Body& body, std::int32_t region, const std::string& path, 
 }
 
 void CheckBody(const Body& body, const std::string& path, Problems& problems) {
-  CheckParts(body, path, problems);
+  if (const std::optional<Plasticity>& plasticity = body.surface().plasticity) {
+    CheckPlasticity(*plasticity, JoinPath(path, "plasticity"), problems);
+  }
   if (body.damping.stiffness_proportional != 0 || body.damping.viscosity != 0) {
     problems.Add(JoinPath(path, "damping"), "the eulerian method damps in proportion to mass only",
                  "give mass_proportional alone");
@@ -63,21 +70,20 @@ void CheckBody(const Body& body, const std::string& path, Problems& problems) {
 }  // namespace
 
 void CheckEulerian(const Scene& scene, Problems& problems) {
-  const bool eulerian = scene.method == Method::kEulerian;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const std::string path = IndexPath("bodies", i);
-    if (eulerian) {
-      CheckBody(scene.bodies[i], path, problems);
-    } else if (scene.bodies[i].plasticity) {
-      problems.Add(JoinPath(path, "plasticity"), "only the eulerian method knows plastic flow",
-                   "leave it out, or use the eulerian method");
-    }
+  if (scene.method != Method::kEulerian) {
+    if (scene.squeezes.empty()) return;
+    problems.Add("squeezes", "only the eulerian method knows them", "put loads on regions, or use the eulerian method");
+    return;
   }
-  if (eulerian && !scene.floors.empty()) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (!std::holds_alternative<SurfaceShape>(scene.bodies[i].shape)) continue;
+    CheckBody(scene.bodies[i], IndexPath("bodies", i), problems);
+  }
+  if (!scene.floors.empty()) {
     problems.Add("floors", "the eulerian method does not know floors yet", "leave them out, or use the tet method");
   }
-  if (!eulerian && !scene.squeezes.empty()) {
-    problems.Add("squeezes", "only the eulerian method knows them", "put loads on regions, or use the eulerian method");
+  for (std::size_t k = 0; k < scene.squeezes.size(); ++k) {
+    CheckSqueeze(scene.squeezes[k], IndexPath("squeezes", k), problems);
   }
 }
 

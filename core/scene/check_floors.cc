@@ -9,10 +9,11 @@ namespace {
 
 // How deep the body's rest shape, moved by its initial displacement, is in a floor [m]; negative above it.
 double DepthOf(const Body& body, const Floor& floor) {
+  const auto* tet = std::get_if<TetShape>(&body.shape);
   double deepest = -INFINITY;
   for (std::size_t n = 0; n < body.nodes().size(); ++n) {
     Vec3 x = body.nodes()[n];
-    if (n < body.initial_displacement.size()) x += body.initial_displacement[n];
+    if (tet != nullptr && n < tet->initial_displacement.size()) x += tet->initial_displacement[n];
     deepest = std::max(deepest, (floor.point - x).dot(floor.normal));
   }
   return deepest;

@@ -1,29 +1,25 @@
-#include <algorithm>
-
+#include "core/scene/check_parts.h"
 #include "core/scene/checks.h"
 
 namespace fascicle::scene_checks {
+namespace {
 
-void CheckPartNumbers(const std::vector<std::int32_t>& parts, std::size_t elements, std::size_t others,
-                      const std::string& path, Problems& problems) {
-  if (parts.empty()) return;
-  if (parts.size() != elements) {
-    problems.Add(path, std::to_string(parts.size()) + " entries for " + std::to_string(elements) + " elements");
-  }
-  const auto wrong = std::find_if(parts.begin(), parts.end(), [&](std::int32_t part) {
-    return part < 0 || static_cast<std::size_t>(part) > others;
-  });
-  if (wrong != parts.end()) {
-    problems.Add(path, "element " + std::to_string(wrong - parts.begin()) + " asks for number " +
-                           std::to_string(*wrong) + " of " + std::to_string(others));
-  }
+void CheckShape(const TetShape& shape, const std::string& path, Problems& problems) {
+  CheckParts(shape.materials, shape.mesh.tetrahedra.size(), path, problems);
 }
+
+void CheckShape(const VoxelShape& shape, const std::string& path, Problems& problems) {
+  CheckParts(shape.materials, shape.mesh.bricks.size(), path, problems);
+}
+
+void CheckShape(const SurfaceShape&, const std::string&, Problems&) {}
+
+}  // namespace
 
 void CheckMaterials(const Scene& scene, Problems& problems) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const Body& body = scene.bodies[i];
-    CheckPartNumbers(body.material_of, body.elements(), body.more_materials.size(),
-                     JoinPath(IndexPath("bodies", i), "region_materials"), problems);
+    const std::string path = JoinPath(IndexPath("bodies", i), "region_materials");
+    std::visit([&](const auto& shape) { CheckShape(shape, path, problems); }, scene.bodies[i].shape);
   }
 }
 

@@ -12,8 +12,8 @@ void CheckScene(const Scene& scene, Problems& problems) {
   scene_checks::CheckConstraints(scene, problems);
   scene_checks::CheckLoads(scene, problems);
   scene_checks::CheckFloors(scene, problems);
-  scene_checks::CheckMethod(scene, problems);
-  scene_checks::CheckVoxels(scene, problems);
+  scene_checks::CheckTet(scene, problems);
+  scene_checks::CheckVoxel(scene, problems);
   scene_checks::CheckEulerian(scene, problems);
   scene_checks::CheckOutput(scene, problems);
   // Sums up loads over curves, so only where those are sound.

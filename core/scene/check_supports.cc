@@ -20,11 +20,11 @@ Vec3 Resultant(const Body& body, const Load& load) {
   return area * std::get<Traction>(load.kind).vector;
 }
 
-double VolumeOf(const Body& body) {
-  if (!body.surface.triangles.empty()) return EnclosedVolume(body.surface);
-  const VoxelGrid& grid = body.bricks.grid;
-  return TotalVolume(body.mesh) + static_cast<double>(body.bricks.bricks.size()) * grid.spacing.prod();
+double VolumeOf(const TetShape& shape) { return TotalVolume(shape.mesh); }
+double VolumeOf(const VoxelShape& shape) {
+  return static_cast<double>(shape.mesh.bricks.size()) * shape.mesh.grid.spacing.prod();
 }
+double VolumeOf(const SurfaceShape& shape) { return EnclosedVolume(shape.mesh); }
 
 // Whether the scene asks for places where nothing moves.
 bool IsStatic(const Scene& scene) {
@@ -73,7 +73,7 @@ void CheckSupports(const Scene& scene, Problems& problems) {
     const std::array<bool, 3> held = HeldAxes(body);
     std::vector<Vec3> resultants;
     for (const Load& load : body.loads) resultants.push_back(Resultant(body, load));
-    const double mass = body.density * VolumeOf(body);
+    const double mass = body.density * std::visit([](const auto& shape) { return VolumeOf(shape); }, body.shape);
     for (int axis = 0; axis < 3; ++axis) {
       if (!held[axis] && IsStatic(scene)) {
         problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),

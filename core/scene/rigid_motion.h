@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/scene/scene.h"
+#include "core/scene/acting.h"
 
 namespace fascicle {
 

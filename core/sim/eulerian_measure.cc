@@ -158,7 +158,7 @@ std::vector<double> MeasureEulerianSeries(const Scene& scene, const std::vector<
   std::vector<double> values = {elastic, kinetic, time_step, static_cast<double>(iterations)};
   values.insert(values.end(), of_bodies.begin(), of_bodies.end());
   for (const Probe& probe : scene.output.probes) {
-    const std::vector<Vec3>& rest = scene.bodies[probe.body].surface.nodes;
+    const std::vector<Vec3>& rest = scene.bodies[probe.body].nodes();
     const Vec3 u = states[probe.body].surface[probe.node] - rest[probe.node];
     values.insert(values.end(), u.begin(), u.end());
   }

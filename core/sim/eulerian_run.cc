@@ -44,16 +44,6 @@ class EulerianRun : public MethodRun {
     return {};
   }
 
-  double curves_end() const override {
-    double end = scene_.gravity.scale.end();
-    for (const Squeeze& squeeze : scene_.squeezes) end = std::max(end, squeeze.scale.end());
-    for (const Body& body : scene_.bodies) {
-      end = std::max(end, body.activation.end());
-      for (const fascicle::Load& load : body.loads) end = std::max(end, load.scale.end());
-      for (const Constraint& constraint : body.constraints) end = std::max(end, EndOf(constraint.motion));
-    }
-    return end;
-  }
   double LargestSpeed() const override {
     double largest = 0;
     for (std::size_t b = 0; b < states_.size(); ++b) {
@@ -90,14 +80,6 @@ class EulerianRun : public MethodRun {
   }
 
  private:
-  static double EndOf(const Motion& motion) {
-    double end = motion.rotation ? motion.rotation->angle.end() : 0;
-    for (const auto& translation : motion.translation) {
-      if (translation) end = std::max(end, translation->end());
-    }
-    return end;
-  }
-
   // The body that is behind all others.
   std::size_t Last() const {
     std::size_t last = 0;

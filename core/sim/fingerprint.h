@@ -6,8 +6,8 @@
 
 namespace fascicle {
 
-// SHA-256 over everything in a scene that a simulation depends on: a checkpoint fits this scene only. Laws don't give
-// their parameters away, so a material is known by its stress in a set of deformations.
+// SHA-256 over every field of a scene: a checkpoint fits this scene only. Two scenes with the same fields, in the same
+// build, have the same fingerprint.
 Digest FingerprintOf(const Scene& scene);
 
 }  // namespace fascicle

@@ -12,9 +12,10 @@ std::unique_ptr<MethodRun> MakeMethodRun(const Scene& scene, ThreadTeam& team, P
       return MakeEulerianRun(scene, team, profile);
     case Method::kVoxel:
       return MakeVoxelRun(scene, team, profile);
-    default:
+    case Method::kTet:
       return MakeTetRun(scene, team, profile);
   }
+  return nullptr;
 }
 
 }  // namespace fascicle

@@ -44,8 +44,6 @@ class MethodRun {
   // Makes one step towards `end` [s], which it never passes and hits exactly. On a problem the state stays as it is.
   virtual StepOutcome Advance(double end, std::stop_token stop) = 0;
 
-  // The time after which no curve changes any more [s].
-  virtual double curves_end() const = 0;
   // Largest speed of a node [m/s].
   virtual double LargestSpeed() const = 0;
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/archive.h"
+#include "core/scene/curves.h"
 #include "core/sim/fingerprint.h"
 #include "core/sim/method_run.h"
 
@@ -92,7 +93,7 @@ struct Simulation::Impl {
 
   bool IsSettled() const {
     const RunClock clock = method->clock();
-    return scene->output.settle_speed && clock.step > 0 && clock.time >= method->curves_end() &&
+    return scene->output.settle_speed && clock.step > 0 && clock.time >= curves_end &&
            method->LargestSpeed() <= *scene->output.settle_speed;
   }
 
@@ -178,6 +179,7 @@ struct Simulation::Impl {
   std::unique_ptr<MethodRun> method;
   std::vector<SeriesInfo> series;
   Digest fingerprint = FingerprintOf(*scene);
+  const double curves_end = CurvesEnd(*scene);
   std::int64_t last_frame = 0;
 
   std::int64_t next_frame = 0;

@@ -24,7 +24,6 @@ class TetRun : public MethodRun {
     return {report.problem, std::move(report.bad)};
   }
 
-  double curves_end() const override { return model_.curves_end(); }
   double LargestSpeed() const override { return fascicle::LargestSpeed(state_.velocities); }
 
   std::vector<BodyFrame> MeasureBodies() const override { return fascicle::MeasureBodies(model_, state_, team_); }

@@ -86,7 +86,7 @@ std::vector<double> FieldValuesOf(const VoxelSceneBody& body, const VoxelState& 
 }
 
 Vec3 PositionOf(const VoxelSceneBody& body, const VoxelField<double>& u, std::size_t node) {
-  return body.source().bricks.nodes[node] + body.ToWorld(u.At(static_cast<std::int32_t>(node)));
+  return body.source().nodes()[node] + body.ToWorld(u.At(static_cast<std::int32_t>(node)));
 }
 
 }  // namespace
@@ -137,7 +137,7 @@ std::vector<BodyFrame> MeasureVoxelBodies(const Scene& scene, const VoxelSolver&
   std::vector<BodyFrame> frames(scene.bodies.size());
   for (std::size_t b = 0; b < frames.size(); ++b) {
     const VoxelSceneBody& body = *solver.bodies()[b];
-    const std::size_t nodes = scene.bodies[b].bricks.nodes.size();
+    const std::size_t nodes = scene.bodies[b].nodes().size();
     frames[b].positions.reserve(nodes);
     for (std::size_t n = 0; n < nodes; ++n) {
       frames[b].positions.push_back(PositionOf(body, state.bodies[b].displacement, n));

@@ -25,11 +25,6 @@ class VoxelMethodRun : public MethodRun {
     return OutcomeOf(solver_.Advance(state_, end, std::move(stop)));
   }
 
-  double curves_end() const override {
-    double end = 0;
-    for (const auto& body : solver_.bodies()) end = std::max(end, body->curves_end());
-    return end;
-  }
   double LargestSpeed() const override {
     double largest = 0;
     for (const VoxelState& body : state_.bodies) {

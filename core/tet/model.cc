@@ -25,9 +25,16 @@ void Invert(std::span<const std::int32_t> targets, std::size_t count, std::vecto
   }
 }
 
+// 0 for that of the whole body, k for the k-th of the others.
+template <class Value>
+std::int32_t PartOf(const Parts<Value>& parts, std::size_t tet) {
+  return parts.of.empty() ? 0 : parts.of[tet];
+}
+
 const Material& MaterialOf(const Body& body, std::size_t tet) {
-  const std::int32_t k = body.material_of.empty() ? 0 : body.material_of[tet];
-  return k == 0 ? body.material : body.more_materials[k - 1];
+  const Parts<Material>& materials = body.tet().materials;
+  const std::int32_t k = PartOf(materials, tet);
+  return k == 0 ? body.material : materials.more[k - 1];
 }
 
 // What is left to an element of its volume modulus when the rest acts on patches. All of it up to a Poisson's ratio of
@@ -91,7 +98,6 @@ TetModel::TetModel(const Scene& scene) : scene_(&scene) {
   shrink(patches_.of_element, patches_.rest_volume, patches_.modulus, patches_.row, patches_.neighbour,
          patches_.weight);
   shrink(chunks_.chunks, chunks_.nodes, chunks_.local, chunks_.slot, chunks_.patch);
-  FindCurvesEnd();
 }
 
 void TetModel::AddBody(const Body& body) {
@@ -111,7 +117,7 @@ void TetModel::AddBody(const Body& body) {
 
   entry.activation = activations_.size();
   activations_.push_back(&body.activation);
-  for (const Curve& curve : body.more_activations) activations_.push_back(&curve);
+  for (const Curve& curve : body.tet().activations.more) activations_.push_back(&curve);
 
   AddNodes(body, entry);
   AddElements(body, entry);
@@ -121,12 +127,13 @@ void TetModel::AddBody(const Body& body) {
 // The nodes of the mesh, and for quadratic elements one in the middle of every edge, in the order in which elements
 // first name them.
 void TetModel::AddNodes(const Body& body, TetBody& entry) {
+  const TetMesh& mesh = body.tet().mesh;
   entry.node_begin = nodes();
-  rest_positions_.insert(rest_positions_.end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
+  rest_positions_.insert(rest_positions_.end(), mesh.nodes.begin(), mesh.nodes.end());
   entry.mesh_node_end = entry.node_end = nodes();
   if (order() == ElementOrder::kQuadratic) {
     const auto first = static_cast<std::int32_t>(entry.node_begin);
-    for (const Tetrahedron& tet : body.mesh.tetrahedra) {
+    for (const Tetrahedron& tet : mesh.tetrahedra) {
       std::array<std::int32_t, 6>& edges = edge_nodes_.emplace_back();
       for (int k = 0; k < 6; ++k) {
         const std::int32_t i = first + tet[kTetEdges[k][0]], j = first + tet[kTetEdges[k][1]];
@@ -136,7 +143,7 @@ void TetModel::AddNodes(const Body& body, TetBody& entry) {
         edges[k] = place->second;
       }
     }
-    for (const CurvedEdge& edge : body.mesh.curved_edges) {
+    for (const CurvedEdge& edge : mesh.curved_edges) {
       const std::int32_t i = first + edge.ends[0], j = first + edge.ends[1];
       rest_positions_[building_.middles.at(std::minmax(i, j))] = edge.middle;
     }
@@ -179,18 +186,19 @@ void TetModel::SortIntoChunks(const TetMesh& mesh, const TetBody& entry, const L
 }
 
 void TetModel::AddElements(const Body& body, TetBody& entry) {
-  const std::size_t count = body.mesh.tetrahedra.size();
+  const TetShape& shape = body.tet();
+  const std::size_t count = shape.mesh.tetrahedra.size();
   entry.tet_begin = tetrahedra();
   entry.tet_end = entry.tet_begin + count;
   std::vector<std::size_t> kinds(count);
   for (std::size_t t = 0; t < count; ++t) kinds[t] = MaterialOf(body, t).index();
   const auto law = [&](std::int32_t t) {
-    return std::pair{kinds[t], body.material_of.empty() ? 0 : body.material_of[t]};
+    return std::pair{kinds[t], PartOf(shape.materials, t)};
   };
   std::vector<std::int32_t> sorted(count);
   for (std::size_t t = 0; t < count; ++t) sorted[t] = static_cast<std::int32_t>(t);
   std::stable_sort(sorted.begin(), sorted.end(), [&](std::int32_t a, std::int32_t b) { return law(a) < law(b); });
-  SortIntoChunks(body.mesh, entry, law, sorted);
+  SortIntoChunks(shape.mesh, entry, law, sorted);
   // AddNodes left the edges in the mesh's order.
   if (!edge_nodes_.empty()) {
     const std::vector<std::array<std::int32_t, 6>> edges(
@@ -201,15 +209,14 @@ void TetModel::AddElements(const Body& body, TetBody& entry) {
   for (const std::int32_t t : sorted) {
     Tetrahedron shifted;
     for (int c = 0; c < 4; ++c) {
-      shifted[c] = body.mesh.tetrahedra[t][c] + static_cast<std::int32_t>(entry.node_begin);
+      shifted[c] = shape.mesh.tetrahedra[t][c] + static_cast<std::int32_t>(entry.node_begin);
     }
     const std::size_t e = tetrahedra();
     tetrahedra_.push_back(shifted);
     source_tetrahedron_.push_back(t);
-    building_.fibres.push_back(body.fibres.empty() ? Vec3(Vec3::Zero()) : body.fibres[t]);
-    const std::int32_t activation = body.activation_of.empty() ? 0 : body.activation_of[t];
-    building_.activation_of.push_back(static_cast<std::int32_t>(entry.activation) + activation);
-    building_.activation_scale.push_back(body.activation_scale.empty() ? 1 : body.activation_scale[t]);
+    building_.fibres.push_back(shape.fibres.empty() ? Vec3(Vec3::Zero()) : shape.fibres[t]);
+    building_.activation_of.push_back(static_cast<std::int32_t>(entry.activation) + PartOf(shape.activations, t));
+    building_.activation_scale.push_back(shape.activation_scale.empty() ? 1 : shape.activation_scale[t]);
     VisitElement([&]<class Element>(Element) {
       const auto element_nodes = NodesOf<Element>(e);
       const double volume = AddPoints<Element>(e);
@@ -463,10 +470,10 @@ std::vector<std::int32_t> TetModel::NodesOfRegion(const Region& region, const Te
   const auto add = [&](std::int32_t i, std::int32_t j) {
     if (inside[i] && inside[j]) middles.insert(building_.middles.at(std::minmax(first + i, first + j)));
   };
-  for (const Triangle& t : BoundaryTriangles(body.source->mesh)) {
+  for (const Triangle& t : BoundaryTriangles(body.source->tet().mesh)) {
     for (int c = 0; c < 3; ++c) add(t[c], t[(c + 1) % 3]);
   }
-  for (const Tetrahedron& tet : body.source->mesh.tetrahedra) {
+  for (const Tetrahedron& tet : body.source->tet().mesh.tetrahedra) {
     if (!std::all_of(tet.begin(), tet.end(), [&](std::int32_t n) { return inside[n]; })) continue;
     for (const auto& [i, j] : kTetEdges) add(tet[i], tet[j]);
   }
@@ -532,7 +539,7 @@ void TetModel::AddSupports(const Body& source, std::int32_t body_index) {
 void TetModel::AddContactNodes(const TetBody& body) {
   const auto first = static_cast<std::int32_t>(body.node_begin);
   std::map<std::int32_t, double> areas;
-  for (const Triangle& t : BoundaryTriangles(body.source->mesh)) {
+  for (const Triangle& t : BoundaryTriangles(body.source->tet().mesh)) {
     const Triangle n = {first + t[0], first + t[1], first + t[2]};
     const Vec3& X0 = rest_positions_[n[0]];
     const double area = 0.5 * (rest_positions_[n[1]] - X0).cross(rest_positions_[n[2]] - X0).norm();
@@ -554,7 +561,7 @@ void TetModel::AddContactNodes(const TetBody& body) {
 NodalVector TetModel::InitialPositions() const {
   NodalVector x = rest_positions_;
   for (const TetBody& body : bodies_) {
-    const std::vector<Vec3>& displacement = body.source->initial_displacement;
+    const std::vector<Vec3>& displacement = body.source->tet().initial_displacement;
     if (displacement.empty()) continue;
     for (std::size_t n = 0; n < displacement.size(); ++n) x[body.node_begin + n] += displacement[n];
     if (order() == ElementOrder::kLinear) continue;
@@ -566,23 +573,6 @@ NodalVector TetModel::InitialPositions() const {
     }
   }
   return x;
-}
-
-void TetModel::FindCurvesEnd() {
-  const auto take = [this](const Curve& curve) {
-    if (curve.times.size() > 1) curves_end_ = std::max(curves_end_, curve.end());
-  };
-  take(scene_->gravity.scale);
-  for (const Curve* activation : activations_) take(*activation);
-  for (const Body& body : scene_->bodies) {
-    for (const Load& load : body.loads) take(load.scale);
-    for (const Constraint& constraint : body.constraints) {
-      for (const auto& translation : constraint.motion.translation) {
-        if (translation) take(*translation);
-      }
-      if (constraint.motion.rotation) take(constraint.motion.rotation->angle);
-    }
-  }
 }
 
 }  // namespace fascicle

@@ -177,8 +177,6 @@ class TetModel {
   bool has_strain_damping() const { return has_strain_damping_; }
   // Whether any law depends on how fast its fibres shorten.
   bool depends_on_rate() const { return depends_on_rate_; }
-  // The time after which no curve changes any more [s].
-  double curves_end() const { return curves_end_; }
 
  private:
   void AddBody(const Body& body);
@@ -201,7 +199,6 @@ class TetModel {
   void AddLoads(const Body& source, const TetBody& body);
   void AddSupports(const Body& source, std::int32_t body_index);
   void AddContactNodes(const TetBody& body);
-  void FindCurvesEnd();
 
   const Scene* scene_;
   std::vector<TetBody> bodies_;
@@ -239,7 +236,6 @@ class TetModel {
   bool has_mass_damping_ = false;
   bool has_strain_damping_ = false;
   bool depends_on_rate_ = false;
-  double curves_end_ = 0;
 };
 
 }  // namespace fascicle

@@ -29,8 +29,9 @@ struct GridAndMaterials {
 };
 
 GridAndMaterials GridOf(const Body& body) {
-  GridAndMaterials made = {body.bricks.grid, {MaterialOf(body.material)}};
-  for (const Material& material : body.more_materials) made.materials.push_back(MaterialOf(material));
+  const VoxelShape& shape = body.voxel();
+  GridAndMaterials made = {shape.mesh.grid, {MaterialOf(body.material)}};
+  for (const Material& material : shape.materials.more) made.materials.push_back(MaterialOf(material));
   const std::vector<VoxelMaterial> of_parts = made.materials;
   const bool by_ratio = of_parts.size() > kMostMaterials;
   std::vector<std::size_t> number(of_parts.size());
@@ -48,7 +49,7 @@ GridAndMaterials GridOf(const Body& body) {
   std::size_t element = 0;
   for (std::size_t v = 0; v < made.grid.voxels(); ++v) {
     if (made.grid.material[v] == 0) continue;
-    const auto part = static_cast<std::size_t>(body.material_of.empty() ? 0 : body.material_of[element]);
+    const auto part = static_cast<std::size_t>(shape.materials.of.empty() ? 0 : shape.materials.of[element]);
     ++element;
     made.grid.material[v] = static_cast<std::uint8_t>(1 + number[part]);
     if (!by_ratio) continue;
@@ -85,9 +86,9 @@ VoxelSceneBody::VoxelSceneBody(const Scene& scene, const Body& body) : scene_(&s
   AddSupports(model_->mesh().NodePlaces());
   AddLoads();
   if (scene.gravity.acceleration == Vec3::Zero()) return;
-  gravity_share_.assign(body.bricks.nodes.size(), 0.0);
+  gravity_share_.assign(body.nodes().size(), 0.0);
   const double share = body.density * grid_.spacing.prod() / 8;
-  for (const Brick& brick : body.bricks.bricks) {
+  for (const Brick& brick : body.voxel().mesh.bricks) {
     for (const std::int32_t node : brick) gravity_share_[static_cast<std::size_t>(node)] += share;
   }
 }
@@ -104,7 +105,7 @@ void VoxelSceneBody::AddSupports(const std::vector<GridIndex>& places) {
 }
 
 std::vector<Vec3> VoxelSceneBody::SumOverSupports(const VoxelField<double>& reaction) const {
-  std::vector<std::array<bool, 3>> counted(source_->bricks.nodes.size());
+  std::vector<std::array<bool, 3>> counted(source_->nodes().size());
   std::vector<Vec3> sums;
   for (std::size_t s = 0; s < supports_.size(); ++s) {
     Vec3 sum = Vec3::Zero();
@@ -122,7 +123,7 @@ std::vector<Vec3> VoxelSceneBody::SumOverSupports(const VoxelField<double>& reac
 }
 
 void VoxelSceneBody::AddLoads() {
-  const std::vector<Vec3>& X = source_->bricks.nodes;
+  const std::vector<Vec3>& X = source_->nodes();
   for (const Load& load : source_->loads) {
     const Region& region = source_->regions[load.region];
     std::map<std::int32_t, Vec3> forces;
@@ -163,29 +164,13 @@ void VoxelSceneBody::PrescribeAt(double time, VoxelField<double>& displacement) 
   for (std::size_t s = 0; s < supports_.size(); ++s) {
     const RigidMotion motion = MotionAt(source_->constraints[s].motion, time);
     for (const std::int32_t node : source_->regions[source_->constraints[s].region].nodes) {
-      const Vec3& X = source_->bricks.nodes[static_cast<std::size_t>(node)];
+      const Vec3& X = source_->nodes()[static_cast<std::size_t>(node)];
       const Vec3 along_grid = direction().transpose() * (motion.PositionOf(X) - X);
       for (int d = 0; d < 3; ++d) {
         if (supports_[s].components[static_cast<std::size_t>(d)]) displacement(node, d) = along_grid[d];
       }
     }
   }
-}
-
-double VoxelSceneBody::curves_end() const {
-  double end = 0;
-  const auto take = [&end](const Curve& curve) {
-    if (curve.times.size() > 1) end = std::max(end, curve.end());
-  };
-  take(scene_->gravity.scale);
-  for (const Load& load : source_->loads) take(load.scale);
-  for (const Constraint& constraint : source_->constraints) {
-    for (const auto& translation : constraint.motion.translation) {
-      if (translation) take(*translation);
-    }
-    if (constraint.motion.rotation) take(constraint.motion.rotation->angle);
-  }
-  return end;
 }
 
 void CheckVoxelSupports(const Scene& scene, Problems& problems) {

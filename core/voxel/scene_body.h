@@ -32,9 +32,6 @@ class VoxelSceneBody {
   // the first. `reaction` is the force on every node [N].
   std::vector<Vec3> SumOverSupports(const VoxelField<double>& reaction) const;
 
-  // The time after which no curve of the body changes any more [s].
-  double curves_end() const;
-
   // From the axes of the grid to those of the world.
   const Mat3& direction() const { return grid_.direction; }
   Vec3 ToWorld(const Vec3& along_grid) const { return direction() * along_grid; }

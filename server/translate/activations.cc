@@ -32,51 +32,49 @@ Curve TranslateExcitation(const v1::Excitation& excitation, double duration, con
   return activation;
 }
 
-void TranslateRegionActivations(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
-                                const TranslatedRegions& regions, Body& result, Problems& problems) {
+}  // namespace
+
+Curve TranslateActivation(const BodySource& source, Problems& problems) {
+  const v1::Body& wire = source.wire;
+  Curve activation = Curve::Constant(0);
+  if (wire.has_activation()) {
+    activation = TranslateCurve(wire.activation(), kActivationCurve, JoinPath(source.path, "activation"), problems);
+  }
+  if (!wire.has_excitation()) return activation;
+  const std::string path = JoinPath(source.path, "excitation");
+  if (wire.has_activation()) {
+    problems.Add(path, "is given beside an activation", "the activation follows from the excitation: give one of them");
+  }
+  return TranslateExcitation(wire.excitation(), source.duration, path, problems);
+}
+
+Parts<Curve> TranslateActivationParts(const BodySource& source, std::optional<std::size_t> elements,
+                                      const NamedRegions& regions, Problems& problems) {
+  const v1::Body& wire = source.wire;
   Problems own;
-  std::vector<Curve> curves;
-  std::vector<std::int32_t> parts(mesh != nullptr ? mesh->elements() : 0);
-  for (int i = 0; i < body.region_activations_size(); ++i) {
-    const v1::RegionActivation& part = body.region_activations(i);
-    const std::string path = JoinPath(body_path, IndexPath("region_activations", static_cast<std::size_t>(i)));
+  Parts<Curve> parts;
+  parts.of.resize(elements.value_or(0));
+  for (int i = 0; i < wire.region_activations_size(); ++i) {
+    const v1::RegionActivation& part = wire.region_activations(i);
+    const std::string path = JoinPath(source.path, IndexPath("region_activations", static_cast<std::size_t>(i)));
     if (part.has_curve()) {
-      curves.push_back(TranslateCurve(part.curve(), kActivationCurve, JoinPath(path, "curve"), own));
+      parts.more.push_back(TranslateCurve(part.curve(), kActivationCurve, JoinPath(path, "curve"), own));
     } else {
       own.Add(JoinPath(path, "curve"), "is missing", kCurveHint);
     }
-    MarkRegion(part.region(), JoinPath(path, "region"), regions, i + 1, parts, own);
+    MarkRegion(part.region(), JoinPath(path, "region"), regions, i + 1, parts.of, own);
   }
   problems.Append("", own);
-  if (!own.empty() || mesh == nullptr || curves.empty()) return;
-  result.more_activations = std::move(curves);
-  result.activation_of = std::move(parts);
+  if (!own.empty() || !elements || parts.more.empty()) return {};
+  return parts;
 }
 
-}  // namespace
-
-void TranslateActivations(const v1::Body& body, const std::string& body_path, double duration,
-                          const TranslatedMesh* mesh, const TranslatedRegions& regions, const AssetReader& assets,
-                          Body& result, Problems& problems) {
-  if (body.has_activation()) {
-    result.activation =
-        TranslateCurve(body.activation(), kActivationCurve, JoinPath(body_path, "activation"), problems);
-  }
-  if (body.has_excitation()) {
-    const std::string path = JoinPath(body_path, "excitation");
-    if (body.has_activation()) {
-      problems.Add(path, "is given beside an activation",
-                   "the activation follows from the excitation: give one of them");
-    }
-    result.activation = TranslateExcitation(body.excitation(), duration, path, problems);
-  }
-  TranslateRegionActivations(body, body_path, mesh, regions, result, problems);
-  if (body.has_activation_scale()) {
-    NumberFile scale = {"elements", std::nullopt, 1, 0, 1};
-    if (mesh != nullptr) scale.lines = mesh->elements();
-    result.activation_scale =
-        ReadNumberFile(body.activation_scale(), scale, JoinPath(body_path, "activation_scale"), assets, problems);
-  }
+std::vector<double> TranslateActivationScale(const BodySource& source, std::optional<std::size_t> elements,
+                                             Problems& problems) {
+  if (!source.wire.has_activation_scale()) return {};
+  const NumberFile scale = {"elements", elements, 1, 0, 1};
+  return ReadNumberFile(source.wire.activation_scale(), scale, JoinPath(source.path, "activation_scale"), source.assets,
+                        problems);
 }
 
 }  // namespace fascicle::server

@@ -11,6 +11,7 @@
 #include "core/muscle/bspline_fibres.h"
 #include "core/muscle/muscle_solid.h"
 #include "server/translate/fibre_ends.h"
+#include "server/translate/files.h"
 #include "server/translate/values.h"
 
 namespace fascicle::server {
@@ -49,8 +50,9 @@ void CheckSizes(const v1::FittedSolid& fitted, const std::string& path, Problems
   }
 }
 
-std::optional<BsplineSolid> FitSolid(const v1::FittedSolid& fitted, const std::string& path, const TranslatedMesh* mesh,
-                                     const TranslatedRegions& regions, Problems& problems) {
+std::optional<BsplineSolid> FitSolid(const v1::FittedSolid& fitted, const std::string& path,
+                                     const TranslatedTetrahedra* mesh, const NamedRegions& regions,
+                                     Problems& problems) {
   Problems own;
   const auto ends = FindFibreEnds(fitted, path, regions, own);
   const bool ruled = ObeysRules(fitted);
@@ -84,7 +86,7 @@ void AddNotes(const BsplineFibreField& field, const std::string& path, std::vect
 }  // namespace
 
 FibreField TranslateBsplineFibres(const v1::BsplineFibres& bspline, v1::LengthUnit unit, const std::string& path,
-                                  const TranslatedMesh* mesh, const TranslatedRegions& regions,
+                                  const TranslatedTetrahedra* mesh, const NamedRegions& regions,
                                   const AssetReader& assets, std::vector<std::string>& notes, Problems& problems) {
   std::optional<BsplineSolid> solid;
   if (bspline.has_file()) {

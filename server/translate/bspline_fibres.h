@@ -17,7 +17,7 @@ namespace fascicle::server {
 // only what does not depend on it is checked. Empty where something is wrong. `notes` tells where the solid misses the
 // mesh.
 FibreField TranslateBsplineFibres(const v1::BsplineFibres& bspline, v1::LengthUnit unit, const std::string& path,
-                                  const TranslatedMesh* mesh, const TranslatedRegions& regions,
+                                  const TranslatedTetrahedra* mesh, const NamedRegions& regions,
                                   const AssetReader& assets, std::vector<std::string>& notes, Problems& problems);
 
 }  // namespace fascicle::server

@@ -26,9 +26,22 @@ v1::FieldValues::Location LocationOf(FieldLocation location) {
       return v1::FieldValues::LOCATION_TETRAHEDRON;
     case FieldLocation::kBrick:
       return v1::FieldValues::LOCATION_BRICK;
-    default:
+    case FieldLocation::kNode:
       return v1::FieldValues::LOCATION_NODE;
   }
+  return v1::FieldValues::LOCATION_UNSPECIFIED;
+}
+
+void EncodeShape(const TetShape& shape, v1::BodyGeometry& geometry) {
+  geometry.set_tetrahedra(Bytes(shape.mesh.tetrahedra));
+  geometry.set_fibres(Bytes(shape.fibres));
+}
+
+void EncodeShape(const VoxelShape& shape, v1::BodyGeometry& geometry) { geometry.set_bricks(Bytes(shape.mesh.bricks)); }
+
+// The filling and its fibres are no more than how a surface came about.
+void EncodeShape(const SurfaceShape& shape, v1::BodyGeometry& geometry) {
+  geometry.set_triangles(Bytes(shape.mesh.triangles));
 }
 
 }  // namespace
@@ -39,13 +52,7 @@ v1::Geometry EncodeGeometry(const Scene& scene, const std::vector<SeriesInfo>& s
     v1::BodyGeometry& encoded = *geometry.add_bodies();
     encoded.set_name(body.name);
     encoded.set_positions(Bytes(body.nodes()));
-    encoded.set_bricks(Bytes(body.bricks.bricks));
-    encoded.set_triangles(Bytes(body.surface.triangles));
-    // Of a surface, tetrahedra and their fibres are no more than how it came about.
-    if (body.surface.triangles.empty()) {
-      encoded.set_tetrahedra(Bytes(body.mesh.tetrahedra));
-      encoded.set_fibres(Bytes(body.fibres));
-    }
+    std::visit([&encoded](const auto& shape) { EncodeShape(shape, encoded); }, body.shape);
     for (const std::string& note : body.notes) encoded.add_notes(note);
     for (const Region& region : body.regions) {
       v1::RegionGeometry& nodes = *encoded.add_regions();

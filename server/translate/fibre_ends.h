@@ -19,7 +19,7 @@ struct FibreEnds {
 // The two regions that `wire` (HarmonicFibres or FittedSolid at `path`) names; nothing where one is unknown or empty,
 // or where both are the same. The ends point into `regions`.
 template <class Wire>
-std::optional<FibreEnds> FindFibreEnds(const Wire& wire, const std::string& path, const TranslatedRegions& regions,
+std::optional<FibreEnds> FindFibreEnds(const Wire& wire, const std::string& path, const NamedRegions& regions,
                                        Problems& problems) {
   const auto origin = regions.names.Find(wire.origin(), JoinPath(path, "origin"), problems);
   const auto insertion = regions.names.Find(wire.insertion(), JoinPath(path, "insertion"), problems);

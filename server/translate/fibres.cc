@@ -5,14 +5,15 @@
 #include "core/muscle/pennation.h"
 #include "server/translate/bspline_fibres.h"
 #include "server/translate/fibre_ends.h"
+#include "server/translate/files.h"
 #include "server/translate/materials.h"
 #include "server/translate/values.h"
 
 namespace fascicle::server {
 namespace {
 
-FibreField TranslateHarmonic(const v1::HarmonicFibres& harmonic, const std::string& path, const TranslatedMesh* mesh,
-                             const TranslatedRegions& regions, Problems& problems) {
+FibreField TranslateHarmonic(const v1::HarmonicFibres& harmonic, const std::string& path,
+                             const TranslatedTetrahedra* mesh, const NamedRegions& regions, Problems& problems) {
   const auto ends = FindFibreEnds(harmonic, path, regions, problems);
   // Broken meshes have been reported.
   if (!ends || mesh == nullptr || !mesh->sound) return {};
@@ -22,9 +23,9 @@ FibreField TranslateHarmonic(const v1::HarmonicFibres& harmonic, const std::stri
   return own.empty() ? fibres : FibreField();
 }
 
-FibreField TranslateSource(const v1::Fibres& fibres, v1::LengthUnit unit, const std::string& path,
-                           const TranslatedMesh* mesh, const TranslatedRegions& regions, const AssetReader& assets,
-                           std::vector<std::string>& notes, Problems& problems) {
+FibreField TranslateField(const BodySource& source, const std::string& path, const TranslatedTetrahedra* mesh,
+                          const NamedRegions& regions, std::vector<std::string>& notes, Problems& problems) {
+  const v1::Fibres& fibres = source.wire.fibres();
   if (fibres.has_constant()) {
     Problems own;
     const Vec3 direction = ToDirection(fibres.constant().direction(), JoinPath(path, "constant.direction"), own);
@@ -35,12 +36,12 @@ FibreField TranslateSource(const v1::Fibres& fibres, v1::LengthUnit unit, const 
     return TranslateHarmonic(fibres.harmonic(), JoinPath(path, "harmonic"), mesh, regions, problems);
   }
   if (fibres.has_bspline()) {
-    return TranslateBsplineFibres(fibres.bspline(), unit, JoinPath(path, "bspline"), mesh, regions, assets, notes,
-                                  problems);
+    return TranslateBsplineFibres(fibres.bspline(), source.wire.unit(), JoinPath(path, "bspline"), mesh, regions,
+                                  source.assets, notes, problems);
   }
   if (!fibres.has_file()) return {};
   const std::string file_path = JoinPath(path, "file");
-  const auto bytes = ReadFile(fibres.file(), file_path, assets, problems);
+  const auto bytes = ReadFile(fibres.file(), file_path, source.assets, problems);
   if (!bytes || mesh == nullptr) return {};
   Problems own;
   FibreField field = ReadFibres(mesh->mesh, *bytes, own);
@@ -59,8 +60,8 @@ const LawInfo* LawWithFibres(const v1::Body& body) {
   return nullptr;
 }
 
-void TranslatePennation(const v1::Pennation& wire, double unit, const std::string& path, const TranslatedMesh* mesh,
-                        FibreField& fibres, Problems& problems) {
+void TranslatePennation(const v1::Pennation& wire, double unit, const std::string& path,
+                        const TranslatedTetrahedra* mesh, FibreField& fibres, Problems& problems) {
   Problems own;
   Pennation pennation{.angle = wire.angle(), .normal = ToDirection(wire.normal(), "normal", own), .mirror_point = {}};
   if (wire.mirror_point_size() == 3) pennation.mirror_point = unit * ToVec3(wire.mirror_point());
@@ -72,21 +73,28 @@ void TranslatePennation(const v1::Pennation& wire, double unit, const std::strin
 
 }  // namespace
 
-FibreField TranslateFibres(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
-                           const TranslatedRegions& regions, const AssetReader& assets, std::vector<std::string>& notes,
-                           Problems& problems) {
-  const std::string path = JoinPath(body_path, "fibres");
+void CheckFibresAreGiven(const BodySource& source, Problems& problems) {
+  const LawInfo* law = LawWithFibres(source.wire);
+  if (law == nullptr || source.wire.has_fibres()) return;
+  problems.Add(JoinPath(source.path, "fibres"),
+               std::string("is missing: the law `") + law->name + "` needs fibre directions",
+               "give one of: constant, file, harmonic, bspline");
+}
+
+FibreField TranslateFibres(const BodySource& source, const TranslatedTetrahedra* mesh, const NamedRegions& regions,
+                           std::vector<std::string>& notes, Problems& problems) {
+  const StageTimer timer(source.profile, "fibres");
+  CheckFibresAreGiven(source, problems);
+  const v1::Body& wire = source.wire;
   FibreField fibres;
-  if (body.has_fibres()) {
-    fibres = TranslateSource(body.fibres(), body.unit(), path, mesh, regions, assets, notes, problems);
-    if (body.fibres().has_pennation()) {
-      TranslatePennation(body.fibres().pennation(), MetresIn(body.unit()), JoinPath(path, "pennation"), mesh, fibres,
+  if (wire.has_fibres()) {
+    const std::string path = JoinPath(source.path, "fibres");
+    fibres = TranslateField(source, path, mesh, regions, notes, problems);
+    if (wire.fibres().has_pennation()) {
+      TranslatePennation(wire.fibres().pennation(), MetresIn(wire.unit()), JoinPath(path, "pennation"), mesh, fibres,
                          problems);
     }
-  } else if (const LawInfo* law = LawWithFibres(body)) {
-    problems.Add(path, std::string("is missing: the law `") + law->name + "` needs fibre directions",
-                 "give one of: constant, file, harmonic, bspline");
-  } else {
+  } else if (LawWithFibres(wire) == nullptr) {
     return {};
   }
   if (fibres.empty() && mesh != nullptr) return ConstantFibres(mesh->mesh, Vec3::UnitZ());

@@ -6,18 +6,19 @@
 
 #include "core/base/problems.h"
 #include "core/muscle/fibre_field.h"
-#include "fascicle/v1/scene.pb.h"
+#include "server/translate/body_source.h"
 #include "server/translate/meshes.h"
 #include "server/translate/regions.h"
-#include "server/translate/translate.h"
 
 namespace fascicle::server {
 
-// The fibres of a body; empty when it has none. `mesh` may be nullptr: then only what does not depend on it is checked.
-// Where something is wrong a constant field stands in for later checks. Adds to `notes` what is noteworthy.
-FibreField TranslateFibres(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
-                           const TranslatedRegions& regions, const AssetReader& assets, std::vector<std::string>& notes,
-                           Problems& problems);
+// The fibres of tetrahedra; empty when the body has none. `mesh` may be nullptr: then only what does not depend on it
+// is checked. Where something is wrong a constant field stands in for later checks. Adds to `notes` what is noteworthy.
+FibreField TranslateFibres(const BodySource& source, const TranslatedTetrahedra* mesh, const NamedRegions& regions,
+                           std::vector<std::string>& notes, Problems& problems);
+
+// Adds a problem where a law of the body needs fibres and none are given.
+void CheckFibresAreGiven(const BodySource& source, Problems& problems);
 
 }  // namespace fascicle::server
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <string>
 
-#include "server/translate/meshes.h"
+#include "server/translate/files.h"
 
 namespace fascicle::server {
 namespace {

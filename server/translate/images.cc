@@ -8,7 +8,7 @@
 #include "core/imaging/arm_phantom.h"
 #include "core/imaging/image_stage.h"
 #include "core/imaging/volume_reader.h"
-#include "server/translate/meshes.h"
+#include "server/translate/files.h"
 #include "server/translate/values.h"
 
 namespace fascicle::server {

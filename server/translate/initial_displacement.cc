@@ -4,17 +4,18 @@
 
 namespace fascicle::server {
 
-void TranslateInitialDisplacement(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
-                                  const AssetReader& assets, Body& result, Problems& problems) {
-  if (!body.has_initial_displacement()) return;
-  NumberFile file = {"nodes", std::nullopt, 3};
-  if (mesh != nullptr) file.lines = mesh->nodes().size();
-  const std::vector<double> values =
-      ReadNumberFile(body.initial_displacement(), file, JoinPath(body_path, "initial_displacement"), assets, problems);
-  const double metres = MetresIn(body.unit());
+std::vector<Vec3> TranslateInitialDisplacement(const BodySource& source, std::optional<std::size_t> nodes,
+                                               Problems& problems) {
+  std::vector<Vec3> displacement;
+  if (!source.wire.has_initial_displacement()) return displacement;
+  const NumberFile file = {"nodes", nodes, 3};
+  const std::vector<double> values = ReadNumberFile(
+      source.wire.initial_displacement(), file, JoinPath(source.path, "initial_displacement"), source.assets, problems);
+  const double metres = MetresIn(source.wire.unit());
   for (std::size_t i = 0; i < values.size(); i += 3) {
-    result.initial_displacement.push_back(metres * Vec3(values[i], values[i + 1], values[i + 2]));
+    displacement.push_back(metres * Vec3(values[i], values[i + 1], values[i + 2]));
   }
+  return displacement;
 }
 
 }  // namespace fascicle::server

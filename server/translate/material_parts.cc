@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "core/base/text_lines.h"
+#include "server/translate/files.h"
 #include "server/translate/materials.h"
-#include "server/translate/meshes.h"
 #include "server/translate/number_files.h"
 #include "server/translate/parts.h"
 #include "server/translate/values.h"
@@ -68,21 +68,22 @@ std::vector<Material> ReadMaterials(std::string_view text, const LawInfo& law, s
   return materials;
 }
 
-std::vector<Material> TranslateElementParameters(const v1::Body& body, const std::string& path,
-                                                 const TranslatedMesh* mesh, const AssetReader& assets,
+std::vector<Material> TranslateElementParameters(const BodySource& source, std::optional<std::size_t> elements,
                                                  Problems& problems) {
-  const auto bytes = ReadFile(body.element_parameters(), path, assets, problems);
-  const LawInfo* law = LawOf(body.material());
-  if (!bytes || mesh == nullptr || law == nullptr || !ObeysRules(body.material())) return {};
+  const v1::Body& wire = source.wire;
+  const std::string path = JoinPath(source.path, "element_parameters");
+  const auto bytes = ReadFile(wire.element_parameters(), path, source.assets, problems);
+  const LawInfo* law = LawOf(wire.material());
+  if (!bytes || !elements || law == nullptr || !ObeysRules(wire.material())) return {};
   Problems own;
-  std::vector<Material> materials = ReadMaterials(*bytes, *law, ParametersOf(body.material()), mesh->elements(), own);
+  std::vector<Material> materials = ReadMaterials(*bytes, *law, ParametersOf(wire.material()), *elements, own);
   problems.Append(path, own);
   return own.empty() ? materials : std::vector<Material>();
 }
 
 }  // namespace
 
-void MarkRegion(const std::string& name, const std::string& path, const TranslatedRegions& regions, std::int32_t value,
+void MarkRegion(const std::string& name, const std::string& path, const NamedRegions& regions, std::int32_t value,
                 std::vector<std::int32_t>& parts, Problems& problems) {
   const auto index = regions.names.Find(name, path, problems);
   if (!index) return;
@@ -95,33 +96,31 @@ void MarkRegion(const std::string& name, const std::string& path, const Translat
   for (const std::int32_t t : region.elements) parts[static_cast<std::size_t>(t)] = value;
 }
 
-void TranslateMaterialParts(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
-                            const TranslatedRegions& regions, const AssetReader& assets, Body& result,
-                            Problems& problems) {
-  if (body.region_materials().empty() && !body.has_element_parameters()) return;
+Parts<Material> TranslateMaterialParts(const BodySource& source, std::optional<std::size_t> elements,
+                                       const NamedRegions& regions, Problems& problems) {
+  const v1::Body& wire = source.wire;
+  if (wire.region_materials().empty() && !wire.has_element_parameters()) return {};
   Problems own;
-  std::vector<Material> materials;
-  std::vector<std::int32_t> parts(mesh != nullptr ? mesh->elements() : 0);
-  for (int i = 0; i < body.region_materials_size(); ++i) {
-    const v1::RegionMaterial& part = body.region_materials(i);
-    const std::string path = JoinPath(body_path, IndexPath("region_materials", static_cast<std::size_t>(i)));
-    materials.push_back(TranslateMaterial(part.has_material() ? &part.material() : nullptr, path, own));
-    MarkRegion(part.region(), JoinPath(path, "region"), regions, i + 1, parts, own);
+  Parts<Material> parts;
+  parts.of.resize(elements.value_or(0));
+  for (int i = 0; i < wire.region_materials_size(); ++i) {
+    const v1::RegionMaterial& part = wire.region_materials(i);
+    const std::string path = JoinPath(source.path, IndexPath("region_materials", static_cast<std::size_t>(i)));
+    parts.more.push_back(TranslateMaterial(part.has_material() ? &part.material() : nullptr, path, own));
+    MarkRegion(part.region(), JoinPath(path, "region"), regions, i + 1, parts.of, own);
   }
-  if (body.has_element_parameters()) {
-    const auto elements =
-        TranslateElementParameters(body, JoinPath(body_path, "element_parameters"), mesh, assets, own);
-    // Those that a region covers are needed by nobody.
-    for (std::size_t t = 0; t < elements.size(); ++t) {
-      if (parts[t] != 0) continue;
-      materials.push_back(elements[t]);
-      parts[t] = static_cast<std::int32_t>(materials.size());
+  if (wire.has_element_parameters()) {
+    const auto of_elements = TranslateElementParameters(source, elements, own);
+    // Those of elements that a region covers have no use.
+    for (std::size_t t = 0; t < of_elements.size(); ++t) {
+      if (parts.of[t] != 0) continue;
+      parts.more.push_back(of_elements[t]);
+      parts.of[t] = static_cast<std::int32_t>(parts.more.size());
     }
   }
   problems.Append("", own);
-  if (!own.empty() || mesh == nullptr) return;
-  result.more_materials = std::move(materials);
-  result.material_of = std::move(parts);
+  if (!own.empty() || !elements) return {};
+  return parts;
 }
 
 }  // namespace fascicle::server

@@ -6,8 +6,8 @@
 
 #include "core/geometry/mesh_checks.h"
 #include "core/geometry/mesh_io.h"
-#include "core/geometry/unused_nodes.h"
 #include "server/translate/built_in_shapes.h"
+#include "server/translate/files.h"
 #include "server/translate/images.h"
 #include "server/translate/values.h"
 
@@ -76,116 +76,81 @@ VoxelGrid BoxOfVoxels(const v1::BoxShape& shape, double metres) {
   return grid;
 }
 
-std::optional<TranslatedMesh> TranslateVoxels(const v1::Body& body, const std::string& path, const AssetReader& assets,
-                                              std::int64_t& budget, std::vector<std::string>& notes,
-                                              Problems& problems) {
-  const v1::Mesh& mesh = body.mesh();
-  const double metres = MetresIn(body.unit());
-  std::optional<VoxelGrid> grid;
-  std::string source_path;
-  if (mesh.has_image()) {
-    source_path = JoinPath(path, "image");
-    grid = TranslateImage(mesh.image(), metres, source_path, assets, notes, problems);
-  } else if (mesh.has_box()) {
-    source_path = JoinPath(path, "box");
-    if (!ObeysRules(mesh.box())) return std::nullopt;
-    std::int64_t count = 1;
-    for (const std::int32_t divisions : mesh.box().divisions()) count *= divisions;
-    if (!Spend(count, "voxels", budget, source_path, "take fewer divisions", problems)) return std::nullopt;
-    grid = BoxOfVoxels(mesh.box(), metres);
-  } else {
-    problems.Add(path, "the voxel method takes an image or a box",
-                 "voxels of an image: image; tetrahedra need the tet method");
+// Whether the mesh names a source; a body without a mesh is a problem. (A mesh without a source is reported with the
+// rules.)
+//   choices  the sources that there are, for the message
+bool NamesSource(const BodySource& source, const char* choices, Problems& problems) {
+  if (source.wire.has_mesh()) return source.wire.mesh().source_case() != v1::Mesh::SOURCE_NOT_SET;
+  problems.Add(JoinPath(source.path, "mesh"), "is missing", std::string("give one of: ") + choices);
+  return false;
+}
+
+void CheckUnit(const BodySource& source, const char* kind, Problems& problems) {
+  if (source.wire.unit() != v1::LENGTH_UNIT_UNSPECIFIED) return;
+  problems.Add(JoinPath(source.path, "unit"), std::string("is missing: a ") + kind + " file does not say its unit",
+               "mm, cm or m");
+}
+
+// Whether the mesh is of tetrahedra; other sources are problems.
+bool IsOfTetrahedra(const BodySource& source, const char* method, Problems& problems) {
+  const std::string path = JoinPath(source.path, "mesh");
+  if (source.wire.mesh().has_image()) {
+    problems.Add(JoinPath(path, "image"), std::string("the ") + method + " method takes no image",
+                 "`fascicle mesh` fills the labels of an image with tetrahedra, `fascicle segment` makes labels; or "
+                 "use the voxel method");
+    return false;
   }
+  if (source.wire.mesh().has_surface()) {
+    problems.Add(JoinPath(path, "surface"), std::string("the ") + method + " method needs tetrahedra",
+                 "`fascicle mesh` fills a closed surface with them; or use the eulerian method");
+    return false;
+  }
+  return true;
+}
+
+std::optional<TetMesh> TetrahedraOfFile(const BodySource& source, const std::string& path, Problems& problems) {
+  CheckUnit(source, "mesh", problems);
+  auto mesh = ReadMeshFile(source.wire.mesh(), path, source.assets, problems);
+  if (!mesh || !Spend(static_cast<std::int64_t>(mesh->tetrahedra.size()), "tetrahedra", source.budget,
+                      JoinPath(path, "file"), "take a coarser mesh", problems)) {
+    return std::nullopt;
+  }
+  const double metres = MetresIn(source.wire.unit());
+  for (Vec3& x : mesh->nodes) x *= metres;
+  for (CurvedEdge& edge : mesh->curved_edges) edge.middle *= metres;
+  OrientConsistently(*mesh);
+  return mesh;
+}
+
+std::optional<TetMesh> TetrahedraOfShape(const BodySource& source, const std::string& path, Problems& problems) {
+  CheckElements(source.wire.mesh(), path, problems);
+  const auto shape = CheckShape(source.wire.mesh(), path, problems);
+  if (!shape || !Spend(shape->tetrahedra, "tetrahedra", source.budget, shape->path, "take fewer divisions", problems)) {
+    return std::nullopt;
+  }
+  return MakeShape(source.wire.mesh(), MetresIn(source.wire.unit()));
+}
+
+std::optional<BrickMesh> BricksOfBox(const BodySource& source, const std::string& path, Problems& problems) {
+  const v1::BoxShape& box = source.wire.mesh().box();
+  if (!ObeysRules(box)) return std::nullopt;
+  std::int64_t count = 1;
+  for (const std::int32_t divisions : box.divisions()) count *= divisions;
+  if (!Spend(count, "voxels", source.budget, path, "take fewer divisions", problems)) return std::nullopt;
+  return MakeBrickMesh(BoxOfVoxels(box, MetresIn(source.wire.unit())));
+}
+
+std::optional<BrickMesh> BricksOfImage(const BodySource& source, const std::string& path,
+                                       std::vector<std::string>& notes, Problems& problems) {
+  auto grid =
+      TranslateImage(source.wire.mesh().image(), MetresIn(source.wire.unit()), path, source.assets, notes, problems);
   if (!grid) return std::nullopt;
-  TranslatedMesh result;
-  result.bricks = MakeBrickMesh(std::move(*grid));
-  if (mesh.has_image() && !Spend(static_cast<std::int64_t>(result.bricks.bricks.size()), "voxels", budget, source_path,
-                                 "take a higher level, or a smaller region", problems)) {
+  BrickMesh mesh = MakeBrickMesh(std::move(*grid));
+  if (!Spend(static_cast<std::int64_t>(mesh.bricks.size()), "voxels", source.budget, path,
+             "take a higher level, or a smaller region", problems)) {
     return std::nullopt;
   }
-  return result;
-}
-
-std::optional<TranslatedMesh> TranslateTetrahedra(const v1::Body& body, const std::string& body_path,
-                                                  const AssetReader& assets, std::int64_t& budget, Problems& problems) {
-  const std::string path = JoinPath(body_path, "mesh");
-  TranslatedMesh result;
-  std::string source_path;
-  const double metres = MetresIn(body.unit());
-  if (body.mesh().has_file()) {
-    source_path = JoinPath(path, "file");
-    if (body.unit() == v1::LENGTH_UNIT_UNSPECIFIED) {
-      problems.Add(JoinPath(body_path, "unit"), "is missing: a mesh file does not say its unit", "mm, cm or m");
-    }
-    auto read = ReadMeshFile(body.mesh(), path, assets, problems);
-    if (!read) return std::nullopt;
-    if (!Spend(static_cast<std::int64_t>(read->tetrahedra.size()), "tetrahedra", budget, source_path,
-               "take a coarser mesh", problems)) {
-      return std::nullopt;
-    }
-    result.mesh = std::move(*read);
-    for (Vec3& x : result.mesh.nodes) x *= metres;
-    for (CurvedEdge& edge : result.mesh.curved_edges) edge.middle *= metres;
-    OrientConsistently(result.mesh);
-  } else {
-    CheckElements(body.mesh(), path, problems);
-    const auto shape = CheckShape(body.mesh(), path, problems);
-    if (!shape) return std::nullopt;
-    source_path = shape->path;
-    if (!Spend(shape->tetrahedra, "tetrahedra", budget, source_path, "take fewer divisions", problems))
-      return std::nullopt;
-    result.mesh = MakeShape(body.mesh(), metres);
-  }
-  Problems own;
-  CheckMesh(result.mesh, own);
-  problems.Append(source_path, own);
-  result.sound = own.empty();
-  if (!IsAddressable(result.mesh)) return std::nullopt;
-  return result;
-}
-
-// The boundary of tetrahedra, with the nodes that it has.
-TriangleMesh BoundaryOf(const TetMesh& mesh) {
-  TriangleMesh surface = {mesh.nodes, BoundaryTriangles(mesh)};
-  DropUnusedNodes(surface.nodes, surface.triangles);
-  return surface;
-}
-
-std::optional<TranslatedMesh> TranslateSurface(const v1::Body& body, const std::string& body_path,
-                                               const AssetReader& assets, std::int64_t& budget, Problems& problems) {
-  const std::string path = JoinPath(body_path, "mesh");
-  if (!body.mesh().has_surface()) {
-    auto result = TranslateTetrahedra(body, body_path, assets, budget, problems);
-    if (result) result->surface = BoundaryOf(result->mesh);
-    return result;
-  }
-  const std::string file_path = JoinPath(path, "surface");
-  if (body.unit() == v1::LENGTH_UNIT_UNSPECIFIED) {
-    problems.Add(JoinPath(body_path, "unit"), "is missing: a surface file does not say its unit", "mm, cm or m");
-  }
-  CheckElements(body.mesh(), path, problems);
-  const v1::FileRef& file = body.mesh().surface();
-  const auto bytes = ReadFile(file, file_path, assets, problems);
-  if (!bytes || file.path().empty()) return std::nullopt;
-  Problems own;
-  auto read = ReadSurface(file.path(), *bytes, own);
-  problems.Append(file_path, own);
-  if (!read) return std::nullopt;
-  if (!Spend(static_cast<std::int64_t>(read->triangles.size()), "triangles", budget, file_path,
-             "take a coarser surface", problems)) {
-    return std::nullopt;
-  }
-  // Of an unknown size, it would be said to be too large for its grid, or too small.
-  if (body.unit() == v1::LENGTH_UNIT_UNSPECIFIED) return std::nullopt;
-  TranslatedMesh result;
-  result.surface = std::move(*read);
-  for (Vec3& x : result.surface.nodes) x *= MetresIn(body.unit());
-  return result;
-}
-
-const char* MethodName(Method method) {
-  return method == Method::kVoxel ? "voxel" : method == Method::kEulerian ? "eulerian" : "tet";
+  return mesh;
 }
 
 }  // namespace
@@ -197,34 +162,56 @@ std::string SourcePath(const v1::Mesh& mesh, const std::string& body_path) {
   return field == nullptr ? path : JoinPath(path, field->name());
 }
 
-std::optional<TranslatedMesh> TranslateMesh(const v1::Body& body, Method method, const std::string& body_path,
-                                            const AssetReader& assets, std::int64_t& budget,
-                                            std::vector<std::string>& notes, Problems& problems) {
-  const std::string path = JoinPath(body_path, "mesh");
-  if (!body.has_mesh()) {
-    problems.Add(path, "is missing",
-                 method == Method::kVoxel      ? "give one of: image, box"
-                 : method == Method::kEulerian ? "give one of: surface, file, box, fusiform, torus, sphere"
-                                               : "give one of: file, box, fusiform, torus, sphere");
+std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source, const char* method,
+                                                        Problems& problems) {
+  const StageTimer timer(source.profile, "meshes");
+  const std::string path = JoinPath(source.path, "mesh");
+  if (!NamesSource(source, "file, box, fusiform, torus, sphere", problems) ||
+      !IsOfTetrahedra(source, method, problems)) {
     return std::nullopt;
   }
-  // A mesh without a source is reported with the rules.
-  if (body.mesh().source_case() == v1::Mesh::SOURCE_NOT_SET) return std::nullopt;
-  if (method == Method::kVoxel) return TranslateVoxels(body, path, assets, budget, notes, problems);
-  if (body.mesh().has_image()) {
-    problems.Add(
-        JoinPath(path, "image"), std::string("the ") + MethodName(method) + " method takes no image",
-        "`fascicle mesh` fills the labels of an image with tetrahedra, `fascicle segment` makes labels; or use "
-        "the voxel method");
+  auto mesh = source.wire.mesh().has_file() ? TetrahedraOfFile(source, path, problems)
+                                            : TetrahedraOfShape(source, path, problems);
+  if (!mesh) return std::nullopt;
+  Problems own;
+  CheckMesh(*mesh, own);
+  problems.Append(SourcePath(source.wire.mesh(), source.path), own);
+  if (!IsAddressable(*mesh)) return std::nullopt;
+  return TranslatedTetrahedra{std::move(*mesh), own.empty()};
+}
+
+std::optional<BrickMesh> TranslateBricks(const BodySource& source, std::vector<std::string>& notes,
+                                         Problems& problems) {
+  const StageTimer timer(source.profile, "meshes");
+  const std::string path = JoinPath(source.path, "mesh");
+  if (!NamesSource(source, "image, box", problems)) return std::nullopt;
+  if (source.wire.mesh().has_image()) return BricksOfImage(source, JoinPath(path, "image"), notes, problems);
+  if (source.wire.mesh().has_box()) return BricksOfBox(source, JoinPath(path, "box"), problems);
+  problems.Add(path, "the voxel method takes an image or a box",
+               "voxels of an image: image; tetrahedra need the tet method");
+  return std::nullopt;
+}
+
+std::optional<TriangleMesh> TranslateSurfaceFile(const BodySource& source, Problems& problems) {
+  const StageTimer timer(source.profile, "meshes");
+  const std::string path = JoinPath(source.path, "mesh");
+  const std::string file_path = JoinPath(path, "surface");
+  CheckUnit(source, "surface", problems);
+  CheckElements(source.wire.mesh(), path, problems);
+  const v1::FileRef& file = source.wire.mesh().surface();
+  const auto bytes = ReadFile(file, file_path, source.assets, problems);
+  if (!bytes || file.path().empty()) return std::nullopt;
+  Problems own;
+  auto surface = ReadSurface(file.path(), *bytes, own);
+  problems.Append(file_path, own);
+  if (!surface || !Spend(static_cast<std::int64_t>(surface->triangles.size()), "triangles", source.budget, file_path,
+                         "take a coarser surface", problems)) {
     return std::nullopt;
   }
-  if (method == Method::kEulerian) return TranslateSurface(body, body_path, assets, budget, problems);
-  if (body.mesh().has_surface()) {
-    problems.Add(JoinPath(path, "surface"), "the tet method needs tetrahedra",
-                 "`fascicle mesh` fills a closed surface with them; or use the eulerian method");
-    return std::nullopt;
-  }
-  return TranslateTetrahedra(body, body_path, assets, budget, problems);
+  // Of an unknown size, it would be said to be too large for its grid, or too small.
+  if (source.wire.unit() == v1::LENGTH_UNIT_UNSPECIFIED) return std::nullopt;
+  for (Vec3& x : surface->nodes) x *= MetresIn(source.wire.unit());
+  return surface;
 }
 
 }  // namespace fascicle::server

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/text_lines.h"
-#include "server/translate/meshes.h"
+#include "server/translate/files.h"
 #include "server/translate/values.h"
 
 namespace fascicle::server {

@@ -16,11 +16,6 @@ namespace fascicle::server {
 Output TranslateOutput(const v1::Scene& scene, const std::vector<Body>& bodies, const Names& body_names,
                        std::int64_t max_frame_bytes, Problems& problems);
 
-// How it is stepped. A neutral method stands for a wrong one.
-TetMethod TranslateTetMethod(const v1::Scene& scene);
-VoxelMethod TranslateVoxelMethod(const v1::Scene& scene);
-EulerianMethod TranslateEulerianMethod(const v1::Scene& scene, Problems& problems);
-
 }  // namespace fascicle::server
 
 #endif  // FASCICLE_SERVER_TRANSLATE_OUTPUTS_H_

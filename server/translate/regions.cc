@@ -1,8 +1,9 @@
 #include "server/translate/regions.h"
 
-#include <optional>
+#include <algorithm>
 #include <set>
 
+#include "core/geometry/bounds.h"
 #include "server/translate/values.h"
 
 namespace fascicle::server {
@@ -52,16 +53,9 @@ std::optional<Selector> TranslateSelector(const v1::Region& region, double metre
   return selector;
 }
 
-std::string TagHint(const TranslatedMesh& translated, bool from_file) {
-  const TetMesh& mesh = translated.mesh;
-  std::set<std::int32_t> tags(mesh.triangle_tags.begin(), mesh.triangle_tags.end());
-  tags.insert(mesh.tetrahedron_tags.begin(), mesh.tetrahedron_tags.end());
-  tags.insert(mesh.node_tags.begin(), mesh.node_tags.end());
-  tags.insert(translated.bricks.labels.begin(), translated.bricks.labels.end());
-  if (!from_file) return "built-in shapes have no tags; select by plane, box, sphere or side";
-  if (tags.empty()) return "the mesh file has no tags; select by plane, box, sphere or side";
+std::string Listed(const std::string& what, const std::set<std::int32_t>& tags) {
   constexpr std::size_t kMaxListed = 20;
-  std::string hint = translated.bricks.labels.empty() ? "tags in the mesh file: " : "labels of the voxels: ";
+  std::string hint = what + ": ";
   std::size_t listed = 0;
   for (const std::int32_t tag : tags) {
     if (listed == kMaxListed) return hint + ", ...";
@@ -70,9 +64,30 @@ std::string TagHint(const TranslatedMesh& translated, bool from_file) {
   return hint;
 }
 
+const char kOtherSelectors[] = "; select by plane, box, sphere or side";
+
+// What the tags are that a mesh has.
+std::string TagHint(const TetMesh& mesh, const v1::Mesh& wire) {
+  if (!wire.has_file()) return std::string("built-in shapes have no tags") + kOtherSelectors;
+  std::set<std::int32_t> tags(mesh.triangle_tags.begin(), mesh.triangle_tags.end());
+  tags.insert(mesh.tetrahedron_tags.begin(), mesh.tetrahedron_tags.end());
+  tags.insert(mesh.node_tags.begin(), mesh.node_tags.end());
+  if (tags.empty()) return std::string("the mesh file has no tags") + kOtherSelectors;
+  return Listed("tags in the mesh file", tags);
+}
+
+std::string TagHint(const BrickMesh& mesh, const v1::Mesh& wire) {
+  if (!wire.has_image()) return std::string("built-in shapes have no tags") + kOtherSelectors;
+  return Listed("labels of the voxels", {mesh.labels.begin(), mesh.labels.end()});
+}
+
+std::string TagHint(const TriangleMesh&, const v1::Mesh&) {
+  return std::string("surfaces have no tags") + kOtherSelectors;
+}
+
 // The body's extent in its own unit, for a selector that misses it.
-std::string ExtentHint(const TranslatedMesh& mesh, double metres) {
-  const Bounds bounds = BoundsOf(mesh.nodes());
+std::string ExtentHint(const std::vector<Vec3>& nodes, double metres) {
+  const Bounds bounds = BoundsOf(nodes);
   const auto corner = [metres](const Vec3& x) {
     char text[96];
     std::snprintf(text, sizeof(text), "[%.6g, %.6g, %.6g]", x[0] / metres, x[1] / metres, x[2] / metres);
@@ -81,76 +96,119 @@ std::string ExtentHint(const TranslatedMesh& mesh, double metres) {
   return "in its own unit, the body reaches from " + corner(bounds.lowest) + " to " + corner(bounds.highest);
 }
 
-void AddEmptyRegion(const v1::Body& body, const v1::Region& region, const TranslatedMesh& mesh, const std::string& path,
+template <class Mesh>
+void AddEmptyRegion(const v1::Body& body, const v1::Region& region, const Mesh& mesh, const std::string& path,
                     Problems& problems) {
+  const double metres = MetresIn(body.unit());
   if (region.has_physical_tag()) {
     problems.Add(JoinPath(path, "physical_tag"),
                  "nothing in the mesh has the tag " + std::to_string(region.physical_tag()),
-                 TagHint(mesh, body.mesh().has_file() || body.mesh().has_image()));
+                 TagHint(mesh, body.mesh()));
   } else if (region.within_size() > 0) {
     problems.Add(JoinPath(path, "within"), "no node of the region lies in all of these regions too",
-                 ExtentHint(mesh, MetresIn(body.unit())));
+                 ExtentHint(mesh.nodes, metres));
   } else {
     const char* kind = region.has_plane()    ? "plane"
                        : region.has_box()    ? "box"
                        : region.has_sphere() ? "sphere"
                                              : "side";
-    problems.Add(JoinPath(path, kind), "selects no node of the body", ExtentHint(mesh, MetresIn(body.unit())));
+    problems.Add(JoinPath(path, kind), "selects no node of the body", ExtentHint(mesh.nodes, metres));
   }
 }
 
-// Leaves of the last region what lies in the regions named as well.
-void Restrict(const v1::Region& region, const std::string& path, TranslatedRegions& result, Problems& problems) {
-  const std::size_t own = result.regions.size() - 1;
+// Whether what a region selects may have no node of the mesh all the same: it may lie within a surface. Whether what
+// the region is for finds any of the grid, or of the surface, is checked there.
+bool MayBeInside(const v1::Region&, const TetMesh&) { return false; }
+bool MayBeInside(const v1::Region&, const BrickMesh&) { return false; }
+bool MayBeInside(const v1::Region& region, const TriangleMesh&) {
+  return !region.has_physical_tag() && !region.has_side();
+}
+
+// The numbers of the regions that the last one is restricted to. False where one of them is wrong.
+bool TranslateWithin(const v1::Region& region, const Names& names, std::size_t own, const std::string& path,
+                     std::vector<std::size_t>& within, Problems& problems) {
+  bool complete = true;
   for (int k = 0; k < region.within_size(); ++k) {
     const std::string at = JoinPath(path, IndexPath("within", static_cast<std::size_t>(k)));
-    const auto other = result.names.Find(region.within(k), at, problems);
-    if (!other) continue;
-    if (*other == own) {
-      problems.Add(at, "is the region itself", "name regions that stand before it");
+    const auto other = names.Find(region.within(k), at, problems);
+    if (other && *other != own) {
+      within.push_back(*other);
       continue;
     }
-    result.regions[own] = Intersection(result.regions[own], result.regions[*other]);
+    complete = false;
+    if (other) problems.Add(at, "is the region itself", "name regions that stand before it");
   }
+  return complete;
+}
+
+std::vector<Triangle> FacesOf(const TetMesh& mesh) { return BoundaryTriangles(mesh); }
+std::vector<Quad> FacesOf(const BrickMesh& mesh) { return BoundaryQuads(mesh); }
+// The surface as a mesh of nodes alone.
+TetMesh FacesOf(const TriangleMesh& mesh) { return {mesh.nodes, {}, {}, {}, {}, {}, {}, {}}; }
+
+template <class Mesh, class Faces>
+Region Select(const Mesh& mesh, const Faces& faces, const std::string& name, const Selector& selector) {
+  return SelectRegion(mesh, faces, name, selector);
+}
+Region Select(const TriangleMesh& mesh, const TetMesh& nodes, const std::string& name, const Selector& selector) {
+  return SelectRegion(nodes, mesh.triangles, name, selector);
 }
 
 }  // namespace
 
-TranslatedRegions TranslateRegions(const v1::Body& body, const std::string& body_path, const TranslatedMesh* mesh,
-                                   Problems& problems) {
-  TranslatedRegions result;
-  std::vector<Triangle> triangles;
-  std::vector<Quad> quads;
-  TetMesh bare;  // the nodes of a surface without tetrahedra
-  const bool is_surface = mesh != nullptr && mesh->mesh.nodes.empty() && !mesh->surface.nodes.empty();
-  if (is_surface) {
-    bare.nodes = mesh->surface.nodes;
-    triangles = mesh->surface.triangles;
-  } else if (mesh != nullptr && body.regions_size() > 0) {
-    triangles = BoundaryTriangles(mesh->mesh);
-    quads = BoundaryQuads(mesh->bricks);
-  }
+RegionSelectors TranslateRegions(const v1::Body& body, const std::string& body_path, Problems& problems) {
+  RegionSelectors result;
   for (int i = 0; i < body.regions_size(); ++i) {
     const v1::Region& region = body.regions(i);
     const std::string path = JoinPath(body_path, IndexPath("regions", static_cast<std::size_t>(i)));
     result.names.Add(region.name(), JoinPath(path, "name"), problems);
-    result.regions.push_back({region.name(), {}, {}, {}, {}, {}});
-    const auto selector = TranslateSelector(region, MetresIn(body.unit()), path, problems);
-    if (mesh != nullptr && selector) {
-      result.regions.back() = mesh->bricks.bricks.empty()
-                                  ? SelectRegion(is_surface ? bare : mesh->mesh, triangles, region.name(), *selector)
-                                  : SelectRegion(mesh->bricks, quads, region.name(), *selector);
-    }
-    Problems within;
-    Restrict(region, path, result, within);
-    problems.Append("", within);
-    if (mesh == nullptr || !selector || !within.empty()) continue;
-    // Within a surface there are no nodes: whether what the region is for finds any of the grid, or of the surface, is
-    // checked there.
-    const bool may_be_inside = is_surface && !region.has_physical_tag() && !region.has_side();
-    if (result.regions.back().nodes.empty() && !may_be_inside) AddEmptyRegion(body, region, *mesh, path, problems);
+    RegionSelectors::Entry& entry = result.entries.emplace_back();
+    entry.name = region.name();
+    entry.selector = TranslateSelector(region, MetresIn(body.unit()), path, problems);
+    const bool within = TranslateWithin(region, result.names, result.entries.size() - 1, path, entry.within, problems);
+    entry.complete = entry.selector && within;
   }
   return result;
 }
+
+template <class Mesh>
+std::vector<Region> SelectRegions(const RegionSelectors& selectors, const Mesh& mesh) {
+  std::vector<Region> regions;
+  if (selectors.entries.empty()) return regions;
+  const auto faces = FacesOf(mesh);
+  for (const RegionSelectors::Entry& entry : selectors.entries) {
+    Region region;
+    region.name = entry.name;
+    if (entry.selector) region = Select(mesh, faces, entry.name, *entry.selector);
+    for (const std::size_t other : entry.within) region = Intersection(region, regions[other]);
+    regions.push_back(std::move(region));
+  }
+  return regions;
+}
+template std::vector<Region> SelectRegions(const RegionSelectors& selectors, const TetMesh& mesh);
+template std::vector<Region> SelectRegions(const RegionSelectors& selectors, const BrickMesh& mesh);
+template std::vector<Region> SelectRegions(const RegionSelectors& selectors, const TriangleMesh& mesh);
+
+std::vector<Region> EmptyRegions(const RegionSelectors& selectors) {
+  std::vector<Region> regions;
+  for (const RegionSelectors::Entry& entry : selectors.entries) regions.emplace_back().name = entry.name;
+  return regions;
+}
+
+template <class Mesh>
+void CheckRegions(const v1::Body& body, const std::string& body_path, const RegionSelectors& selectors,
+                  const std::vector<Region>& regions, const Mesh& mesh, Problems& problems) {
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    const v1::Region& wire = body.regions(static_cast<int>(i));
+    if (!selectors.entries[i].complete || !regions[i].nodes.empty() || MayBeInside(wire, mesh)) continue;
+    AddEmptyRegion(body, wire, mesh, JoinPath(body_path, IndexPath("regions", i)), problems);
+  }
+}
+template void CheckRegions(const v1::Body& body, const std::string& body_path, const RegionSelectors& selectors,
+                           const std::vector<Region>& regions, const TetMesh& mesh, Problems& problems);
+template void CheckRegions(const v1::Body& body, const std::string& body_path, const RegionSelectors& selectors,
+                           const std::vector<Region>& regions, const BrickMesh& mesh, Problems& problems);
+template void CheckRegions(const v1::Body& body, const std::string& body_path, const RegionSelectors& selectors,
+                           const std::vector<Region>& regions, const TriangleMesh& mesh, Problems& problems);
 
 }  // namespace fascicle::server

@@ -23,20 +23,16 @@ void AddRenumbered(const Problem& problem, std::size_t index, Problems& problems
 }  // namespace
 
 void CheckEachBody(Scene scene, const std::vector<bool>& complete, Problems& problems) {
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+  std::vector<Body> bodies = std::exchange(scene.bodies, {});
+  // What is wrong with times and output has been said.
+  scene.output = {};
+  scene.duration = scene.output.frame_interval = 1;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (!complete[i]) continue;
-    Scene alone;
-    alone.method = scene.method;
-    alone.tet = scene.tet;
-    alone.voxel = scene.voxel;
-    alone.eulerian = scene.eulerian;
-    alone.squeezes = scene.squeezes;
-    alone.gravity = scene.gravity;
-    alone.floors = scene.floors;
-    alone.duration = alone.output.frame_interval = 1;  // what is wrong with them has been said
-    alone.bodies.push_back(std::move(scene.bodies[i]));
+    scene.bodies.clear();
+    scene.bodies.push_back(std::move(bodies[i]));
     Problems own;
-    CheckScene(alone, own);
+    CheckScene(scene, own);
     for (const Problem& problem : own.kept()) AddRenumbered(problem, i, problems);
   }
 }

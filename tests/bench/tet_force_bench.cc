@@ -120,7 +120,7 @@ void CompareWithBullet(const std::string& row, const BoxSize& size, const Materi
   const TetBox box(size.divisions, material, VolumeForm::kElement);
   const IsotropicModuli moduli(kNeoHookean);
   CoreForce ours(box, 1);
-  BulletBox bullet(box.scene.bodies[0].mesh, moduli.mu, moduli.lambda);
+  BulletBox bullet(box.scene.bodies[0].tet().mesh, moduli.mu, moduli.lambda);
   bullet.SetPositions(box.Bent());
   bullet.Evaluate();
   CheckAgreement(row + " (Bullet and its own law)",

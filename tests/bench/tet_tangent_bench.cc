@@ -33,7 +33,7 @@ void CompareWithGetfem(const std::string& row, const TetBox& box) {
   ThreadTeam team(1);
   CoreTangent ours(box.model, team);
   const IsotropicModuli moduli(kNeoHookean);
-  GetfemBox getfem(box.scene.bodies[0].mesh, moduli.mu, moduli.lambda);
+  GetfemBox getfem(box.scene.bodies[0].tet().mesh, moduli.mu, moduli.lambda);
   const NodalVector x = box.Bent();
   ours.Evaluate(kNoActivation, x);
   getfem.SetPositions(x);

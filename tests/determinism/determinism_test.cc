@@ -27,7 +27,7 @@ Scene BusyScene(Stepping stepping, ElementOrder element, int across) {
                                        .divisions_across = across,
                                        .divisions_along = 16}),
                          Muscle(std::array{5e2, 5e2, 2e5, 3e4, 1.4, 0.05, 6.6, 1.4}));
-  muscle.fibres = ConstantFibres(muscle.mesh, Vec3::UnitZ());
+  muscle.tet().fibres = ConstantFibres(muscle.tet().mesh, Vec3::UnitZ());
   muscle.constraints = {Fix(kZ0), Fix(kZ1)};
   muscle.activation = {{0, 0.005}, {0, 1}, Curve::Interpolation::kSmooth};
   muscle.damping = {.mass_proportional = 10, .viscosity = 2};

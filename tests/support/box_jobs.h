@@ -45,12 +45,13 @@ inline std::shared_ptr<const Scene> MakeScene(const BoxSpec& spec) {
   auto scene = std::make_shared<Scene>();
   Body body;
   body.name = "box";
-  body.mesh = MakeBox(Vec3::Zero(), Vec3(0.2, 0.1, 0.1), {2, 1, 1});
-  const std::vector<Triangle> surface = BoundaryTriangles(body.mesh);
-  body.regions.push_back(SelectRegion(body.mesh, surface, "wall", PlaneSelector{Vec3::Zero(), -Vec3::UnitX()}));
+  body.tet().mesh = MakeBox(Vec3::Zero(), Vec3(0.2, 0.1, 0.1), {2, 1, 1});
+  const std::vector<Triangle> surface = BoundaryTriangles(body.tet().mesh);
+  body.regions.push_back(SelectRegion(body.tet().mesh, surface, "wall", PlaneSelector{Vec3::Zero(), -Vec3::UnitX()}));
   body.constraints.push_back({.region = 0, .axes = {true, true, true}, .motion = {}});
   if (spec.crush > 0) {
-    body.regions.push_back(SelectRegion(body.mesh, surface, "end", PlaneSelector{Vec3(0.2, 0, 0), Vec3::UnitX()}));
+    body.regions.push_back(
+        SelectRegion(body.tet().mesh, surface, "end", PlaneSelector{Vec3(0.2, 0, 0), Vec3::UnitX()}));
     Motion motion;
     motion.translation[0] = Curve{{0, spec.duration}, {0, -spec.crush}, Curve::Interpolation::kLinear};
     body.constraints.push_back({.region = 1, .axes = {true, true, true}, .motion = motion});

@@ -68,7 +68,7 @@ inline Body ReferenceMuscle(int n, int lengthwise, const Curve& activation) {
   }
   Place(place, mesh);
   Body body = MakeBody("muscle", std::move(mesh), Muscle(std::array{0.03e6, 0.01e6, 8e6, 0.3e6, 1.0, 0.05, 6.6, 1.4}));
-  body.fibres = std::move(fibres);
+  body.tet().fibres = std::move(fibres);
   body.constraints = {Fix(kZ0), Fix(kZ1)};
   body.activation = activation;
   return body;

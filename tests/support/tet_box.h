@@ -31,9 +31,9 @@ struct TetBox {
                          Precision precision = Precision::kDouble) {
     Body body;
     body.name = "box";
-    body.mesh = MakeBox(Vec3::Zero(), Vec3::Constant(0.1), {divisions, divisions, divisions});
+    body.tet().mesh = MakeBox(Vec3::Zero(), Vec3::Constant(0.1), {divisions, divisions, divisions});
     body.material = material;
-    body.fibres = ConstantFibres(body.mesh, Vec3(1, 0.2, 0.1));
+    body.tet().fibres = ConstantFibres(body.tet().mesh, Vec3(1, 0.2, 0.1));
     body.activation = Curve::Constant(kActivation);
     Scene scene;
     scene.bodies.push_back(std::move(body));

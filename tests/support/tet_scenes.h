@@ -19,19 +19,19 @@ namespace fascicle::testing {
 inline Body MakeBody(std::string name, TetMesh mesh, Material material) {
   Body body;
   body.name = std::move(name);
-  body.mesh = std::move(mesh);
+  body.tet().mesh = std::move(mesh);
   body.material = std::move(material);
-  const std::vector<Triangle> surface = BoundaryTriangles(body.mesh);
-  Vec3 low = body.mesh.nodes[0], high = low;
-  for (const Vec3& X : body.mesh.nodes) {
+  const std::vector<Triangle> surface = BoundaryTriangles(body.tet().mesh);
+  Vec3 low = body.tet().mesh.nodes[0], high = low;
+  for (const Vec3& X : body.tet().mesh.nodes) {
     low = low.cwiseMin(X);
     high = high.cwiseMax(X);
   }
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 normal = Vec3::Unit(axis);
     const std::string letter(1, "xyz"[axis]);
-    body.regions.push_back(SelectRegion(body.mesh, surface, letter + "0", PlaneSelector{low, -normal}));
-    body.regions.push_back(SelectRegion(body.mesh, surface, letter + "1", PlaneSelector{high, normal}));
+    body.regions.push_back(SelectRegion(body.tet().mesh, surface, letter + "0", PlaneSelector{low, -normal}));
+    body.regions.push_back(SelectRegion(body.tet().mesh, surface, letter + "1", PlaneSelector{high, normal}));
   }
   return body;
 }
@@ -59,7 +59,7 @@ inline std::vector<Material> EveryLaw() {
 
 // A scene of one body, with fibres along x where the law needs them.
 inline Scene OneBody(Body body) {
-  if (body.fibres.empty()) body.fibres = ConstantFibres(body.mesh, Vec3(1, 0.3, 0.2));
+  if (body.tet().fibres.empty()) body.tet().fibres = ConstantFibres(body.tet().mesh, Vec3(1, 0.3, 0.2));
   Scene scene;
   scene.name = body.name;
   scene.bodies.push_back(std::move(body));

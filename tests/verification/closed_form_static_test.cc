@@ -29,7 +29,7 @@ UniaxialPoint FreeContraction(const Material& law, double activation) {
 TEST(ContractionTest, MuscleWithAFreeEnd) {
   for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
     Body body = BoxBody(Vec3(0.01, 0.01, 0.04), {2, 2, 4}, kMuscle);
-    body.fibres = ConstantFibres(body.mesh, Vec3::UnitZ());
+    body.tet().fibres = ConstantFibres(body.tet().mesh, Vec3::UnitZ());
     body.constraints = {Fix(kX0, {true, false, false}), Fix(kY0, {false, true, false}), Fix(kZ0, {false, false, true})};
     body.activation = Ramp(0.5);
     SteppedRun run(StaticScene(body, element));
@@ -52,7 +52,7 @@ TEST(ContractionTest, BarWithFibresAcross) {
   for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
     const Vec3 fibre(0.5, 0, std::sqrt(0.75));
     Body body = BoxBody(Vec3(0.01, 0.01, 0.04), {2, 2, 4}, kMuscle);
-    body.fibres = ConstantFibres(body.mesh, fibre);
+    body.tet().fibres = ConstantFibres(body.tet().mesh, fibre);
     body.regions.push_back({"origin", {0}, {}, {}, {}});
     body.regions.push_back({"along_x", {2}, {}, {}, {}});
     body.regions.push_back({"along_y", {6}, {}, {}, {}});

@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, TorusEnergy, ::testing::Values(0, 1));
 TEST(PrescribedMotionTest, RigidRotation) {
   Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
   Region all{"all", {}, {}, {}, {}};
-  for (std::size_t n = 0; n < body.mesh.nodes.size(); ++n) all.nodes.push_back(static_cast<std::int32_t>(n));
+  for (std::size_t n = 0; n < body.tet().mesh.nodes.size(); ++n) all.nodes.push_back(static_cast<std::int32_t>(n));
   body.regions.push_back(all);
   Constraint turn{6, {true, true, true}, {}};
   const Vec3 axis = Vec3(1, 2, 2).normalized(), point(0.01, 0, 0.02);
@@ -69,8 +69,8 @@ TEST(PrescribedMotionTest, RigidRotation) {
   for (const Frame& frame : run.frames) {
     const double t = frame.time;
     const Mat3 R = Eigen::AngleAxisd(9 * t, axis).toRotationMatrix();
-    for (std::size_t n = 0; n < body.mesh.nodes.size(); ++n) {
-      const Vec3 arm = R * (body.mesh.nodes[n] - point);
+    for (std::size_t n = 0; n < body.tet().mesh.nodes.size(); ++n) {
+      const Vec3 arm = R * (body.tet().mesh.nodes[n] - point);
       EXPECT_LT((frame.bodies[0].positions[n] - (arm + point + Vec3(0, 0.5 * t, 0))).norm(), 1e-15);
       const double* v = &frame.bodies[0].fields[0].values[3 * n];
       EXPECT_LT((Vec3(v[0], v[1], v[2]) - (9 * axis.cross(arm) + Vec3(0, 0.5, 0))).norm(), 1e-13);

@@ -21,14 +21,14 @@ TEST(FebioTest, CantileverNodeByNode) {
 
   Body body = BoxBody(Vec3(0.01, 0.001, 0.001), {20, 2, 2}, NeoHookean(std::array{1e9, 0.3}));
   const auto& coordinates = field.at("node_coordinates");
-  ASSERT_EQ(coordinates.size(), body.mesh.nodes.size());
+  ASSERT_EQ(coordinates.size(), body.tet().mesh.nodes.size());
   for (std::size_t n = 0; n < coordinates.size(); ++n) {
-    for (int c = 0; c < 3; ++c) ASSERT_NEAR(coordinates[n][c].get<double>() * 1e-3, body.mesh.nodes[n][c], 1e-12);
+    for (int c = 0; c < 3; ++c) ASSERT_NEAR(coordinates[n][c].get<double>() * 1e-3, body.tet().mesh.nodes[n][c], 1e-12);
   }
   const auto& elements = field.at("elements_0based");
-  ASSERT_EQ(elements.size(), body.mesh.tetrahedra.size());
+  ASSERT_EQ(elements.size(), body.tet().mesh.tetrahedra.size());
   for (std::size_t e = 0; e < elements.size(); ++e) {
-    ASSERT_EQ(elements[e].get<Tetrahedron>(), body.mesh.tetrahedra[e]);
+    ASSERT_EQ(elements[e].get<Tetrahedron>(), body.tet().mesh.tetrahedra[e]);
   }
   body.constraints = {Fix(kX0)};
   body.loads.push_back({kX1, Traction{Vec3(0, 0, -1 / 1e-6)}, Curve{{0, 2e-3}, {0, 1}, Curve::Interpolation::kSmooth}});
@@ -57,7 +57,7 @@ TEST(FebioTest, CantileverNodeByNode) {
   double tip = 0, largest = 0;
   for (std::size_t n = 0; n < displacements.size(); ++n) {
     const Vec3 reference = 1e-3 * Vec3(displacements[n][0], displacements[n][1], displacements[n][2]);
-    const Vec3 ours = run.frames.back().bodies[0].positions[n] - body.mesh.nodes[n];
+    const Vec3 ours = run.frames.back().bodies[0].positions[n] - body.tet().mesh.nodes[n];
     tip = std::max(tip, std::abs(reference[2]));
     largest = std::max(largest, (ours - reference).norm());
   }

@@ -20,7 +20,7 @@ constexpr double kPi = std::numbers::pi;
 Body MappedBody(const Vec3& size, const std::array<int, 3>& divisions, const std::function<Vec3(const Vec3&)>& place,
                 const Material& law) {
   Body body = BoxBody(size, divisions, law);
-  Place(place, body.mesh);
+  Place(place, body.tet().mesh);
   return body;
 }
 
@@ -60,10 +60,10 @@ TEST(FurtherProblems, TwistedMuscleWithWindingFibres) {
   for (const double winding : {0.0, 0.35}) {
     const RodForces exact = TwistedRod{kRodRadius, kRodAngle / kRodLength, winding, law, 0.5}.Forces();
     Body body = MakeBody("rod", RodMesh(), law);
-    for (std::size_t t = 0; t < body.mesh.tetrahedra.size(); ++t) {
-      const Vec3 at = Centroid(body.mesh, t);
+    for (std::size_t t = 0; t < body.tet().mesh.tetrahedra.size(); ++t) {
+      const Vec3 at = Centroid(body.tet().mesh, t);
       const Vec3 around = Vec3(-at[1], at[0], 0).normalized();
-      body.fibres.push_back(std::sin(winding) * around + std::cos(winding) * Vec3::UnitZ());
+      body.tet().fibres.push_back(std::sin(winding) * around + std::cos(winding) * Vec3::UnitZ());
     }
     std::printf("fibres at %.2f rad: ", winding);
     const RodForces found = TwistRod(std::move(body), 0.5, exact);
@@ -101,7 +101,7 @@ double RingDeflection(int n, ElementOrder element) {
   };
   Body body = MappedBody(Vec3(1, 1, 1), {n, n, 6 * n}, place, NearlyIncompressible());
   // The mapping turns the box's handedness.
-  for (Tetrahedron& tet : body.mesh.tetrahedra) std::swap(tet[2], tet[3]);
+  for (Tetrahedron& tet : body.tet().mesh.tetrahedra) std::swap(tet[2], tet[3]);
   for (Region& region : body.regions) {
     for (Triangle& t : region.triangles) std::swap(t[1], t[2]);
   }
@@ -141,8 +141,8 @@ Body Arch(int n) {
   Body body = MappedBody(Vec3(1, 1, 1), {10 * n, n, n}, place, NeoHookean(std::array{1e6, 0.4}));
   body.constraints = {Fix(kX0), Fix(kX1)};
   Region middle{"middle", {}, {}, {}, {}};
-  for (std::size_t k = 0; k < body.mesh.nodes.size(); ++k) {
-    if (std::abs(body.mesh.nodes[k][0] - 0.02) < 1e-9) middle.nodes.push_back(static_cast<std::int32_t>(k));
+  for (std::size_t k = 0; k < body.tet().mesh.nodes.size(); ++k) {
+    if (std::abs(body.tet().mesh.nodes[k][0] - 0.02) < 1e-9) middle.nodes.push_back(static_cast<std::int32_t>(k));
   }
   body.regions.push_back(middle);
   return body;

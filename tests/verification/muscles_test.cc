@@ -66,7 +66,7 @@ void CheckIsometricContraction(const Scene& scene) {
     const std::string prefix = name + "/reaction/" + region.name + "/";
     return Vec3(run.At(frame, prefix + "x"), run.At(frame, prefix + "y"), run.At(frame, prefix + "z"));
   };
-  const Vec3 axis = (CentreOf(body.mesh.nodes, two) - CentreOf(body.mesh.nodes, one)).normalized();
+  const Vec3 axis = (CentreOf(body.tet().mesh.nodes, two) - CentreOf(body.tet().mesh.nodes, one)).normalized();
   const std::size_t last = run.frames.size() - 1;
   const Vec3 end_force = reaction(last, two);
   // In equilibrium, and the muscle pulls its ends together: the supports hold against that.
@@ -86,10 +86,10 @@ void CheckIsometricContraction(const Scene& scene) {
   }
   EXPECT_GE(rises, 5);
 
-  const double before =
-      WidestSlice(body.mesh, body.mesh.nodes, CentreOf(body.mesh.nodes, one), CentreOf(body.mesh.nodes, two));
-  const double after = WidestSlice(body.mesh, run.frames.back().bodies[0].positions, CentreOf(body.mesh.nodes, one),
-                                   CentreOf(body.mesh.nodes, two));
+  const double before = WidestSlice(body.tet().mesh, body.tet().mesh.nodes, CentreOf(body.tet().mesh.nodes, one),
+                                    CentreOf(body.tet().mesh.nodes, two));
+  const double after = WidestSlice(body.tet().mesh, run.frames.back().bodies[0].positions,
+                                   CentreOf(body.tet().mesh.nodes, one), CentreOf(body.tet().mesh.nodes, two));
   EXPECT_GT(after, 1.02 * before);
   std::printf(
       "%s: at rest at %.3f s, %lld steps, step %.3g s, end force %.2f N, volume ratio %.5f (least of an element %.3f), "
@@ -131,7 +131,7 @@ void CheckTendonScene(const std::string& muscle) {
   Scene scene = *loaded;
   scene.duration = 1;
   std::array<std::size_t, 2> elements = {};  // of muscle and of tendon
-  for (const std::int32_t m : scene.bodies[0].material_of) ++elements[m == 0 ? 0 : 1];
+  for (const std::int32_t m : scene.bodies[0].tet().materials.of) ++elements[m == 0 ? 0 : 1];
   EXPECT_GT(elements[1], 0.05 * static_cast<double>(elements[0]));
   const RunResult run = RunScene(scene, 2);
   ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded) << run.outcome.failure.message;

@@ -32,8 +32,8 @@ TEST(UniaxialTest, LinearElastic) {
   const RunResult run = RunScene(scene);
   ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded);
   const double strain = traction / E;
-  for (std::size_t n = 0; n < scene.bodies[0].mesh.nodes.size(); ++n) {
-    const Vec3& X = scene.bodies[0].mesh.nodes[n];
+  for (std::size_t n = 0; n < scene.bodies[0].tet().mesh.nodes.size(); ++n) {
+    const Vec3& X = scene.bodies[0].tet().mesh.nodes[n];
     const Vec3 exact(strain * X[0], -nu * strain * X[1], -nu * strain * X[2]);
     EXPECT_LT((run.frames.back().bodies[0].positions[n] - X - exact).norm(), 1e-7 * strain * 0.04);
   }
@@ -60,8 +60,8 @@ TEST(UniaxialTest, NeoHookean) {
   const RunResult run = RunScene(scene);
   ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded);
   EXPECT_GT(l, 1.3);
-  for (std::size_t n = 0; n < scene.bodies[0].mesh.nodes.size(); ++n) {
-    const Vec3& X = scene.bodies[0].mesh.nodes[n];
+  for (std::size_t n = 0; n < scene.bodies[0].tet().mesh.nodes.size(); ++n) {
+    const Vec3& X = scene.bodies[0].tet().mesh.nodes[n];
     EXPECT_LT((run.frames.back().bodies[0].positions[n] - Vec3(l * X[0], t * X[1], t * X[2])).norm(), 1e-7 * 0.04);
   }
   EXPECT_NEAR(run.Last("box/volume_ratio"), l * t * t, 1e-7);

@@ -17,8 +17,9 @@ Scene TangledBlock(unsigned seed, ElementOrder element) {
   Body body =
       BoxBody(Vec3::Constant(kSize), {kDivisions, kDivisions, kDivisions}, MooneyRivlin(std::array{3e4, 1e4, 8e7}));
   body.constraints = {Fix(kZ0)};
-  const NodalVector moved = Shaken(body.mesh.nodes, 0.8 * kSize / kDivisions, seed);
-  for (std::size_t n = 0; n < moved.size(); ++n) body.initial_displacement.push_back(moved[n] - body.mesh.nodes[n]);
+  const NodalVector moved = Shaken(body.tet().mesh.nodes, 0.8 * kSize / kDivisions, seed);
+  for (std::size_t n = 0; n < moved.size(); ++n)
+    body.tet().initial_displacement.push_back(moved[n] - body.tet().mesh.nodes[n]);
   Scene scene = OneBody(std::move(body));
   scene.tet.stepping = Stepping::kQuasiStatic;
   scene.tet.element = element;

@@ -58,7 +58,7 @@ TEST(CheckSceneTest, NamesMustDiffer) {
 
 TEST(CheckSceneTest, FibresAreMissing) {
   Scene scene = GoodScene();
-  scene.bodies[0].fibres.clear();
+  scene.bodies[0].tet().fibres.clear();
   EXPECT_EQ(ProblemOf(scene).path, "bodies[0].fibres");
   scene.bodies[0].material = NeoHookean(std::array{1e4, 0.3});
   Problems problems;
@@ -68,33 +68,33 @@ TEST(CheckSceneTest, FibresAreMissing) {
 
 TEST(CheckSceneTest, FibresOfAnotherMesh) {
   Scene scene = GoodScene();
-  scene.bodies[0].fibres.pop_back();
+  scene.bodies[0].tet().fibres.pop_back();
   EXPECT_THAT(ProblemOf(scene).message, HasSubstr("71 fibre directions for 72"));
 }
 
 TEST(CheckSceneTest, FibreThatIsNoDirection) {
   Scene scene = GoodScene();
-  scene.bodies[0].fibres[5] *= 2;
+  scene.bodies[0].tet().fibres[5] *= 2;
   EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 5"));
 }
 
 TEST(CheckSceneTest, FibresThatOnlyAPartNeeds) {
   Scene scene = GoodScene();
   Body& body = scene.bodies[0];
-  body.more_materials = {body.material};
+  body.tet().materials.more = {body.material};
   body.material = NeoHookean(std::array{1e4, 0.3});
-  body.material_of.assign(body.mesh.tetrahedra.size(), 0);
-  body.material_of[3] = 1;
-  body.fibres.clear();
+  body.tet().materials.of.assign(body.tet().mesh.tetrahedra.size(), 0);
+  body.tet().materials.of[3] = 1;
+  body.tet().fibres.clear();
   EXPECT_EQ(ProblemOf(scene).path, "bodies[0].fibres");
 }
 
 TEST(CheckSceneTest, PartsWithMaterialsAndActivationsThatThereAreNot) {
-  const std::size_t tetrahedra = GoodScene().bodies[0].mesh.tetrahedra.size();
+  const std::size_t tetrahedra = GoodScene().bodies[0].tet().mesh.tetrahedra.size();
   for (const bool of_material : {true, false}) {
     Scene scene = GoodScene();
     Body& body = scene.bodies[0];
-    auto& parts = of_material ? body.material_of : body.activation_of;
+    auto& parts = of_material ? body.tet().materials.of : body.tet().activations.of;
     const std::string path = of_material ? "bodies[0].region_materials" : "bodies[0].region_activations";
     parts.assign(tetrahedra, 0);
     Problems none;
@@ -112,14 +112,14 @@ TEST(CheckSceneTest, PartsWithMaterialsAndActivationsThatThereAreNot) {
 
 TEST(CheckSceneTest, ActivationOfAPartOutsideItsRange) {
   Scene scene = GoodScene();
-  scene.bodies[0].more_activations = {Curve::Constant(1), Curve::Constant(2)};
-  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].region_activations[1].curve.values");
+  scene.bodies[0].tet().activations.more = {Curve::Constant(1), Curve::Constant(2)};
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].region_activations[1].values");
 }
 
 TEST(CheckSceneTest, ActivationScale) {
   Scene scene = GoodScene();
-  std::vector<double>& scale = scene.bodies[0].activation_scale;
-  scale.assign(scene.bodies[0].mesh.tetrahedra.size(), 0.5);
+  std::vector<double>& scale = scene.bodies[0].tet().activation_scale;
+  scale.assign(scene.bodies[0].tet().mesh.tetrahedra.size(), 0.5);
   scale[9] = 1.5;
   EXPECT_EQ(ProblemOf(scene).path, "bodies[0].activation_scale");
   EXPECT_THAT(ProblemOf(scene).message, HasSubstr("element 9"));
@@ -132,8 +132,8 @@ TEST(CheckSceneTest, ActivationScale) {
 
 TEST(CheckSceneTest, InitialDisplacement) {
   Scene scene = GoodScene();
-  std::vector<Vec3>& displacement = scene.bodies[0].initial_displacement;
-  displacement.assign(scene.bodies[0].mesh.nodes.size(), Vec3(0, 0, 1e-3));
+  std::vector<Vec3>& displacement = scene.bodies[0].tet().initial_displacement;
+  displacement.assign(scene.bodies[0].tet().mesh.nodes.size(), Vec3(0, 0, 1e-3));
   displacement[2].y() = std::nan("");
   EXPECT_EQ(ProblemOf(scene).path, "bodies[0].initial_displacement");
   EXPECT_THAT(ProblemOf(scene).message, HasSubstr("node 2"));

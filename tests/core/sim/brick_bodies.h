@@ -16,11 +16,11 @@ inline Body VoxelBox(const Vec3& size, const GridIndex& divisions, Material mate
   body.name = "box";
   VoxelGrid grid = MakeVoxelGrid(divisions, size.cwiseQuotient(Vec3(divisions[0], divisions[1], divisions[2])));
   std::fill(grid.material.begin(), grid.material.end(), std::uint8_t{1});
-  body.bricks = MakeBrickMesh(std::move(grid));
+  body.shape = VoxelShape{MakeBrickMesh(std::move(grid)), {}};
   body.material = std::move(material);
-  const std::vector<Quad> surface = BoundaryQuads(body.bricks);
-  body.regions = {SelectRegion(body.bricks, surface, "x0", SideSelector{-Vec3::UnitX(), 0.1, 0}),
-                  SelectRegion(body.bricks, surface, "x1", SideSelector{Vec3::UnitX(), 0.1, 0})};
+  const std::vector<Quad> surface = BoundaryQuads(body.voxel().mesh);
+  body.regions = {SelectRegion(body.voxel().mesh, surface, "x0", SideSelector{-Vec3::UnitX(), 0.1, 0}),
+                  SelectRegion(body.voxel().mesh, surface, "x1", SideSelector{Vec3::UnitX(), 0.1, 0})};
   return body;
 }
 

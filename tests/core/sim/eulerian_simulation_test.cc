@@ -41,13 +41,14 @@ TriangleMesh BoxSurface(const Vec3& origin, const Vec3& size, int divisions) {
 Body Cube(const std::string& name = "cube") {
   Body body;
   body.name = name;
-  body.surface = BoxSurface(Vec3::Constant(0.003), Vec3::Constant(0.05), 5);
+  body.shape = SurfaceShape{BoxSurface(Vec3::Constant(0.003), Vec3::Constant(0.05), 5), {}, {}, {}};
   body.density = 1000;
   body.material = NeoHookean(std::array{5e3, 0.3});
   TetMesh nodes;
-  nodes.nodes = body.surface.nodes;
-  body.regions = {SelectRegion(nodes, body.surface.triangles, "low", BoxSelector{Vec3::Zero(), Vec3(1, 1, 0.013)}),
-                  SelectRegion(nodes, body.surface.triangles, "high", SideSelector{Vec3::UnitZ(), 0.1, 0})};
+  nodes.nodes = body.surface().mesh.nodes;
+  body.regions = {
+      SelectRegion(nodes, body.surface().mesh.triangles, "low", BoxSelector{Vec3::Zero(), Vec3(1, 1, 0.013)}),
+      SelectRegion(nodes, body.surface().mesh.triangles, "high", SideSelector{Vec3::UnitZ(), 0.1, 0})};
   return body;
 }
 
@@ -89,8 +90,8 @@ TEST(EulerianSimulationTest, FramesCarryTheSurfaceAndFieldsAtItsNodes) {
   const RunResult run = RunScene(scene);
   ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded) << run.outcome.failure.message;
   ASSERT_EQ(run.frames.size(), 5u);
-  const std::size_t nodes = scene.bodies[0].surface.nodes.size();
-  EXPECT_EQ(run.frames[0].bodies[0].positions, scene.bodies[0].surface.nodes);
+  const std::size_t nodes = scene.bodies[0].surface().mesh.nodes.size();
+  EXPECT_EQ(run.frames[0].bodies[0].positions, scene.bodies[0].surface().mesh.nodes);
   for (std::size_t f = 0; f < run.frames.size(); ++f) {
     const BodyFrame& body = run.frames[f].bodies[0];
     EXPECT_DOUBLE_EQ(run.frames[f].time, 0.005 * static_cast<double>(f));
@@ -155,8 +156,8 @@ TEST(EulerianSimulationTest, SupportsMove) {
   const RunResult run = RunScene(scene);
   ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded) << run.outcome.failure.message;
   const RigidMotion end = MotionAt(low.motion, 0.1);
-  for (std::size_t n = 0; n < body.surface.nodes.size(); ++n) {
-    const Vec3& X = body.surface.nodes[n];
+  for (std::size_t n = 0; n < body.surface().mesh.nodes.size(); ++n) {
+    const Vec3& X = body.surface().mesh.nodes[n];
     const double off = (run.frames.back().bodies[0].positions[n] - end.PositionOf(X)).norm();
     EXPECT_LT(off, (X[2] < 0.01 ? 0.05 : 0.15) * kCell) << n;
   }
@@ -167,9 +168,9 @@ TEST(EulerianSimulationTest, AnyThreadsAndRestartsGiveTheSameBits) {
   // Two bodies, which step by themselves; one flows, has fibres, and is squeezed with the other.
   Body second = Cube("second");
   second.material = Muscle(std::array{1e3, 0.0, 1e5, 1e4, 1.0, 0.05, 6.6, 1.4, 0.0, 0.25, 1.4});
-  second.fibres = {Vec3::UnitX()};
+  second.surface().fibres = {Vec3::UnitX()};
   second.activation = Curve{{0, 0.02}, {0, 0.5}};
-  second.plasticity = Plasticity{50, 0};
+  second.surface().plasticity = Plasticity{50, 0};
   second.constraints = {{0, {true, true, true}, {}}};
   scene.bodies.push_back(std::move(second));
   scene.squeezes.push_back({Vec3::Constant(0.03), Vec3::UnitX(), 1e4, 0.01, Curve::Constant(1)});
@@ -189,9 +190,9 @@ TEST(EulerianSimulationTest, CheckpointsFitTheirSceneOnly) {
   std::vector<Scene> others(6, scene);
   others[0].eulerian.cell_size *= 1.01;
   others[1].eulerian.volume = VolumeTreatment::kNone;
-  others[2].bodies[0].plasticity = Plasticity{1e3, 0};
+  others[2].bodies[0].surface().plasticity = Plasticity{1e3, 0};
   others[3].squeezes.push_back({});
-  others[4].bodies[0].surface.nodes[0][0] += 1e-6;
+  others[4].bodies[0].surface().mesh.nodes[0][0] += 1e-6;
   others[5].eulerian.maccormack = true;
   for (std::size_t k = 0; k < others.size(); ++k) EXPECT_FALSE(takes(others[k])) << k;
 }
@@ -216,7 +217,7 @@ TEST(EulerianSimulationTest, PlasticFlowStays) {
   // thinner.
   const auto width = [](bool plastic) {
     Body body = Cube();
-    if (plastic) body.plasticity = Plasticity{300, 0};
+    if (plastic) body.surface().plasticity = Plasticity{300, 0};
     body.damping.mass_proportional = 30;
     Scene scene = SceneOf({std::move(body)});
     scene.squeezes.push_back({Vec3::Constant(0.028), Vec3::UnitX(), 6e4, 0.01, Curve{{0.08, 0.09}, {1, 0}}});
@@ -225,7 +226,7 @@ TEST(EulerianSimulationTest, PlasticFlowStays) {
     const RunResult run = RunScene(scene);
     EXPECT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded) << run.outcome.failure.message;
     EXPECT_NEAR(run.Last("cube/volume_ratio"), 1, 0.01);
-    const std::vector<Vec3>& X = scene.bodies[0].surface.nodes;
+    const std::vector<Vec3>& X = scene.bodies[0].surface().mesh.nodes;
     const std::vector<Vec3>& x = run.frames.back().bodies[0].positions;
     double sum = 0;
     int count = 0;
@@ -256,7 +257,7 @@ TEST(EulerianSimulationTest, StiffBodiesTakeLongStepsImplicitly) {
   ASSERT_EQ(explicitly.outcome.kind, Outcome::Kind::kSucceeded) << explicitly.outcome.failure.message;
   ASSERT_EQ(implicitly.outcome.kind, Outcome::Kind::kSucceeded) << implicitly.outcome.failure.message;
   EXPECT_LT(4 * implicitly.frames.back().step, explicitly.frames.back().step);
-  const std::vector<Vec3>& rest = scene.bodies[0].surface.nodes;
+  const std::vector<Vec3>& rest = scene.bodies[0].surface().mesh.nodes;
   double most = 0, off = 0;
   for (std::size_t n = 0; n < rest.size(); ++n) {
     const Vec3& x = explicitly.frames.back().bodies[0].positions[n];

@@ -186,7 +186,7 @@ TEST(CheckpointTest, RestoresOnlyItsOwnScene) {
   other.bodies[0].material = NeoHookean(std::array{1.001e4, 0.3});
   EXPECT_FALSE(restores(other, checkpoint));
   other = scene;
-  other.bodies[0].mesh.nodes[0][0] += 1e-9;
+  other.bodies[0].tet().mesh.nodes[0][0] += 1e-9;
   EXPECT_FALSE(restores(other, checkpoint));
   other = scene;
   other.tet.safety = 0.8;

@@ -22,18 +22,18 @@ const Vec3 kSize(0.04, 0.01, 0.02);
 // A bar that slides at x = 0, held there in its middle line, and is pulled at the other end by a traction that grows.
 Scene Bar(Material material) {
   Body body = VoxelBox(kSize, {8, 2, 4}, std::move(material));
-  const std::vector<Quad> surface = BoundaryQuads(body.bricks);
+  const std::vector<Quad> surface = BoundaryQuads(body.voxel().mesh);
   const Vec3 middle(0, 0.005, 0.01);
-  body.regions.push_back(SelectRegion(body.bricks, surface, "middle", SphereSelector{middle, 1e-6}));
+  body.regions.push_back(SelectRegion(body.voxel().mesh, surface, "middle", SphereSelector{middle, 1e-6}));
   body.regions.push_back(
-      SelectRegion(body.bricks, surface, "line", BoxSelector{Vec3(0, 0.005, 0), Vec3(0, 0.005, 0.02)}));
+      SelectRegion(body.voxel().mesh, surface, "line", BoxSelector{Vec3(0, 0.005, 0), Vec3(0, 0.005, 0.02)}));
   body.constraints = {{0, {true, false, false}, {}}, {2, {true, true, true}, {}}, {3, {false, true, false}, {}}};
   body.loads.push_back({1, Traction{Vec3(kPull, 0, 0)}, Curve{{0, 1}, {0, 1}}});
   Scene scene = VoxelScene(std::move(body));
   scene.output.frame_interval = 0.5;
   scene.output.fields = {OutputField::kCauchyStress, OutputField::kVonMisesStress, OutputField::kPressure,
                          OutputField::kVolumeRatio};
-  scene.output.probes = {{"corner", 0, static_cast<std::int32_t>(scene.bodies[0].bricks.nodes.size()) - 1}};
+  scene.output.probes = {{"corner", 0, static_cast<std::int32_t>(scene.bodies[0].voxel().mesh.nodes.size()) - 1}};
   scene.voxel.tolerance = 1e-12;
   return scene;
 }
@@ -57,7 +57,7 @@ TEST(VoxelSimulationTest, ABarStretchesAsHookeSays) {
                 -scale * kPull * kSize[1] * kSize[2], 1e-8);
     EXPECT_NEAR(run.At(f, "energy/elastic"), 0.5 * scale * scale * kPull * strain * kSize.prod(), 1e-13);
     const std::vector<FieldValues>& fields = run.frames[f].bodies[0].fields;
-    for (std::size_t e = 0; e < scene.bodies[0].bricks.bricks.size(); ++e) {
+    for (std::size_t e = 0; e < scene.bodies[0].voxel().mesh.bricks.size(); ++e) {
       EXPECT_NEAR(fields[0].values[6 * e], scale * kPull, 1e-6 * kPull);
       EXPECT_NEAR(fields[0].values[6 * e + 3], 0, 1e-6 * kPull);
       EXPECT_NEAR(fields[1].values[e], scale * kPull, 1e-6 * kPull);
@@ -79,9 +79,9 @@ TEST(VoxelSimulationTest, ATurnedGridGivesTheTurnedAnswer) {
   const RunResult straight = RunScene(scene);
 
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
-  VoxelGrid grid = body.bricks.grid;
+  VoxelGrid grid = body.voxel().mesh.grid;
   grid.direction = turn;
-  body.bricks = MakeBrickMesh(std::move(grid));  // regions keep their numbers
+  body.voxel().mesh = MakeBrickMesh(std::move(grid));  // regions keep their numbers
   body.loads[0].kind = NodalForce{turn * Vec3(0.01, 0.02, -0.03)};
   Scene turned_scene = scene;
   turned_scene.bodies = {body};
@@ -99,7 +99,7 @@ TEST(VoxelSimulationTest, ATurnedGridGivesTheTurnedAnswer) {
     sigma << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
     return sigma;
   };
-  for (std::size_t e = 0; e < body.bricks.bricks.size(); ++e) {
+  for (std::size_t e = 0; e < body.voxel().mesh.bricks.size(); ++e) {
     EXPECT_LT((turn * stress(a, e) * turn.transpose() - stress(b, e)).norm(), 1e-7 * stress(a, 0).norm());
   }
 }
@@ -128,7 +128,7 @@ TEST(VoxelSimulationTest, CorotatedBricksTurnFreely) {
   const Mat3 R = Eigen::AngleAxisd(1.5, Vec3::UnitZ()).toRotationMatrix();
   const BodyFrame& last = run.frames.back().bodies[0];
   for (std::size_t n = 0; n < last.positions.size(); ++n) {
-    EXPECT_LT((last.positions[n] - R * body.bricks.nodes[n]).norm(), 1e-7);
+    EXPECT_LT((last.positions[n] - R * body.voxel().mesh.nodes[n]).norm(), 1e-7);
   }
   for (const double stress : last.fields[0].values) EXPECT_LT(stress, 1e-5 * kYoung);
 }
@@ -141,7 +141,7 @@ Scene Release() {
   Scene scene = VoxelScene(body);
   scene.voxel.stepping = VoxelStepping::kDynamic;
   scene.voxel.start_loaded = true;
-  scene.output.probes = {{"tip", 0, static_cast<std::int32_t>(body.bricks.nodes.size()) - 1}};
+  scene.output.probes = {{"tip", 0, static_cast<std::int32_t>(body.voxel().mesh.nodes.size()) - 1}};
   scene.output.fields = {OutputField::kVelocity};
   return scene;
 }
@@ -219,14 +219,15 @@ TEST(VoxelSimulationTest, EveryVoxelMayHaveAStiffnessOfItsOwn) {
   Body& body = scene.bodies[0];
   // In series along x: layers of different stiffness, each four times over.
   double compliance = 0;
-  for (std::size_t e = 0; e < body.bricks.bricks.size(); ++e) {
+  for (std::size_t e = 0; e < body.voxel().mesh.bricks.size(); ++e) {
     const auto layer =
-        static_cast<std::int64_t>(std::floor(body.bricks.nodes[body.bricks.bricks[e][0]][0] / 0.005 + 0.5));
-    body.more_materials.push_back(LinearElastic(std::array{kYoung * static_cast<double>(1 + layer), 0.0}));
-    body.material_of.push_back(static_cast<std::int32_t>(body.more_materials.size()));
+        static_cast<std::int64_t>(std::floor(body.voxel().mesh.nodes[body.voxel().mesh.bricks[e][0]][0] / 0.005 + 0.5));
+    body.voxel().materials.more.push_back(LinearElastic(std::array{kYoung * static_cast<double>(1 + layer), 0.0}));
+    body.voxel().materials.of.push_back(static_cast<std::int32_t>(body.voxel().materials.more.size()));
   }
   for (int layer = 0; layer < 8; ++layer) compliance += 0.005 / (kYoung * (1 + layer));
-  while (body.more_materials.size() <= 300) body.more_materials.push_back(LinearElastic(std::array{kYoung, 0.1}));
+  while (body.voxel().materials.more.size() <= 300)
+    body.voxel().materials.more.push_back(LinearElastic(std::array{kYoung, 0.1}));
   const RunResult run = RunScene(scene);
   ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded) << run.outcome.failure.message;
   EXPECT_NEAR(run.Last("probe/corner/x"), kPull * compliance, 1e-7 * kPull * compliance);

@@ -15,7 +15,7 @@ const Floor kGround{"ground", Vec3::Zero(), Vec3::UnitZ()};
 // A cube of 2 cm above the ground, free.
 Scene FallingCube(Stepping stepping, ElementOrder element, double height) {
   Body cube = BoxBody(Vec3(0.02, 0.02, 0.02), {3, 3, 3}, NeoHookean(std::array{2e4, 0.3}));
-  for (Vec3& x : cube.mesh.nodes) x[2] += height;
+  for (Vec3& x : cube.tet().mesh.nodes) x[2] += height;
   Scene scene;
   scene.bodies = {cube};
   scene.gravity.acceleration = Vec3(0, 0, -9.81);

@@ -136,14 +136,14 @@ INSTANTIATE_TEST_SUITE_P(Laws, EveryLawTest, ::testing::Range(0, 7),
 // A linear displacement on an irregular mesh: the same stress everywhere and no force on inner nodes.
 TEST(PatchTest, LinearDisplacementIsInEquilibrium) {
   Body body = BoxBody(kSize, {4, 3, 3}, NeoHookean(std::array{1e4, 0.3}));
-  const std::vector<Triangle> surface = BoundaryTriangles(body.mesh);
-  std::vector<bool> inside(body.mesh.nodes.size(), true);
+  const std::vector<Triangle> surface = BoundaryTriangles(body.tet().mesh);
+  std::vector<bool> inside(body.tet().mesh.nodes.size(), true);
   for (const Triangle& t : surface) {
     for (const std::int32_t n : t) inside[n] = false;
   }
-  const NodalVector shaken = Shaken(body.mesh.nodes, 1e-3, 5);
+  const NodalVector shaken = Shaken(body.tet().mesh.nodes, 1e-3, 5);
   for (std::size_t n = 0; n < inside.size(); ++n) {
-    if (inside[n]) body.mesh.nodes[n] = shaken[n];
+    if (inside[n]) body.tet().mesh.nodes[n] = shaken[n];
   }
   Loaded loaded(OneBody(body));
   Mat3 F;
@@ -234,7 +234,7 @@ TEST(BadElementsTest, NamesThem) {
   EXPECT_TRUE(bad.inverted);
   ASSERT_FALSE(bad.elements.empty());
   for (const std::int64_t e : bad.elements) {
-    const Tetrahedron& tet = loaded.scene.bodies[0].mesh.tetrahedra[static_cast<std::size_t>(e)];
+    const Tetrahedron& tet = loaded.scene.bodies[0].tet().mesh.tetrahedra[static_cast<std::size_t>(e)];
     EXPECT_NE(std::find(tet.begin(), tet.end(), 0), tet.end());
   }
 }

@@ -202,7 +202,7 @@ TEST(SingleTest, ContractionFollowsDouble) {
   const auto run = [](Precision precision) {
     Body body =
         BoxBody(Vec3(0.04, 0.01, 0.01), {12, 3, 3}, Muscle(std::array{5e2, 5e2, 1e6, 3e5, 1.2, 0.05, 6.6, 1.4}));
-    body.fibres = ConstantFibres(body.mesh, Vec3(1, 0.2, 0));
+    body.tet().fibres = ConstantFibres(body.tet().mesh, Vec3(1, 0.2, 0));
     body.constraints = {Fix(kX0), Fix(kX1)};
     body.activation = Curve{{0, 0.02}, {0, 1}, Curve::Interpolation::kSmooth};
     body.damping.mass_proportional = 50;

@@ -23,13 +23,13 @@ inline Scene MixedScene(const Material& law, ElementOrder element, VolumeForm vo
   for (int b = 0; b < 2; ++b) {
     Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {divisions + b, divisions, divisions}, law);
     body.name += static_cast<char>('a' + b);
-    const NodalVector directions = RandomVectors(body.mesh.tetrahedra.size(), 21 + b);
-    for (const Vec3& direction : directions) body.fibres.push_back((direction + Vec3(2, 0, 0)).normalized());
+    const NodalVector directions = RandomVectors(body.tet().mesh.tetrahedra.size(), 21 + b);
+    for (const Vec3& direction : directions) body.tet().fibres.push_back((direction + Vec3(2, 0, 0)).normalized());
     for (std::size_t t = 0; t < directions.size(); ++t) {
-      body.activation_of.push_back(static_cast<std::int32_t>(t % 2));
-      body.activation_scale.push_back(0.5 + 0.4 * directions[t].x());
+      body.tet().activations.of.push_back(static_cast<std::int32_t>(t % 2));
+      body.tet().activation_scale.push_back(0.5 + 0.4 * directions[t].x());
     }
-    body.more_activations = {Curve::Constant(0.2)};
+    body.tet().activations.more = {Curve::Constant(0.2)};
     body.damping.viscosity = 12;
     body.damping.stiffness_proportional = b == 0 ? 1e-3 : 0;
     scene.bodies.push_back(std::move(body));

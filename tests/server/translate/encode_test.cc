@@ -34,19 +34,19 @@ TEST(Encode, GeometryCarriesNodesTetrahedraFibresAndRegions) {
   ASSERT_EQ(geometry.bodies_size(), 1);
   const v1::BodyGeometry& encoded = geometry.bodies(0);
   EXPECT_EQ(encoded.name(), "box");
-  ASSERT_EQ(encoded.positions().size(), body.mesh.nodes.size() * 24);
-  ASSERT_EQ(encoded.tetrahedra().size(), body.mesh.tetrahedra.size() * 16);
-  ASSERT_EQ(encoded.fibres().size(), body.mesh.tetrahedra.size() * 24);
-  for (std::size_t i = 0; i < body.mesh.nodes.size(); ++i) {
+  ASSERT_EQ(encoded.positions().size(), body.tet().mesh.nodes.size() * 24);
+  ASSERT_EQ(encoded.tetrahedra().size(), body.tet().mesh.tetrahedra.size() * 16);
+  ASSERT_EQ(encoded.fibres().size(), body.tet().mesh.tetrahedra.size() * 24);
+  for (std::size_t i = 0; i < body.tet().mesh.nodes.size(); ++i) {
     for (int k = 0; k < 3; ++k)
-      EXPECT_EQ(DoubleAt(encoded.positions(), 3 * i + static_cast<std::size_t>(k)), body.mesh.nodes[i][k]);
+      EXPECT_EQ(DoubleAt(encoded.positions(), 3 * i + static_cast<std::size_t>(k)), body.tet().mesh.nodes[i][k]);
   }
-  for (std::size_t i = 0; i < body.mesh.tetrahedra.size(); ++i) {
+  for (std::size_t i = 0; i < body.tet().mesh.tetrahedra.size(); ++i) {
     for (std::size_t k = 0; k < 4; ++k) {
-      EXPECT_EQ(IndexAt(encoded.tetrahedra(), 4 * i + k), static_cast<std::uint32_t>(body.mesh.tetrahedra[i][k]));
+      EXPECT_EQ(IndexAt(encoded.tetrahedra(), 4 * i + k), static_cast<std::uint32_t>(body.tet().mesh.tetrahedra[i][k]));
     }
   }
-  EXPECT_EQ(DoubleAt(encoded.fibres(), 2), body.fibres[0].z());
+  EXPECT_EQ(DoubleAt(encoded.fibres(), 2), body.tet().fibres[0].z());
   ASSERT_EQ(encoded.regions_size(), 2);
   EXPECT_EQ(encoded.regions(1).name(), "top");
   ASSERT_EQ(encoded.regions(1).nodes().size(), 12u * 4u);

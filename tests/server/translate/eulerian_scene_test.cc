@@ -67,14 +67,14 @@ TEST(EulerianScene, ABoxBecomesItsSurface) {
   ASSERT_NE(scene, nullptr);
   EXPECT_EQ(scene->method, Method::kEulerian);
   const Body& body = scene->bodies[0];
-  EXPECT_NEAR(EnclosedVolume(body.surface), 0.08 * 0.06 * 0.06, 1e-15);
-  EXPECT_EQ(body.surface.triangles.size(), 2u * 2u * (4 * 3 + 4 * 3 + 3 * 3));
+  EXPECT_NEAR(EnclosedVolume(body.surface().mesh), 0.08 * 0.06 * 0.06, 1e-15);
+  EXPECT_EQ(body.surface().mesh.triangles.size(), 2u * 2u * (4 * 3 + 4 * 3 + 3 * 3));
   // A closed surface of genus 0 has so many nodes; those inside are left out.
-  EXPECT_EQ(body.nodes().size(), body.surface.triangles.size() / 2 + 2);
+  EXPECT_EQ(body.nodes().size(), body.surface().mesh.triangles.size() / 2 + 2);
   EXPECT_EQ(body.regions[1].nodes.size(), 16u);
   EXPECT_EQ(body.regions[1].triangles.size(), 18u);
   EXPECT_EQ(body.regions[0].selectors.size(), 1u);
-  const EulerianGrid grid = GridOf(scene->eulerian, body.surface);
+  const EulerianGrid grid = GridOf(scene->eulerian, body.surface().mesh);
   EXPECT_EQ(grid.spacing, 0.01);
   EXPECT_EQ(grid.cells, (GridIndex{16, 14, 14}));  // 8 x 6 x 6 cells and half of 8 on every side
   EXPECT_LT((grid.origin + Vec3::Constant(0.04)).norm(), 1e-12);
@@ -107,9 +107,9 @@ TEST(EulerianScene, SettingsOfTheMethod) {
   EXPECT_EQ(scene->squeezes[0].normal, Vec3::UnitX());
   EXPECT_EQ(scene->squeezes[0].force_density, 1e4);
   EXPECT_EQ(scene->squeezes[0].scale.At(0.5), 0.5);
-  ASSERT_TRUE(scene->bodies[0].plasticity.has_value());
-  EXPECT_EQ(scene->bodies[0].plasticity->yield_stress, 500);
-  EXPECT_EQ(scene->bodies[0].plasticity->relaxation_time, 0);
+  ASSERT_TRUE(scene->bodies[0].surface().plasticity.has_value());
+  EXPECT_EQ(scene->bodies[0].surface().plasticity->yield_stress, 500);
+  EXPECT_EQ(scene->bodies[0].surface().plasticity->relaxation_time, 0);
 }
 
 TEST(EulerianScene, ASurfaceFileIsEnough) {
@@ -122,11 +122,11 @@ TEST(EulerianScene, ASurfaceFileIsEnough) {
   const auto scene = Translate(wire, files);
   ASSERT_NE(scene, nullptr);
   const Body& body = scene->bodies[0];
-  EXPECT_NEAR(EnclosedVolume(body.surface), std::pow(0.06, 3), 1e-15);
-  EXPECT_TRUE(body.mesh.nodes.empty());
+  EXPECT_NEAR(EnclosedVolume(body.surface().mesh), std::pow(0.06, 3), 1e-15);
+  EXPECT_TRUE(body.surface().filling.nodes.empty());
   EXPECT_EQ(body.regions[0].nodes.size(), 4u);
-  ASSERT_EQ(body.fibres.size(), 1u);
-  EXPECT_EQ(body.fibres[0], Vec3::UnitZ());
+  ASSERT_EQ(body.surface().fibres.size(), 1u);
+  EXPECT_EQ(body.surface().fibres[0], Vec3::UnitZ());
 }
 
 TEST(EulerianScene, ASupportMayBeInside) {
@@ -153,12 +153,12 @@ TEST(EulerianScene, FibresOfTetrahedraStay) {
   const auto scene = Translate(wire);
   ASSERT_NE(scene, nullptr);
   const Body& body = scene->bodies[0];
-  EXPECT_EQ(body.fibres.size(), body.mesh.tetrahedra.size());
+  EXPECT_EQ(body.surface().fibres.size(), body.surface().filling.tetrahedra.size());
   const v1::Geometry geometry = EncodeGeometry(*scene, {});
   EXPECT_TRUE(geometry.bodies(0).tetrahedra().empty());
   EXPECT_TRUE(geometry.bodies(0).fibres().empty());
-  EXPECT_EQ(geometry.bodies(0).triangles().size(), 12 * body.surface.triangles.size());
-  EXPECT_EQ(geometry.bodies(0).positions().size(), 24 * body.surface.nodes.size());
+  EXPECT_EQ(geometry.bodies(0).triangles().size(), 12 * body.surface().mesh.triangles.size());
+  EXPECT_EQ(geometry.bodies(0).positions().size(), 24 * body.surface().mesh.nodes.size());
 }
 
 TEST(EulerianScene, SurfacesThatBoundNoSolid) {

@@ -33,7 +33,7 @@ TEST(JobCodec, DecodesTheSceneOfASpec) {
   ASSERT_TRUE(upload->Commit());
   const auto scene = codec.decode_scene(job.SerializeAsString(), *store, nullptr);
   ASSERT_NE(scene, nullptr);
-  EXPECT_EQ(scene->bodies[0].mesh.tetrahedra.size(), 2u);
+  EXPECT_EQ(scene->bodies[0].tet().mesh.tetrahedra.size(), 2u);
 
   v1::Geometry geometry;
   ASSERT_TRUE(geometry.ParseFromString(codec.encode_geometry(*scene, {})));

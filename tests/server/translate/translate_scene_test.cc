@@ -25,9 +25,9 @@ TEST(TranslateScene, ConvertsLengthsOfABody) {
   const auto scene = Translate(wire);
   ASSERT_NE(scene, nullptr);
   const Body& box = scene->bodies[0];
-  EXPECT_EQ(box.mesh.nodes.size(), 3u * 4u * 5u);
-  EXPECT_EQ(box.mesh.tetrahedra.size(), 6u * 2u * 3u * 4u);
-  EXPECT_NEAR(TotalVolume(box.mesh), 24e-6, 1e-18);
+  EXPECT_EQ(box.tet().mesh.nodes.size(), 3u * 4u * 5u);
+  EXPECT_EQ(box.tet().mesh.tetrahedra.size(), 6u * 2u * 3u * 4u);
+  EXPECT_NEAR(TotalVolume(box.tet().mesh), 24e-6, 1e-18);
   ASSERT_EQ(box.regions.size(), 2u);
   EXPECT_EQ(box.regions[0].nodes.size(), 12u);
   EXPECT_EQ(box.regions[1].triangles.size(), 12u);
@@ -42,7 +42,7 @@ TEST(TranslateScene, ConvertsLengthsOfABody) {
   EXPECT_EQ(constraint.motion.translation[1]->interpolation, Curve::Interpolation::kSmooth);
   EXPECT_FALSE(constraint.motion.translation[0].has_value());
   ASSERT_EQ(scene->output.probes.size(), 1u);
-  EXPECT_EQ(box.mesh.nodes[static_cast<std::size_t>(scene->output.probes[0].node)], Vec3(0.02, 0.03, 0.04));
+  EXPECT_EQ(box.tet().mesh.nodes[static_cast<std::size_t>(scene->output.probes[0].node)], Vec3(0.02, 0.03, 0.04));
 }
 
 TEST(TranslateScene, TakesDefaultsFromTheRules) {
@@ -181,8 +181,8 @@ TEST(TranslateScene, ReadsMeshFilesWithTags) {
   body.mutable_regions(1)->set_physical_tag(7);
   const auto scene = Translate(wire, files);
   ASSERT_NE(scene, nullptr);
-  EXPECT_NEAR(scene->bodies[0].mesh.nodes[1].x(), 0.01, 1e-17);
-  EXPECT_EQ(scene->bodies[0].mesh.tetrahedra.size(), 2u);
+  EXPECT_NEAR(scene->bodies[0].tet().mesh.nodes[1].x(), 0.01, 1e-17);
+  EXPECT_EQ(scene->bodies[0].tet().mesh.tetrahedra.size(), 2u);
   EXPECT_THAT(scene->bodies[0].regions[0].nodes, ElementsAre(0, 1, 2));
   EXPECT_EQ(scene->bodies[0].regions[1].nodes.size(), 5u);
 }
@@ -200,8 +200,8 @@ TEST(TranslateScene, TurnsAMirroredMeshRound) {
   body.mutable_regions(1)->set_physical_tag(1);
   const auto scene = Translate(wire, files);
   ASSERT_NE(scene, nullptr);
-  EXPECT_GT(SignedVolume(scene->bodies[0].mesh, 0), 0);
-  EXPECT_GT(SignedVolume(scene->bodies[0].mesh, 1), 0);
+  EXPECT_GT(SignedVolume(scene->bodies[0].tet().mesh, 0), 0);
+  EXPECT_GT(SignedVolume(scene->bodies[0].tet().mesh, 1), 0);
 }
 
 TEST(TranslateScene, ReadsFibresOfEverySource) {
@@ -213,16 +213,16 @@ TEST(TranslateScene, ReadsFibresOfEverySource) {
   harmonic.set_insertion("top");
   const auto along = Translate(wire);
   ASSERT_NE(along, nullptr);
-  ASSERT_EQ(along->bodies[0].fibres.size(), along->bodies[0].mesh.tetrahedra.size());
-  for (const Vec3& direction : along->bodies[0].fibres) EXPECT_LT((direction - Vec3::UnitZ()).norm(), 1e-7);
+  ASSERT_EQ(along->bodies[0].tet().fibres.size(), along->bodies[0].tet().mesh.tetrahedra.size());
+  for (const Vec3& direction : along->bodies[0].tet().fibres) EXPECT_LT((direction - Vec3::UnitZ()).norm(), 1e-7);
 
   std::string text = "# one for each tetrahedron\n";
-  for (std::size_t i = 0; i < along->bodies[0].mesh.tetrahedra.size(); ++i) text += "0 3 4\n";
+  for (std::size_t i = 0; i < along->bodies[0].tet().mesh.tetrahedra.size(); ++i) text += "0 3 4\n";
   body.mutable_fibres()->mutable_file()->set_path("fibres.txt");
   body.mutable_fibres()->mutable_file()->set_asset(files.Add(text));
   const auto read = Translate(wire, files);
   ASSERT_NE(read, nullptr);
-  EXPECT_LT((read->bodies[0].fibres.back() - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
+  EXPECT_LT((read->bodies[0].tet().fibres.back() - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
 }
 
 TEST(TranslateScene, ReadsBsplineFibres) {
@@ -234,8 +234,8 @@ TEST(TranslateScene, ReadsBsplineFibres) {
   bspline.mutable_fitted()->set_insertion("top");
   const auto fitted = Translate(wire);
   ASSERT_NE(fitted, nullptr);
-  ASSERT_EQ(fitted->bodies[0].fibres.size(), fitted->bodies[0].mesh.tetrahedra.size());
-  for (const Vec3& direction : fitted->bodies[0].fibres) EXPECT_GT(direction.z(), 0.9);
+  ASSERT_EQ(fitted->bodies[0].tet().fibres.size(), fitted->bodies[0].tet().mesh.tetrahedra.size());
+  for (const Vec3& direction : fitted->bodies[0].tet().fibres) EXPECT_GT(direction.z(), 0.9);
 
   // A block around the body in its unit, cm, whose fibres lean along y by 3 in 4.
   bspline.mutable_file()->set_path("solid.txt");
@@ -245,7 +245,7 @@ TEST(TranslateScene, ReadsBsplineFibres) {
   ASSERT_EQ(AssetsOf(wire).size(), 1u);
   const auto read = Translate(wire, files);
   ASSERT_NE(read, nullptr);
-  for (const Vec3& direction : read->bodies[0].fibres) EXPECT_LT((direction - Vec3(0, 0.6, 0.8)).norm(), 1e-12);
+  for (const Vec3& direction : read->bodies[0].tet().fibres) EXPECT_LT((direction - Vec3(0, 0.6, 0.8)).norm(), 1e-12);
 }
 
 TEST(TranslateScene, TurnsFibresByTheirPennation) {
@@ -257,7 +257,7 @@ TEST(TranslateScene, TurnsFibresByTheirPennation) {
   for (const double value : {0, 3, 0}) pennation.add_normal(value);
   const auto all = Translate(wire);
   ASSERT_NE(all, nullptr);
-  for (const Vec3& direction : all->bodies[0].fibres) {
+  for (const Vec3& direction : all->bodies[0].tet().fibres) {
     EXPECT_LT((direction - Vec3(0, std::sin(0.4), std::cos(0.4))).norm(), 1e-15);
   }
 
@@ -266,11 +266,11 @@ TEST(TranslateScene, TurnsFibresByTheirPennation) {
   const auto mirrored = Translate(wire);
   ASSERT_NE(mirrored, nullptr);
   const Body& half = mirrored->bodies[0];
-  for (std::size_t e = 0; e < half.fibres.size(); ++e) {
-    const double distance = Centroid(half.mesh, e).y() - 0.015;
+  for (std::size_t e = 0; e < half.tet().fibres.size(); ++e) {
+    const double distance = Centroid(half.tet().mesh, e).y() - 0.015;
     // The middle layer of tetrahedra has some whose centroid is in the plane, up to round-off.
     if (std::abs(distance) < 1e-9) continue;
-    EXPECT_LT((half.fibres[e] - Vec3(0, std::copysign(std::sin(0.4), distance), std::cos(0.4))).norm(), 1e-12);
+    EXPECT_LT((half.tet().fibres[e] - Vec3(0, std::copysign(std::sin(0.4), distance), std::cos(0.4))).norm(), 1e-12);
   }
 }
 
@@ -287,7 +287,7 @@ TEST(TranslateScene, EstimatesShapesExactly) {
     const auto scene = Translate(wire);
     ASSERT_NE(scene, nullptr);
     TranslateLimits limits;
-    limits.max_elements = static_cast<std::int64_t>(scene->bodies[0].mesh.tetrahedra.size());
+    limits.max_elements = static_cast<std::int64_t>(scene->bodies[0].tet().mesh.tetrahedra.size());
     EXPECT_TRUE(ProblemsOf(wire, {}, limits).empty()) << mesh;
     limits.max_elements -= 1;
     EXPECT_FALSE(ProblemsOf(wire, {}, limits).empty()) << mesh;
@@ -296,8 +296,8 @@ TEST(TranslateScene, EstimatesShapesExactly) {
 
 // The material of each tetrahedron of a box of 2 x 3 x 4 hexahedra, x fastest, six tetrahedra each.
 const Material& MaterialOf(const Body& body, std::size_t tetrahedron) {
-  const std::int32_t part = body.material_of[tetrahedron];
-  return part == 0 ? body.material : body.more_materials[static_cast<std::size_t>(part - 1)];
+  const std::int32_t part = body.tet().materials.of[tetrahedron];
+  return part == 0 ? body.material : body.tet().materials.more[static_cast<std::size_t>(part - 1)];
 }
 
 double ShearModulus(const Material& material) {
@@ -321,8 +321,8 @@ TEST(TranslateScene, PartsOfABodyTakeTheirMaterials) {
   const auto scene = Translate(wire, files);
   ASSERT_NE(scene, nullptr);
   const Body& box = scene->bodies[0];
-  ASSERT_EQ(box.material_of.size(), 144u);
-  EXPECT_EQ(box.more_materials.size(), 2u + 72u);
+  ASSERT_EQ(box.tet().materials.of.size(), 144u);
+  EXPECT_EQ(box.tet().materials.more.size(), 2u + 72u);
   EXPECT_NEAR(ShearModulus(box.material), 1e4 / 2.6, 1e-9);
   for (std::size_t t = 0; t < 72; ++t) EXPECT_NEAR(ShearModulus(MaterialOf(box, t)), (1000.0 + t) / 2, 1e-9);
   for (std::size_t t = 72; t < 108; ++t) EXPECT_NEAR(ShearModulus(MaterialOf(box, t)), 1e4, 1e-9);
@@ -348,14 +348,14 @@ TEST(TranslateScene, PartsOfABodyTakeTheirActivations) {
   ASSERT_NE(scene, nullptr);
   const Body& box = scene->bodies[0];
   EXPECT_EQ(box.activation.values, std::vector<double>({0.25}));
-  ASSERT_EQ(box.more_activations.size(), 1u);
-  EXPECT_EQ(box.more_activations[0].values, std::vector<double>({0, 0.75}));
-  ASSERT_EQ(box.activation_of.size(), 144u);
-  for (std::size_t t = 0; t < 144; ++t) EXPECT_EQ(box.activation_of[t], t < 72 ? 0 : 1);
-  ASSERT_EQ(box.activation_scale.size(), 144u);
-  EXPECT_EQ(box.activation_scale[100], 0.5);
-  ASSERT_EQ(box.initial_displacement.size(), 60u);
-  EXPECT_LT((box.initial_displacement[7] - Vec3(0.07, 0, -0.005)).norm(), 1e-17);
+  ASSERT_EQ(box.tet().activations.more.size(), 1u);
+  EXPECT_EQ(box.tet().activations.more[0].values, std::vector<double>({0, 0.75}));
+  ASSERT_EQ(box.tet().activations.of.size(), 144u);
+  for (std::size_t t = 0; t < 144; ++t) EXPECT_EQ(box.tet().activations.of[t], t < 72 ? 0 : 1);
+  ASSERT_EQ(box.tet().activation_scale.size(), 144u);
+  EXPECT_EQ(box.tet().activation_scale[100], 0.5);
+  ASSERT_EQ(box.tet().initial_displacement.size(), 60u);
+  EXPECT_LT((box.tet().initial_displacement[7] - Vec3(0.07, 0, -0.005)).norm(), 1e-17);
 }
 
 // An aponeurosis: the layer under one side of the upper part.

@@ -79,8 +79,8 @@ TEST(VoxelScene, ABoxBecomesVoxels) {
   EXPECT_EQ(scene->voxel.tolerance, 1e-8);
   EXPECT_FALSE(scene->voxel.mean_dilatation);
   const Body& body = scene->bodies[0];
-  EXPECT_TRUE(body.mesh.nodes.empty());
-  EXPECT_EQ(body.bricks.bricks.size(), 24u);
+  EXPECT_TRUE(std::holds_alternative<VoxelShape>(body.shape));
+  EXPECT_EQ(body.voxel().mesh.bricks.size(), 24u);
   EXPECT_EQ(body.nodes().size(), 3u * 4u * 5u);
   EXPECT_LT((body.nodes().front() - Vec3(0.01, 0, 0)).norm(), 1e-15);
   EXPECT_LT((body.nodes().back() - Vec3(0.03, 0.03, 0.04)).norm(), 1e-15);
@@ -107,13 +107,13 @@ TEST(VoxelScene, LabelsBecomeVoxelsInTheirPlace) {
   const auto scene = Translate(ImageScene(files), files);
   ASSERT_NE(scene, nullptr);
   const Body& body = scene->bodies[0];
-  EXPECT_EQ(body.bricks.bricks.size(), 16u);
+  EXPECT_EQ(body.voxel().mesh.bricks.size(), 16u);
   EXPECT_LT((body.nodes().front() - Vec3(0.0095, 0.019, 0.0285)).norm(), 1e-12);
   EXPECT_LT((body.nodes().back() - Vec3(0.0135, 0.023, 0.0345)).norm(), 1e-12);
-  EXPECT_EQ(std::count(body.bricks.labels.begin(), body.bricks.labels.end(), 2), 8);
+  EXPECT_EQ(std::count(body.voxel().mesh.labels.begin(), body.voxel().mesh.labels.end(), 2), 8);
   EXPECT_EQ(body.regions[0].nodes.size(), 9u);
   EXPECT_EQ(body.regions[1].elements.size(), 8u);
-  EXPECT_EQ(std::count(body.material_of.begin(), body.material_of.end(), 1), 8);
+  EXPECT_EQ(std::count(body.voxel().materials.of.begin(), body.voxel().materials.of.end(), 1), 8);
   ASSERT_FALSE(body.notes.empty());
   EXPECT_THAT(body.notes[0], HasSubstr("16 voxels"));
   // Needs what the scene names, so that it is kept with the job.
@@ -132,7 +132,7 @@ TEST(VoxelScene, ThePhantomIsSegmented) {
   const auto scene = Translate(wire);
   ASSERT_NE(scene, nullptr);
   // The truth has 117,910 voxels of 0.5 mm: 230 of 4 mm by volume, and those of the rim that are half full.
-  EXPECT_NEAR(static_cast<double>(scene->bodies[0].bricks.bricks.size()), 251, 8);
+  EXPECT_NEAR(static_cast<double>(scene->bodies[0].voxel().mesh.bricks.size()), 251, 8);
   ASSERT_EQ(scene->bodies[0].notes.size(), 2u);
   EXPECT_THAT(scene->bodies[0].notes[1], HasSubstr("parted at"));
 }

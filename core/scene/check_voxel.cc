@@ -12,7 +12,7 @@ bool IsLinear(const Material& material) { return std::holds_alternative<LinearEl
 bool IsCorotated(const Material& material) { return std::holds_alternative<CorotatedLinear>(material); }
 
 void CheckLaws(const Body& body, const std::string& path, Problems& problems) {
-  std::vector<Material> laws = body.more_materials;
+  std::vector<Material> laws = body.voxel().materials.more;
   laws.push_back(body.material);
   if (!std::all_of(laws.begin(), laws.end(), [](const Material& m) { return IsLinear(m) || IsCorotated(m); })) {
     problems.Add(JoinPath(path, "material"), "voxels are linear elastic, but a material here is not",
@@ -28,16 +28,9 @@ void CheckLeftOut(const Body& body, const std::string& path, Problems& problems)
   const auto is_zero = [](const Curve& curve) {
     return std::all_of(curve.values.begin(), curve.values.end(), [](double value) { return value == 0; });
   };
-  if (!body.fibres.empty()) {
-    problems.Add(JoinPath(path, "fibres"), "voxels have no fibres", "leave them out, or use the tet method");
-  }
-  if (!is_zero(body.activation) || !body.more_activations.empty() || !body.activation_scale.empty()) {
+  if (!is_zero(body.activation)) {
     problems.Add(JoinPath(path, "activation"), "voxels don't contract",
                  "put the muscle's force on a region as a load, or use the tet method");
-  }
-  if (!body.initial_displacement.empty()) {
-    problems.Add(JoinPath(path, "initial_displacement"), "voxels start from rest",
-                 "use start_loaded to begin in equilibrium with loads");
   }
   if (body.damping.stiffness_proportional != 0 || body.damping.viscosity != 0) {
     problems.Add(JoinPath(path, "damping"), "the voxel method damps in proportion to mass only",
@@ -49,7 +42,7 @@ void CheckLeftOut(const Body& body, const std::string& path, Problems& problems)
 bool IsAlongAxes(const Mat3& direction) { return (direction.cwiseAbs().array() > 1 - 1e-9).count() == 3; }
 
 void CheckAxes(const Body& body, const std::string& path, Problems& problems) {
-  if (IsAlongAxes(body.bricks.grid.direction)) return;
+  if (IsAlongAxes(body.voxel().mesh.grid.direction)) return;
   for (std::size_t k = 0; k < body.constraints.size(); ++k) {
     const auto& axes = body.constraints[k].axes;
     if (axes[0] == axes[1] && axes[1] == axes[2]) continue;
@@ -61,9 +54,10 @@ void CheckAxes(const Body& body, const std::string& path, Problems& problems) {
 
 }  // namespace
 
-void CheckVoxels(const Scene& scene, Problems& problems) {
+void CheckVoxel(const Scene& scene, Problems& problems) {
   if (scene.method != Method::kVoxel) return;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (!std::holds_alternative<VoxelShape>(scene.bodies[i].shape)) continue;
     const std::string path = IndexPath("bodies", i);
     CheckLaws(scene.bodies[i], path, problems);
     CheckLeftOut(scene.bodies[i], path, problems);

@@ -2,7 +2,7 @@
 
 namespace fascicle::scene_checks {
 
-void CheckMethod(const Scene& scene, Problems& problems) {
+void CheckTet(const Scene& scene, Problems& problems) {
   if (scene.method != Method::kTet) return;
   const TetMethod& method = scene.tet;
   if (method.precision == Precision::kSingle && method.stepping != Stepping::kExplicit &&

@@ -1,0 +1,94 @@
+#ifndef FASCICLE_CORE_SCENE_ACTING_H_
+#define FASCICLE_CORE_SCENE_ACTING_H_
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "core/base/curve.h"
+#include "core/base/types.h"
+#include "core/scene/fields.h"
+
+namespace fascicle {
+
+// What acts on bodies: supports and their motions, loads, gravity, floors and force fields.
+
+template <>
+inline constexpr auto kFieldNames<Curve> = FieldNames("times", "values", "interpolation");
+
+struct Rotation {
+  Vec3 point = Vec3::Zero();  // [m]
+  Vec3 axis = Vec3::UnitZ();  // unit
+  Curve angle;                // [rad]
+};
+template <>
+inline constexpr auto kFieldNames<Rotation> = FieldNames("point", "axis", "angle");
+
+struct Motion {
+  std::array<std::optional<Curve>, 3> translation;  // along x, y, z [m]
+  std::optional<Rotation> rotation;
+};
+template <>
+inline constexpr auto kFieldNames<Motion> = FieldNames("translation", "rotation");
+
+struct Constraint {
+  std::int32_t region = 0;  // index into Body::regions
+  std::array<bool, 3> axes = {true, true, true};
+  Motion motion;
+};
+template <>
+inline constexpr auto kFieldNames<Constraint> = FieldNames("region", "axes", "motion");
+
+struct Traction {
+  Vec3 vector = Vec3::Zero();  // [Pa] of rest area
+};
+template <>
+inline constexpr auto kFieldNames<Traction> = FieldNames("vector");
+
+struct NodalForce {
+  Vec3 total = Vec3::Zero();  // [N], in equal parts on the nodes of the region
+};
+template <>
+inline constexpr auto kFieldNames<NodalForce> = FieldNames("total");
+
+struct Load {
+  std::int32_t region = 0;  // index into Body::regions
+  std::variant<Traction, NodalForce> kind;
+  Curve scale = Curve::Constant(1);
+  bool kept = false;  // the scale as a series: of a unit force it is the force [N]
+};
+template <>
+inline constexpr auto kFieldNames<Load> = FieldNames("region", "", "scale", "kept");
+
+struct Gravity {
+  Vec3 acceleration = Vec3::Zero();  // [m/s^2]
+  Curve scale = Curve::Constant(1);
+};
+template <>
+inline constexpr auto kFieldNames<Gravity> = FieldNames("acceleration", "scale");
+
+// A rigid half-space that bodies can't enter: all x with (x - point) . normal < 0.
+struct Floor {
+  std::string name;
+  Vec3 point = Vec3::Zero();    // [m]
+  Vec3 normal = Vec3::UnitZ();  // unit, out of the floor
+};
+template <>
+inline constexpr auto kFieldNames<Floor> = FieldNames("name", "point", "normal");
+
+// A force per deformed volume towards a plane.
+struct Squeeze {
+  Vec3 point = Vec3::Zero();    // [m]
+  Vec3 normal = Vec3::UnitX();  // unit
+  double force_density = 0;     // [N/m^3]
+  double width = 0;             // distance from the plane within which it is proportional to the distance [m]
+  Curve scale = Curve::Constant(1);
+};
+template <>
+inline constexpr auto kFieldNames<Squeeze> = FieldNames("point", "normal", "force_density", "width", "scale");
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_SCENE_ACTING_H_

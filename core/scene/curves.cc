@@ -1,0 +1,81 @@
+#include "core/scene/curves.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace fascicle {
+namespace {
+
+// Where a value stands in the scene. Becomes text only for those that ask: there may be a million values.
+struct Place {
+  const Place* parent = nullptr;
+  const char* name = "";
+  std::int64_t index = -1;  // in a list; negative: it is a member, called `name`
+
+  std::string Path() const {
+    const std::string of_parent = parent == nullptr ? "" : parent->Path();
+    return index < 0 ? JoinPath(of_parent, name) : IndexPath(of_parent, static_cast<std::size_t>(index));
+  }
+};
+
+class CurveVisitor {
+ public:
+  explicit CurveVisitor(const std::function<void(const Curve&, const std::string&)>& visit) : visit_(visit) {}
+
+  void Take(const Curve& curve, const Place& place) const { visit_(curve, place.Path()); }
+
+  template <HasFields Struct>
+  void Take(const Struct& s, const Place& place) const {
+    VisitFields(s, [&](const char* name, const auto& member) { Take(member, {&place, name}); });
+  }
+
+  template <class Value>
+  void Take(const std::optional<Value>& value, const Place& place) const {
+    if (value) Take(*value, place);
+  }
+
+  template <class... Kinds>
+  void Take(const std::variant<Kinds...>& value, const Place& place) const {
+    std::visit([&](const auto& kind) { Take(kind, place); }, value);
+  }
+
+  template <class Value>
+  void Take(const std::vector<Value>& list, const Place& place) const {
+    TakeList(list, place);
+  }
+
+  template <class Value, std::size_t kCount>
+  void Take(const std::array<Value, kCount>& list, const Place& place) const {
+    TakeList(list, place);
+  }
+
+  // Anything else has no curves.
+  template <class Value>
+  void Take(const Value&, const Place&) const {}
+
+ private:
+  template <class List>
+  void TakeList(const List& list, const Place& place) const {
+    if (kIsFlat<typename List::value_type>) return;
+    std::int64_t k = 0;
+    for (const auto& value : list) Take(value, {&place, "", k++});
+  }
+
+  const std::function<void(const Curve&, const std::string&)>& visit_;
+};
+
+}  // namespace
+
+void VisitCurves(const Scene& scene, const std::function<void(const Curve&, const std::string&)>& visit) {
+  CurveVisitor(visit).Take(scene, {});
+}
+
+double CurvesEnd(const Scene& scene) {
+  double end = 0;
+  VisitCurves(scene, [&end](const Curve& curve, const std::string&) {
+    if (curve.times.size() > 1) end = std::max(end, curve.end());
+  });
+  return end;
+}
+
+}  // namespace fascicle

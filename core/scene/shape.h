@@ -1,0 +1,87 @@
+#ifndef FASCICLE_CORE_SCENE_SHAPE_H_
+#define FASCICLE_CORE_SCENE_SHAPE_H_
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "core/base/curve.h"
+#include "core/geometry/brick_mesh.h"
+#include "core/geometry/tet_mesh.h"
+#include "core/geometry/triangle_mesh.h"
+#include "core/materials/material.h"
+#include "core/muscle/fibre_field.h"
+#include "core/scene/fields.h"
+
+namespace fascicle {
+
+// The shape of a body at rest, and what is given part by part of it. Each method has a shape of its own. All have a
+// `mesh`, whose nodes are those that frames show, regions select and probes follow [m].
+
+template <>
+inline constexpr auto kFieldNames<CurvedEdge> = FieldNames("ends", "middle");
+template <>
+inline constexpr auto kFieldNames<TetMesh> = FieldNames("nodes", "tetrahedra", "tetrahedron_tags", "tagged_triangles",
+                                                        "triangle_tags", "tagged_nodes", "node_tags", "curved_edges");
+template <>
+inline constexpr auto kFieldNames<VoxelGrid> = FieldNames("size", "spacing", "origin", "direction", "material",
+                                                          "stiffness");
+template <>
+inline constexpr auto kFieldNames<BrickMesh> = FieldNames("grid", "nodes", "bricks", "labels");
+template <>
+inline constexpr auto kFieldNames<TriangleMesh> = FieldNames("nodes", "triangles");
+
+// Values beside the one of the whole body, and which one each element has.
+template <class Value>
+struct Parts {
+  std::vector<Value> more;
+  std::vector<std::int32_t> of;  // 0: that of the body, k: more[k - 1]; empty: all have that of the body
+};
+template <class Value>
+inline constexpr auto kFieldNames<Parts<Value>> = FieldNames("", "of");
+
+// Tetrahedra, of the tet method.
+struct TetShape {
+  TetMesh mesh;
+  FibreField fibres;  // one for each tetrahedron, or none
+  Parts<Material> materials;
+  Parts<Curve> activations;
+  std::vector<double> activation_scale;    // part of the activation that reaches each tetrahedron [0, 1]; empty: all
+  std::vector<Vec3> initial_displacement;  // of each node at time 0 [m], may tangle the mesh; empty: none
+};
+template <>
+inline constexpr auto kFieldNames<TetShape> = FieldNames("mesh", "fibres", "region_materials", "region_activations",
+                                                         "activation_scale", "initial_displacement");
+
+// Bricks, the solid voxels of a grid, of the voxel method.
+struct VoxelShape {
+  BrickMesh mesh;
+  Parts<Material> materials;
+};
+template <>
+inline constexpr auto kFieldNames<VoxelShape> = FieldNames("mesh", "region_materials");
+
+// Plastic flow at constant volume [Fan 2013, 3.5; Bargteil et al. 2007].
+struct Plasticity {
+  double yield_stress = 0;     // von Mises Cauchy stress above which the body flows [Pa]
+  double relaxation_time = 0;  // time constant of the decay of the stress above it [s]; 0: at once
+};
+template <>
+inline constexpr auto kFieldNames<Plasticity> = FieldNames("yield_stress", "relaxation_time");
+
+// A closed surface, of the eulerian method.
+struct SurfaceShape {
+  TriangleMesh mesh;
+  TetMesh filling;    // the tetrahedra whose boundary the surface is, which carry the fibres [m]; may be empty
+  FibreField fibres;  // one for each tetrahedron of the filling, or one for a body without filling, or none
+  std::optional<Plasticity> plasticity;
+};
+template <>
+inline constexpr auto kFieldNames<SurfaceShape> = FieldNames("mesh", "filling", "fibres", "plasticity");
+
+using Shape = std::variant<TetShape, VoxelShape, SurfaceShape>;
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_SCENE_SHAPE_H_

@@ -1,0 +1,31 @@
+#ifndef FASCICLE_SERVER_TRANSLATE_BODY_SOURCE_H_
+#define FASCICLE_SERVER_TRANSLATE_BODY_SOURCE_H_
+
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+
+#include "core/base/problems.h"
+#include "core/base/profile.h"
+#include "fascicle/v1/scene.pb.h"
+#include "server/translate/translate.h"
+
+namespace fascicle::server {
+
+// A body as it stands in a scene message, and what it takes to translate it.
+struct BodySource {
+  const v1::Body& wire;  // defaults filled in
+  std::string path;      // `bodies[0]`
+  double duration;       // of the scene [s]
+  const AssetReader& assets;
+  std::int64_t& budget;  // elements that are left for the body; reduced by those it has
+  Profile* profile;      // may be nullptr
+};
+
+// Adds a problem for each of the named fields of the body that is given: its shape has no use for them.
+void RefuseFields(const BodySource& source, std::initializer_list<const char*> fields, const std::string& message,
+                  const std::string& hint, Problems& problems);
+
+}  // namespace fascicle::server
+
+#endif  // FASCICLE_SERVER_TRANSLATE_BODY_SOURCE_H_

@@ -1,0 +1,36 @@
+#include <utility>
+
+#include "server/translate/fibres.h"
+#include "server/translate/meshes.h"
+#include "server/translate/parts.h"
+#include "server/translate/shapes.h"
+
+namespace fascicle::server {
+
+bool TranslateTetShape(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& structure,
+                       Problems& others) {
+  RefuseFields(source, {"plasticity"}, "only the eulerian method knows plastic flow",
+               "leave it out, or use the eulerian method", others);
+  auto tetrahedra = TranslateTetrahedra(source, "tet", structure);
+  std::optional<std::size_t> elements, nodes;
+  if (tetrahedra) {
+    elements = tetrahedra->mesh.tetrahedra.size();
+    nodes = tetrahedra->mesh.nodes.size();
+    body.regions = SelectRegions(selectors, tetrahedra->mesh);
+    CheckRegions(source.wire, source.path, selectors, body.regions, tetrahedra->mesh, structure);
+  } else {
+    body.regions = EmptyRegions(selectors);
+  }
+  const NamedRegions regions = {selectors.names, body.regions};
+  TetShape shape;
+  shape.fibres = TranslateFibres(source, tetrahedra ? &*tetrahedra : nullptr, regions, body.notes, others);
+  shape.materials = TranslateMaterialParts(source, elements, regions, others);
+  shape.activations = TranslateActivationParts(source, elements, regions, others);
+  shape.activation_scale = TranslateActivationScale(source, elements, others);
+  shape.initial_displacement = TranslateInitialDisplacement(source, nodes, others);
+  if (tetrahedra) shape.mesh = std::move(tetrahedra->mesh);
+  body.shape = std::move(shape);
+  return elements.has_value();
+}
+
+}  // namespace fascicle::server

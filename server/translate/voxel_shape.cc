@@ -1,0 +1,34 @@
+#include <utility>
+
+#include "server/translate/meshes.h"
+#include "server/translate/parts.h"
+#include "server/translate/shapes.h"
+
+namespace fascicle::server {
+
+bool TranslateVoxelShape(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& structure,
+                         Problems& others) {
+  RefuseFields(source, {"fibres"}, "voxels have no fibres", "leave them out, or use the tet method", others);
+  RefuseFields(source, {"region_activations", "activation_scale"}, "voxels don't contract",
+               "put the muscle's force on a region as a load, or use the tet method", others);
+  RefuseFields(source, {"initial_displacement"}, "voxels start from rest",
+               "use start_loaded to begin in equilibrium with loads", others);
+  RefuseFields(source, {"plasticity"}, "only the eulerian method knows plastic flow",
+               "leave it out, or use the eulerian method", others);
+  auto bricks = TranslateBricks(source, body.notes, structure);
+  std::optional<std::size_t> elements;
+  if (bricks) {
+    elements = bricks->bricks.size();
+    body.regions = SelectRegions(selectors, *bricks);
+    CheckRegions(source.wire, source.path, selectors, body.regions, *bricks, structure);
+  } else {
+    body.regions = EmptyRegions(selectors);
+  }
+  VoxelShape shape;
+  shape.materials = TranslateMaterialParts(source, elements, {selectors.names, body.regions}, others);
+  if (bricks) shape.mesh = std::move(*bricks);
+  body.shape = std::move(shape);
+  return elements.has_value();
+}
+
+}  // namespace fascicle::server
