@@ -6,9 +6,9 @@
 #include <array>
 #include <cstdint>
 
-#include "core/geometry/quadratic_tetrahedron.h"
 #include "core/geometry/tet_mesh.h"
 #include "core/linalg/nodal_vector.h"
+#include "core/tet/shape_functions.h"
 
 // The arithmetic of one element [Teran 2003, 3 and 4].
 //
@@ -22,37 +22,16 @@ namespace fascicle {
 // The values at the corners of one such tetrahedron.
 using CornerValues = std::array<Vec3, 4>;
 
-// Four nodes, constant strain.
-struct LinearElement {
-  static constexpr int kNodes = 4;
-  static constexpr int kPoints = 1;
-  static constexpr double kPointWeight = 1;  // part of the element's volume
-  // Share of each node in the element's lumped mass.
-  static constexpr std::array<double, 4> kMassShare = {0.25, 0.25, 0.25, 0.25};
-
-  // Barycentric coordinate of corner c at point q.
-  static constexpr double Barycentric(int /*q*/, int /*c*/) { return 0.25; }
+struct LinearElement : LinearShape {
+  // Positions (or other values) of the corners of the linear tetrahedron at point q.
   static const CornerValues& Corners(const std::array<Vec3, 4>& nodes, int /*q*/) { return nodes; }
-  // The transpose of Corners.
+  // Adds to nodes what acts on the corners: the transpose of Corners.
   static void AddCorners(const CornerValues& corners, int /*q*/, std::array<Vec3, 4>& nodes) {
     for (int c = 0; c < 4; ++c) nodes[c] += corners[c];
   }
-  // Part of node a in corner c at point q.
-  static constexpr double Part(int /*q*/, int c, int a) { return c == a ? 1 : 0; }
 };
 
-// Ten nodes: the corners and the middles of the edges in the order of kTetEdges; edges straight or curved at rest,
-// linear strain when straight, four-point quadrature of degree two [Zienkiewicz, Taylor & Zhu 2013, 5.11].
-struct QuadraticElement {
-  static constexpr int kNodes = 10;
-  static constexpr int kPoints = 4;
-  static constexpr double kPointWeight = 0.25;
-  // The diagonal of the consistent mass matrix, V/70 and 8V/105, scaled to the element's mass: all positive, unlike row
-  // sums [Hinton, Rock & Zienkiewicz 1976].
-  static constexpr std::array<double, 10> kMassShare = {1. / 36, 1. / 36, 1. / 36, 1. / 36, 4. / 27,
-                                                        4. / 27, 4. / 27, 4. / 27, 4. / 27, 4. / 27};
-
-  static constexpr double Barycentric(int q, int c) { return q == c ? kNearCorner : kFarCorner; }
+struct QuadraticElement : QuadraticShape {
   static CornerValues Corners(const std::array<Vec3, 10>& nodes, int q) {
     return CornersAt(nodes, {Barycentric(q, 0), Barycentric(q, 1), Barycentric(q, 2), Barycentric(q, 3)});
   }
@@ -62,12 +41,6 @@ struct QuadraticElement {
       const auto [i, j] = kTetEdges[k];
       nodes[4 + k] += 4 * Barycentric(q, j) * corners[i] + 4 * Barycentric(q, i) * corners[j];
     }
-  }
-  static constexpr double Part(int q, int c, int a) {
-    if (a < 4) return a == c ? 4 * Barycentric(q, c) - 1 : 0;
-    const auto& edge = kTetEdges[a - 4];
-    if (edge[0] == c) return 4 * Barycentric(q, edge[1]);
-    return edge[1] == c ? 4 * Barycentric(q, edge[0]) : 0;
   }
 };
 

@@ -5,6 +5,7 @@
 
 #include "core/materials/spd.h"
 #include "core/tet/chunk_tasks.h"
+#include "core/tet/untangling_law.h"
 
 namespace fascicle {
 namespace {
@@ -29,46 +30,35 @@ const ElementKernels<double>& KernelsOf(const TetModel& model, const ForceWorksp
   return model.order() == ElementOrder::kLinear ? workspace.kernels->linear : workspace.kernels->quadratic;
 }
 
-// Calls visit(element, PointPotential maker) with the law fixed.
-template <class Visit>
-void VisitLaw(const TetModel& model, const Chunk& chunk, const Visit& visit) {
-  std::visit([&](const auto& laws) { visit(laws[chunk.law]); }, model.groups()[chunk.group].laws);
-}
-
-// As the kernels' forces, by PointPotential.
+// The kernels' forces under UntanglingLaw, element by element.
 template <class Element>
-ChunkReport PlainForces(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
-                        std::span<const double> acting, const Chunk& chunk, double* force, double* slot_sums) {
+ChunkReport UntanglingForces(const TetModel& model, const NodalVector& x, const Chunk& chunk, double* force,
+                             double* slot_sums) {
   const ElementChunks& chunks = model.chunks();
-  const TetBody& body = model.bodies()[model.groups()[chunk.group].body];
   ChunkReport report;
   std::array<Vec3, kChunkNodes> sums;
   std::fill_n(sums.begin(), chunk.node_end - chunk.node_begin, Vec3::Zero());
-  VisitLaw(model, chunk, [&]<class Law>(const Law& law) {
-    for (std::size_t e = chunk.tet_begin; e < chunk.tet_end; ++e) {
-      const auto values = ValuesOf<Element>(model, e, x);
-      std::array<Vec3, Element::kNodes> forces;
-      forces.fill(Vec3::Zero());
-      for (int q = 0; q < Element::kPoints; ++q) {
-        const std::size_t at = Element::kPoints * e + q;
-        const Mat3 F = GradientAt<Element>(model, e, values, q);
-        const double J = Determinant(F);
-        if (!(J >= report.smallest_ratio)) report.smallest_ratio = J;
-        const PointPotential<Element, Law> point(potential, model, body, law, e, q);
-        report.energy += model.rest_volume()[at] * point.Energy(F);
-        const Mat3 P = point.Stress(F) + PatchPressure<Element>(model.patches(), acting, e, q) * Cofactor(F);
-        CornerValues corners;
-        SetCornerForces(P, model.Dm_inverse()[at], model.rest_volume()[at], corners);
-        Element::AddCorners(corners, q, forces);
-      }
-      const std::size_t slot = chunks.slot[e];
-      const std::uint16_t* local = &chunks.local[Element::kNodes * kBlock * (slot / kBlock) + slot % kBlock];
-      for (int a = 0; a < Element::kNodes; ++a) {
-        sums[local[kBlock * a]] += forces[a];
-        report.squares += forces[a].squaredNorm();
-      }
+  for (std::size_t e = chunk.tet_begin; e < chunk.tet_end; ++e) {
+    const auto values = ValuesOf<Element>(model, e, x);
+    std::array<Vec3, Element::kNodes> forces;
+    forces.fill(Vec3::Zero());
+    for (int q = 0; q < Element::kPoints; ++q) {
+      const std::size_t at = Element::kPoints * e + q;
+      const Mat3 F = GradientAt<Element>(model, e, values, q);
+      const double J = Determinant(F);
+      if (!(J >= report.smallest_ratio)) report.smallest_ratio = J;
+      report.energy += model.rest_volume()[at] * UntanglingLaw::Energy(F);
+      CornerValues corners;
+      SetCornerForces(UntanglingLaw::Stress(F), model.Dm_inverse()[at], model.rest_volume()[at], corners);
+      Element::AddCorners(corners, q, forces);
     }
-  });
+    const std::size_t slot = chunks.slot[e];
+    const std::uint16_t* local = &chunks.local[Element::kNodes * kBlock * (slot / kBlock) + slot % kBlock];
+    for (int a = 0; a < Element::kNodes; ++a) {
+      sums[local[kBlock * a]] += forces[a];
+      report.squares += forces[a].squaredNorm();
+    }
+  }
   for (std::size_t i = chunk.node_begin; i < chunk.node_end; ++i) {
     const Vec3& sum = sums[i - chunk.node_begin];
     const std::int32_t target = chunks.node_sums.target[i];
@@ -95,38 +85,56 @@ void AddPoint(const Mat9& H, const Eigen::Matrix<double, 3, Element::kNodes>& G,
   }
 }
 
-// As the kernels' stiffness, by PointPotential.
-template <class Element>
-void AddPlainStiffness(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
-                       std::span<const double> acting, double projection, const Chunk& chunk,
-                       const ChunkBlocks& blocks) {
+// The kernels' stiffness, element by element, with the tangent that tangent_at(element, point, F) gives.
+template <class Element, class TangentAt>
+void AddStiffness(const TetModel& model, const NodalVector& x, double projection, const Chunk& chunk,
+                  const ChunkBlocks& blocks, const TangentAt& tangent_at) {
   constexpr int kPairs = Element::kNodes * (Element::kNodes + 1) / 2;
-  const TetBody& body = model.bodies()[model.groups()[chunk.group].body];
-  VisitLaw(model, chunk, [&]<class Law>(const Law& law) {
-    for (std::size_t e = chunk.tet_begin; e < chunk.tet_end; ++e) {
-      const auto values = ValuesOf<Element>(model, e, x);
-      std::array<Mat3, kPairs> pairs;
-      pairs.fill(Mat3::Zero());
-      for (int q = 0; q < Element::kPoints; ++q) {
-        const Mat3 F = GradientAt<Element>(model, e, values, q);
-        Mat9 H = PointPotential<Element, Law>(potential, model, body, law, e, q).Tangent(F);
-        AddCofactorTangent(PatchPressure<Element>(model.patches(), acting, e, q), F, H);
-        if (projection > 0) H += projection * (NearestPositive(H) - H);
-        AddPoint<Element>(H, ShapeGradients<Element>(model, e, q), model.rest_volume()[Element::kPoints * e + q],
-                          pairs.data());
-      }
-      const std::size_t slot = e - chunk.tet_begin;
-      for (int pair = 0; pair < kPairs; ++pair) {
-        const std::size_t at = kPairs * (slot / kBlock) + pair;
-        Eigen::Map<Mat3> sum(blocks.sums + 9 * std::size_t{blocks.place[kBlock * at + slot % kBlock]});
-        if ((blocks.turned[at] >> slot % kBlock & 1) != 0) {
-          sum += pairs[pair].transpose();
-        } else {
-          sum += pairs[pair];
-        }
+  for (std::size_t e = chunk.tet_begin; e < chunk.tet_end; ++e) {
+    const auto values = ValuesOf<Element>(model, e, x);
+    std::array<Mat3, kPairs> pairs;
+    pairs.fill(Mat3::Zero());
+    for (int q = 0; q < Element::kPoints; ++q) {
+      Mat9 H = tangent_at(e, q, GradientAt<Element>(model, e, values, q));
+      if (projection > 0) H += projection * (NearestPositive(H) - H);
+      AddPoint<Element>(H, ShapeGradients<Element>(model, e, q), model.rest_volume()[Element::kPoints * e + q],
+                        pairs.data());
+    }
+    const std::size_t slot = e - chunk.tet_begin;
+    for (int pair = 0; pair < kPairs; ++pair) {
+      const std::size_t at = kPairs * (slot / kBlock) + pair;
+      Eigen::Map<Mat3> sum(blocks.sums + 9 * std::size_t{blocks.place[kBlock * at + slot % kBlock]});
+      if ((blocks.turned[at] >> slot % kBlock & 1) != 0) {
+        sum += pairs[pair].transpose();
+      } else {
+        sum += pairs[pair];
       }
     }
-  });
+  }
+}
+
+template <class Element>
+void AddUntanglingStiffness(const TetModel& model, const NodalVector& x, double projection, const Chunk& chunk,
+                            const ChunkBlocks& blocks) {
+  AddStiffness<Element>(model, x, projection, chunk, blocks,
+                        [](std::size_t, int, const Mat3& F) { return UntanglingLaw::Tangent(F); });
+}
+
+// Under the laws of the elements. Projections are rare; the kernels have none.
+template <class Element>
+void AddProjectedStiffness(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
+                           std::span<const double> acting, double projection, const Chunk& chunk,
+                           const ChunkBlocks& blocks) {
+  const TetGroup& group = model.groups()[chunk.group];
+  const TetBody& body = model.bodies()[group.body];
+  const auto add = [&]<class Law>(const std::vector<Law>& laws) {
+    AddStiffness<Element>(model, x, projection, chunk, blocks, [&](std::size_t e, int q, const Mat3& F) {
+      Mat9 H = PointTangent<Element, Law>(potential, model, body, laws[chunk.law], e, q).At(F);
+      AddCofactorTangent(PatchPressure<Element>(model.patches(), acting, e, q), F, H);
+      return H;
+    });
+  };
+  std::visit(add, group.laws);
 }
 
 void SetBoth(const StiffnessLayout::Target& target, const Mat3& block, BlockValues& values) {
@@ -146,7 +154,7 @@ ElementEvaluation EvaluateElements(const TetModel& model, const IncrementalPoten
   ForChunks(model, team, [&](const Chunk& chunk, std::size_t c) {
     if (potential.untangling) {
       workspace.reports[c] = model.VisitElement([&]<class Element>(Element) {
-        return PlainForces<Element>(model, potential, x, acting, chunk, Numbers(force), workspace.slot_sums.data());
+        return UntanglingForces<Element>(model, x, chunk, Numbers(force), workspace.slot_sums.data());
       });
       return;
     }
@@ -181,7 +189,11 @@ void AssembleStiffness(const TetModel& model, const IncrementalPotential& potent
       const ChunkBlocks blocks{layout.PlacesOf(chunk.block_begin), layout.TurnedOf(chunk.block_begin), sums.data()};
       if (potential.untangling || projection > 0) {
         model.VisitElement([&]<class Element>(Element) {
-          AddPlainStiffness<Element>(model, potential, x, acting, projection, chunk, blocks);
+          if (potential.untangling) {
+            AddUntanglingStiffness<Element>(model, x, projection, chunk, blocks);
+          } else {
+            AddProjectedStiffness<Element>(model, potential, x, acting, projection, chunk, blocks);
+          }
         });
       } else {
         KernelsOf(model, workspace).stiffness(TaskOf(model, potential, x, acting, chunk), blocks);

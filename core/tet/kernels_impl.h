@@ -4,30 +4,14 @@
 #include <utility>
 
 #include "core/base/lanes.h"
-#include "core/geometry/quadratic_tetrahedron.h"
 #include "core/materials/material.h"
 #include "core/tet/kernels.h"
+#include "core/tet/shape_functions.h"
 
 // What kernels.h declares, for one type of Lanes. Included by one file for each instruction set, and by nothing else:
 // all functions here are templates on that type, so that no two sets share any (a test looks at the object files).
 // Nothing of Eigen or the standard library is called.
 namespace fascicle {
-
-// The two elements, as in element.h: what happens at a point of either is what happens in a linear tetrahedron whose
-// corners are combinations of the element's nodes.
-struct LinearShape {
-  static constexpr int kNodes = 4;
-  static constexpr int kPoints = 1;
-  static constexpr double kNear = 0.25, kFar = 0.25;  // barycentric coordinates of a point: of its corner, of others
-};
-struct QuadraticShape {
-  static constexpr int kNodes = 10;
-  static constexpr int kPoints = 4;
-  static constexpr double kNear = kNearCorner, kFar = kFarCorner;
-};
-inline constexpr int kEdgeEnds[6][2] = {{kTetEdges[0][0], kTetEdges[0][1]}, {kTetEdges[1][0], kTetEdges[1][1]},
-                                        {kTetEdges[2][0], kTetEdges[2][1]}, {kTetEdges[3][0], kTetEdges[3][1]},
-                                        {kTetEdges[4][0], kTetEdges[4][1]}, {kTetEdges[5][0], kTetEdges[5][1]}};
 
 // A block's values of one kind at one point of its elements.
 template <class S>
@@ -267,8 +251,6 @@ struct ChunkKernels {
     }
   }
 
-  static constexpr double Barycentric(int q, int c) { return q == c || kPoints == 1 ? Shape::kNear : Shape::kFar; }
-
   // [y1 - y0, y2 - y0, y3 - y0] of the corners y at point q.
   static Matrix3<L> Edges(const NodeValues& values, int q, int k) {
     Matrix3<L> edges;
@@ -276,12 +258,12 @@ struct ChunkKernels {
       L y[4];
       for (int c = 0; c < 4; ++c) y[c] = L::Load(&values.at[c][i][k]);
       if constexpr (kNodes == 10) {
-        for (int c = 0; c < 4; ++c) y[c] *= 4 * Barycentric(q, c) - 1;
+        for (int c = 0; c < 4; ++c) y[c] *= 4 * Shape::Barycentric(q, c) - 1;
         for (int e = 0; e < 6; ++e) {
           const int a = kEdgeEnds[e][0], b = kEdgeEnds[e][1];
           const L middle = L::Load(&values.at[4 + e][i][k]);
-          y[a] += 4 * Barycentric(q, b) * middle;
-          y[b] += 4 * Barycentric(q, a) * middle;
+          y[a] += 4 * Shape::Barycentric(q, b) * middle;
+          y[b] += 4 * Shape::Barycentric(q, a) * middle;
         }
       }
       for (int c = 0; c < 3; ++c) edges(i, c) = y[c + 1] - y[0];
@@ -298,10 +280,10 @@ struct ChunkKernels {
     if constexpr (kNodes == 4) {
       add(c, value);
     } else {
-      add(c, (4 * Barycentric(q, c) - 1) * value);
+      add(c, (4 * Shape::Barycentric(q, c) - 1) * value);
       for (int e = 0; e < 6; ++e) {
-        if (kEdgeEnds[e][0] == c) add(4 + e, 4 * Barycentric(q, kEdgeEnds[e][1]) * value);
-        if (kEdgeEnds[e][1] == c) add(4 + e, 4 * Barycentric(q, kEdgeEnds[e][0]) * value);
+        if (kEdgeEnds[e][0] == c) add(4 + e, 4 * Shape::Barycentric(q, kEdgeEnds[e][1]) * value);
+        if (kEdgeEnds[e][1] == c) add(4 + e, 4 * Shape::Barycentric(q, kEdgeEnds[e][0]) * value);
       }
     }
   }
@@ -330,7 +312,7 @@ struct ChunkKernels {
   // The fourth number at point q: the pressure of the patches.
   static L FourthAt(const NodeValues& values, int q, int k) {
     L sum = 0.0;
-    for (int c = 0; c < 4; ++c) sum += Barycentric(q, c) * L::Load(&values.at[c][3][k]);
+    for (int c = 0; c < 4; ++c) sum += Shape::Barycentric(q, c) * L::Load(&values.at[c][3][k]);
     return sum;
   }
 
@@ -535,7 +517,7 @@ struct ChunkKernels {
         L sum[4] = {0.0, 0.0, 0.0, 0.0};
         for (int q = 0; q < kPoints; ++q) {
           const L volume = at_point(q, k);
-          for (int c = 0; c < 4; ++c) sum[c] += Barycentric(q, c) * volume;
+          for (int c = 0; c < 4; ++c) sum[c] += Shape::Barycentric(q, c) * volume;
         }
         for (int c = 0; c < 4; ++c) sum[c].Store(&volumes[c][k]);
       }
@@ -585,10 +567,11 @@ struct ChunkKernels {
     WriteNumbers(task, sums);
   }
 
-  // F (I + hair a0 a0^T): where a fibre curve has a kink, at rest above all, its stiffer side counts.
-  static Matrix3<L> AHairLonger(const Matrix3<L>& F, const Vector3<L>& a0) {
-    constexpr double kHair = sizeof(S) == 4 ? 1e-6 : 1e-7;
-    return F + kHair * ::fascicle::Outer(F * a0, a0);
+  // F (I + e a0 a0^T) with a small e: where a fibre curve has a kink, at rest above all, the tangent is taken on its
+  // stiffer side.
+  static Matrix3<L> PerturbAlongFibre(const Matrix3<L>& F, const Vector3<L>& a0) {
+    constexpr double kPerturbation = sizeof(S) == 4 ? 1e-6 : 1e-7;
+    return F + kPerturbation * ::fascicle::Outer(F * a0, a0);
   }
 
   [[gnu::flatten]] static void StiffnessProduct(const ChunkTask<S>& task) {
@@ -611,7 +594,7 @@ struct ChunkKernels {
         const RestPoint<S>& rest = task.points[kPoints * b + q];
         for (int k = 0; k < kBlock; k += L::kLanes) {
           const Vector3<L> a0 = LoadVector<L>(point.fibres->direction, k);
-          StoreMatrix(AHairLonger(Gradient(positions, rest, q, k), a0), k, point.F.m);
+          StoreMatrix(PerturbAlongFibre(Gradient(positions, rest, q, k), a0), k, point.F.m);
           StoreMatrix(Gradient(changes, rest, q, k), k, dF.m);
         }
         law.product(task.law, point, dF, dP);
@@ -645,9 +628,7 @@ struct ChunkKernels {
         for (int i = 0; i < parts.count; ++i) {
           parts.corner[i] = a < 4 ? a : kEdgeEnds[a - 4][i];
           for (int q = 0; q < kPoints; ++q) {
-            parts.factor[q][i] = kNodes == 4 ? 1
-                                 : a < 4     ? 4 * Barycentric(q, a) - 1
-                                             : 4 * Barycentric(q, kEdgeEnds[a - 4][1 - i]);
+            parts.factor[q][i] = Shape::CornerWeight(q, parts.corner[i], a);
           }
         }
       }

@@ -33,7 +33,7 @@ Eigen::Matrix<double, 3, Element::kNodes> ShapeGradients(const TetModel& model, 
   Eigen::Matrix<double, 3, Element::kNodes> gradients;
   for (int a = 0; a < Element::kNodes; ++a) {
     gradients.col(a).setZero();
-    for (int c = 0; c < 4; ++c) gradients.col(a) += Element::Part(q, c, a) * g.col(c);
+    for (int c = 0; c < 4; ++c) gradients.col(a) += Element::CornerWeight(q, c, a) * g.col(c);
   }
   return gradients;
 }

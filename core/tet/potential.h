@@ -2,7 +2,6 @@
 #define FASCICLE_CORE_TET_POTENTIAL_H_
 
 #include "core/tet/points.h"
-#include "core/tet/untangling_law.h"
 
 namespace fascicle {
 
@@ -25,14 +24,13 @@ struct IncrementalPotential {
   bool untangling = false;
 };
 
-// The stress and energy at one point under the potential, without those of patches.
+// The tangent of a point's law and of its viscous increment, without patches and without untangling.
 template <class Element, class Law>
-struct PointPotential {
-  PointPotential(const IncrementalPotential& potential, const TetModel& model, const TetBody& body, const Law& law,
-                 std::size_t tet, int q)
-      : law_(law), untangling_(potential.untangling) {
-    if (untangling_) return;
-    fibre_ = FibreAt<Element>(model, tet, potential.drive, q);
+class PointTangent {
+ public:
+  PointTangent(const IncrementalPotential& potential, const TetModel& model, const TetBody& body, const Law& law,
+               std::size_t tet, int q)
+      : law_(law), fibre_(FibreAt<Element>(model, tet, potential.drive, q)) {
     if (potential.viscous_rate == 0 || !body.HasStrainDamping()) return;
     mu_ = body.damping_mu * potential.viscous_rate;
     lambda_ = body.damping_lambda * potential.viscous_rate;
@@ -40,30 +38,14 @@ struct PointPotential {
     previous_C_ = F.transpose() * F;
   }
 
-  double Energy(const Mat3& F) const {
-    if (untangling_) return UntanglingLaw::Energy(F);
-    double energy = law_.Energy(F, fibre_);
-    if (IsViscous()) {
-      const Mat3 dE = StrainChange(F);
-      energy += mu_ * dE.squaredNorm() + 0.5 * lambda_ * dE.trace() * dE.trace();
-    }
-    return energy;
-  }
-
-  Mat3 Stress(const Mat3& F) const {
-    if (untangling_) return UntanglingLaw::Stress(F);
-    Mat3 P = law_.Stress(F, fibre_);
-    if (IsViscous()) P += F * SecondStress(StrainChange(F));
-    return P;
-  }
-
-  Mat9 Tangent(const Mat3& F) const {
-    if (untangling_) return UntanglingLaw::Tangent(F);
+  // dP/dF [Pa].
+  Mat9 At(const Mat3& F) const {
     Mat9 tangent = law_.Tangent(F, fibre_);
-    if (IsViscous()) {
+    if (mu_ != 0 || lambda_ != 0) {
       const Vec9 f = Flatten(F);
+      const Mat3 dE = 0.5 * (F.transpose() * F - previous_C_);
       tangent += lambda_ * f * f.transpose();
-      AddRightProduct(1, SecondStress(StrainChange(F)), tangent);
+      AddRightProduct(1, 2 * mu_ * dE + lambda_ * dE.trace() * Mat3::Identity(), tangent);
       AddTransposedProduct(mu_, F, tangent);
       AddLeftProduct(mu_, F * F.transpose(), tangent);
     }
@@ -71,14 +53,9 @@ struct PointPotential {
   }
 
  private:
-  bool IsViscous() const { return mu_ != 0 || lambda_ != 0; }
-  Mat3 StrainChange(const Mat3& F) const { return 0.5 * (F.transpose() * F - previous_C_); }
-  Mat3 SecondStress(const Mat3& dE) const { return 2 * mu_ * dE + lambda_ * dE.trace() * Mat3::Identity(); }
-
   const Law& law_;
-  bool untangling_;
   FibreState fibre_;
-  double mu_ = 0, lambda_ = 0;
+  double mu_ = 0, lambda_ = 0;  // of the viscous stress, over the step [Pa]
   Mat3 previous_C_ = Mat3::Identity();
 };
 

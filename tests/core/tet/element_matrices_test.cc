@@ -51,6 +51,34 @@ double LargestOf(const BlockValues& values) {
   return largest;
 }
 
+// Energy density and stress of a point under the potential, from the law and the equations of potential.h.
+template <class Element, class Law>
+struct PointOracle {
+  PointOracle(const IncrementalPotential& potential, const TetModel& model, const TetBody& body, const Law& of_point,
+              std::size_t tet, int q)
+      : law(of_point), fibre(FibreAt<Element>(model, tet, potential.drive, q)) {
+    if (potential.viscous_rate == 0) return;
+    mu = body.damping_mu * potential.viscous_rate;
+    lambda = body.damping_lambda * potential.viscous_rate;
+    const Mat3 F = GradientAt<Element>(model, tet, ValuesOf<Element>(model, tet, *potential.previous), q);
+    previous_C = F.transpose() * F;
+  }
+  Mat3 StrainChange(const Mat3& F) const { return 0.5 * (F.transpose() * F - previous_C); }
+  double Energy(const Mat3& F) const {
+    const Mat3 dE = StrainChange(F);
+    return law.Energy(F, fibre) + mu * dE.squaredNorm() + 0.5 * lambda * dE.trace() * dE.trace();
+  }
+  Mat3 Stress(const Mat3& F) const {
+    const Mat3 dE = StrainChange(F);
+    return law.Stress(F, fibre) + F * (2 * mu * dE + lambda * dE.trace() * Mat3::Identity());
+  }
+
+  const Law& law;
+  FibreState fibre;
+  double mu = 0, lambda = 0;
+  Mat3 previous_C = Mat3::Identity();
+};
+
 using Case = std::tuple<int, ElementOrder, VolumeForm>;
 class ElementMatricesTest : public ::testing::TestWithParam<Case> {
  protected:
@@ -72,7 +100,7 @@ TEST_P(ElementMatricesTest, EvaluationIsThatOfThePotentialAtEveryPoint) {
               for (int q = 0; q < Element::kPoints; ++q) {
                 const std::size_t at = Element::kPoints * e + q;
                 const Mat3 F = GradientAt<Element>(model, e, ValuesOf<Element>(model, e, s_.x), q);
-                const PointPotential<Element, Law> point(s_.potential, model, body, laws[model.law_of()[e]], e, q);
+                const PointOracle<Element, Law> point(s_.potential, model, body, laws[model.law_of()[e]], e, q);
                 energy += model.rest_volume()[at] * point.Energy(F);
                 smallest = std::min(smallest, Determinant(F));
                 const Mat3 P = point.Stress(F) + PatchPressure<Element>(model.patches(), s_.acting, e, q) * Cofactor(F);
@@ -190,9 +218,9 @@ TEST_P(AssembleStiffnessTest, AddsEveryBlockInItsPlace) {
               for (int q = 0; q < Element::kPoints; ++q) {
                 const Mat3 F = GradientAt<Element>(s.model, e, ValuesOf<Element>(s.model, e, s.x), q);
                 const Mat3 dF = GradientAt<Element>(s.model, e, ValuesOf<Element>(s.model, e, p), q);
-                const PointPotential<Element, Law> point(s.potential, s.model, s.model.bodies()[group.body],
+                const PointTangent<Element, Law> tangent(s.potential, s.model, s.model.bodies()[group.body],
                                                          laws[s.model.law_of()[e]], e, q);
-                const Vec9 dP = point.Tangent(F) * Flatten(dF);
+                const Vec9 dP = tangent.At(F) * Flatten(dF);
                 const Mat3 dP_matrix = Eigen::Map<const Mat3>(dP.data());
                 const auto G = ShapeGradients<Element>(s.model, e, q);
                 for (int a = 0; a < Element::kNodes; ++a) {
