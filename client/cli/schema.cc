@@ -13,6 +13,7 @@
 
 #include "client/cli/command.h"
 #include "fascicle/v1/scene.pb.h"
+#include "proto/rules/enum_names.h"
 #include "proto/rules/field_rules.h"
 
 namespace fascicle::client {
@@ -57,16 +58,9 @@ std::string Lower(std::string text) {
   return text;
 }
 
-// "mm" of LENGTH_UNIT_MM: without what all values of the enum begin with.
-std::string ShortName(const EnumDescriptor& type, int index) {
-  const std::string zero = type.value(0)->name();
-  const std::size_t prefix = zero.size() - std::string("UNSPECIFIED").size();
-  return Lower(type.value(index)->name().substr(prefix));
-}
-
 std::string Names(const EnumDescriptor& type) {
   std::string names;
-  for (int i = 1; i < type.value_count(); ++i) names += (i > 1 ? ", " : "") + ("\"" + ShortName(type, i) + "\"");
+  for (int i = 1; i < type.value_count(); ++i) names += (i > 1 ? ", " : "") + ("\"" + NameOf(*type.value(i)) + "\"");
   return names;
 }
 
@@ -129,7 +123,7 @@ void PrintEnum(const EnumDescriptor& type) {
   std::cout << type.name() << ": one of " << Names(type) << '\n';
   PrintIndented(CommentOf(type), "  | ");
   for (int i = 1; i < type.value_count(); ++i) {
-    std::cout << "  \"" << ShortName(type, i) << "\"\n";
+    std::cout << "  \"" << NameOf(*type.value(i)) << "\"\n";
     PrintIndented(CommentOf(*type.value(i)), "      ");
   }
   std::cout << '\n';
@@ -162,7 +156,7 @@ Json MessageJson(const Descriptor& message) {
 Json EnumJson(const EnumDescriptor& type) {
   Json values = Json::array();
   for (int i = 1; i < type.value_count(); ++i) {
-    values.push_back({{"name", ShortName(type, i)}, {"comment", CommentOf(*type.value(i))}});
+    values.push_back({{"name", NameOf(*type.value(i))}, {"comment", CommentOf(*type.value(i))}});
   }
   return {{"enum", type.name()}, {"comment", CommentOf(type)}, {"values", std::move(values)}};
 }

@@ -11,49 +11,18 @@
 #include <system_error>
 #include <vector>
 
-#include <google/protobuf/message.h>
-
 #include "client/lib/scene_json.h"
 #include "client/lib/scene_settings.h"
 #include "core/base/digest.h"
 #include "proto/rules/field_rules.h"
+#include "proto/rules/find_messages.h"
 
 namespace fascicle::client {
 namespace {
 
 namespace fs = std::filesystem;
-using google::protobuf::FieldDescriptor;
-using google::protobuf::Message;
 
 constexpr std::uintmax_t kMaxAssetBytes = std::uintmax_t{4} << 30;
-
-struct NamedFile {
-  v1::FileRef* ref;
-  std::string path;  // field path, such as "bodies[0].mesh.file"
-};
-
-// Every FileRef of a message, to any depth.
-void CollectFiles(Message& message, const std::string& path, std::vector<NamedFile>& files) {
-  if (auto* ref = dynamic_cast<v1::FileRef*>(&message)) {
-    files.push_back({ref, path});
-    return;
-  }
-  const auto& reflection = *message.GetReflection();
-  std::vector<const FieldDescriptor*> fields;
-  reflection.ListFields(message, &fields);
-  for (const FieldDescriptor* field : fields) {
-    if (field->cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) continue;
-    const std::string field_path = JoinPath(path, field->name());
-    if (!field->is_repeated()) {
-      CollectFiles(*reflection.MutableMessage(&message, field), field_path, files);
-      continue;
-    }
-    for (int i = 0; i < reflection.FieldSize(message, field); ++i) {
-      CollectFiles(*reflection.MutableRepeatedMessage(&message, field, i),
-                   IndexPath(field_path, static_cast<std::size_t>(i)), files);
-    }
-  }
-}
 
 bool IsInside(const fs::path& folder, const fs::path& path) {
   const auto [end, ignored] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
@@ -130,23 +99,24 @@ class AssetReader {
   AssetReader(fs::path folder, ScenePackage& package, Problems& problems)
       : folder_(std::move(folder)), package_(package), problems_(problems) {}
 
-  void Read(const NamedFile& file) {
+  // Packs the file that `ref`, at `ref_path` in the scene, names, and sets the asset there.
+  void Read(v1::FileRef& ref, const std::string& ref_path) {
     // A reference by digest alone names something that the server already has.
-    if (file.ref->path().empty() && !file.ref->asset().empty()) return;
-    const std::string field = JoinPath(file.path, "path");
-    const std::optional<fs::path> path = Resolve(folder_, file.ref->path(), field, problems_);
+    if (ref.path().empty() && !ref.asset().empty()) return;
+    const std::string field = JoinPath(ref_path, "path");
+    const std::optional<fs::path> path = Resolve(folder_, ref.path(), field, problems_);
     if (!path) return;
     std::string& digest = digests_[*path];
     if (digest.empty()) {
       std::optional<std::string> bytes = ReadFile(*path);
       if (!bytes) {
-        problems_.Add(field, "\"" + file.ref->path() + "\" can't be read", "check its permissions");
+        problems_.Add(field, "\"" + ref.path() + "\" can't be read", "check its permissions");
         return;
       }
       digest = Hex(Sha256Of(*bytes));
       if (packed_.insert(digest).second) package_.assets.push_back({digest, path->string(), std::move(*bytes)});
     }
-    file.ref->set_asset("assets/" + digest);
+    ref.set_asset("assets/" + digest);
   }
 
  private:
@@ -216,10 +186,9 @@ std::optional<ScenePackage> LoadScene(const std::string& path, Problems& problem
   if (std::optional<v1::Scene> scene = ReadScene(*text, settings, own)) {
     package.scene = std::move(*scene);
     NameElementFiles(package.scene);
-    std::vector<NamedFile> files;
-    CollectFiles(package.scene, "", files);
     AssetReader reader(file.parent_path(), package, own);
-    for (const NamedFile& named : files) reader.Read(named);
+    ForEachMessage<v1::FileRef>(package.scene, "",
+                                [&](v1::FileRef& ref, const std::string& at) { reader.Read(ref, at); });
     if (!own.empty()) CheckRest(package.scene, own);
   }
   problems.Append("", own);

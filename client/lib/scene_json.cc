@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <vector>
+
+#include "core/base/edit_distance.h"
+#include "proto/rules/enum_names.h"
 
 namespace fascicle::client {
 namespace {
@@ -97,22 +99,6 @@ std::string SyntaxMessage(const std::string& what) {
   return bracket == std::string::npos ? what : what.substr(bracket + 2);
 }
 
-// Levenshtein distance.
-std::size_t EditDistance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substituted});
-    }
-  }
-  return row.back();
-}
-
 std::string Join(const std::vector<std::string>& names) {
   std::string joined;
   for (const std::string& name : names) joined += (joined.empty() ? "" : ", ") + name;
@@ -157,23 +143,13 @@ std::string KindOf(const json& value) {
   }
 }
 
-// "LENGTH_UNIT_MM" of LengthUnit -> "mm".
-std::string ShortName(const EnumValueDescriptor& value) {
-  const std::string& type = value.type()->name();
-  std::size_t prefix = type.size() + 1;  // one `_` between words and one at the end
-  for (std::size_t i = 1; i < type.size(); ++i) prefix += std::isupper(static_cast<unsigned char>(type[i])) ? 1 : 0;
-  std::string name = value.name().substr(std::min(prefix, value.name().size()));
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return name;
-}
-
 std::optional<int> ReadEnum(const std::string& text, const EnumDescriptor& type, const std::string& path,
                             Problems& problems) {
   std::vector<std::string> names;
   for (int i = 0; i < type.value_count(); ++i) {
     const EnumValueDescriptor& value = *type.value(i);
     if (value.number() == 0) continue;  // "not given" is said by leaving the field out
-    names.push_back(ShortName(value));
+    names.push_back(NameOf(value));
     if (text == names.back() || text == value.name()) return value.number();
   }
   problems.Add(path, "unknown value " + Quoted(text), NameHint(text, names));
@@ -315,8 +291,7 @@ OrderedJson ValueOf(const Message& message, const FieldDescriptor& field, int in
     case FieldDescriptor::CPPTYPE_BOOL:
       return one ? reflection.GetBool(message, &field) : reflection.GetRepeatedBool(message, &field, index);
     case FieldDescriptor::CPPTYPE_ENUM:
-      return ShortName(one ? *reflection.GetEnum(message, &field)
-                           : *reflection.GetRepeatedEnum(message, &field, index));
+      return NameOf(one ? *reflection.GetEnum(message, &field) : *reflection.GetRepeatedEnum(message, &field, index));
     default:
       return one ? reflection.GetString(message, &field) : reflection.GetRepeatedString(message, &field, index);
   }

@@ -7,6 +7,7 @@
 
 #include "core/eulerian/fibre_samples.h"
 #include "core/geometry/triangle_tree.h"
+#include "core/scene/nodal_forces.h"
 #include "core/scene/rigid_motion.h"
 
 namespace fascicle {
@@ -62,27 +63,13 @@ void SetSupports(const Body& source, double cell_size, EulerianBody& body) {
   };
 }
 
-// What each vertex takes of the load of a region, at scale 1 [N].
-void AddLoad(const Body& source, const Load& load, std::vector<Vec3>& forces) {
-  const Region& region = source.regions[load.region];
-  if (const auto* force = std::get_if<NodalForce>(&load.kind)) {
-    for (const std::int32_t node : region.nodes)
-      forces[node] += force->total / static_cast<double>(region.nodes.size());
-    return;
-  }
-  const std::vector<Vec3>& X = source.nodes();
-  for (const Triangle& t : region.triangles) {
-    const double area = 0.5 * (X[t[1]] - X[t[0]]).cross(X[t[2]] - X[t[0]]).norm();
-    for (const std::int32_t node : t) forces[node] += area / 3 * std::get<Traction>(load.kind).vector;
-  }
-}
-
 void SetLoads(const Body& source, EulerianBody& body) {
   if (source.loads.empty()) return;
   std::vector<std::vector<Vec3>> of_loads;
   for (const Load& load : source.loads) {
-    of_loads.emplace_back(source.nodes().size(), Vec3::Zero());
-    AddLoad(source, load, of_loads.back());
+    std::vector<Vec3>& of_vertices = of_loads.emplace_back(source.nodes().size(), Vec3::Zero());
+    const LoadedRegion region = LoadedRegionOf(source.regions[load.region], source.nodes());
+    for (const auto& [vertex, force] : NodalForcesOf(load, region)) of_vertices[vertex] += force;
   }
   body.vertex_forces = [of_loads, &source](double time, std::vector<Vec3>& forces) {
     for (std::size_t k = 0; k < of_loads.size(); ++k) {

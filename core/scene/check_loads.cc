@@ -1,4 +1,5 @@
 #include "core/scene/checks.h"
+#include "core/scene/nodal_forces.h"
 
 namespace fascicle::scene_checks {
 namespace {
@@ -11,9 +12,9 @@ void CheckLoad(const Body& body, const Load& load, const std::string& path, Prob
   const Region& region = body.regions[load.region];
   if (region.nodes.empty()) {
     problems.Add(JoinPath(path, "region"), "region `" + region.name + "` has no nodes");
-  } else if (std::holds_alternative<Traction>(load.kind) && region.triangles.empty() && region.quads.empty()) {
+  } else if (NeedsSurface(load) && region.triangles.empty() && region.quads.empty()) {
     problems.Add(JoinPath(path, "region"),
-                 "a traction needs surface, but region `" + region.name + "` holds no whole face of the surface",
+                 "the load needs surface, but region `" + region.name + "` holds no whole face of the surface",
                  "choose a larger region, one by side or by tag, or a nodal_force");
   }
 }

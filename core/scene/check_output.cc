@@ -1,11 +1,23 @@
+#include <algorithm>
 #include <set>
+#include <span>
 
 #include "core/scene/checks.h"
+#include "core/scene/output_fields.h"
 
 namespace fascicle::scene_checks {
 namespace {
 
 constexpr double kMaxFrames = 100000;
+
+bool HasFibres(const Body& body) {
+  struct Fibres {
+    bool operator()(const TetShape& shape) const { return !shape.fibres.empty(); }
+    bool operator()(const VoxelShape&) const { return false; }
+    bool operator()(const SurfaceShape& shape) const { return !shape.fibres.empty(); }
+  };
+  return std::visit(Fibres{}, body.shape);
+}
 
 }  // namespace
 
@@ -16,6 +28,11 @@ void CheckOutput(const Scene& scene, Problems& problems) {
     problems.Add("output.frame_interval", "the time between frames must be positive");
   } else if (scene.duration / output.frame_interval > kMaxFrames) {
     problems.Add("output.frame_interval", "this gives more than 100,000 frames", "take a longer interval");
+  }
+  const bool fibres = std::any_of(scene.bodies.begin(), scene.bodies.end(), HasFibres);
+  for (std::size_t i = 0; i < output.fields.size(); ++i) {
+    CheckOutputField(output.fields[i], std::span(output.fields).first(i), fibres,
+                     JoinPath("output", IndexPath("fields", i)), problems);
   }
   std::set<std::string> names;
   for (std::size_t i = 0; i < output.probes.size(); ++i) {

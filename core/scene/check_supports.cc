@@ -4,20 +4,18 @@
 #include <cmath>
 
 #include "core/scene/checks.h"
+#include "core/scene/nodal_forces.h"
 
 namespace fascicle::scene_checks {
 namespace {
 
 // Resultant of a load at scale 1 [N].
 Vec3 Resultant(const Body& body, const Load& load) {
-  if (const auto* force = std::get_if<NodalForce>(&load.kind)) return force->total;
-  const auto& X = body.nodes();
-  double area = 0;
-  for (const Triangle& t : body.regions[load.region].triangles) {
-    area += 0.5 * (X[t[1]] - X[t[0]]).cross(X[t[2]] - X[t[0]]).norm();
+  Vec3 sum = Vec3::Zero();
+  for (const auto& [node, force] : NodalForcesOf(load, LoadedRegionOf(body.regions[load.region], body.nodes()))) {
+    sum += force;
   }
-  for (const Quad& q : body.regions[load.region].quads) area += (X[q[1]] - X[q[0]]).cross(X[q[3]] - X[q[0]]).norm();
-  return area * std::get<Traction>(load.kind).vector;
+  return sum;
 }
 
 double VolumeOf(const TetShape& shape) { return TotalVolume(shape.mesh); }

@@ -10,6 +10,7 @@
 
 namespace fascicle {
 
+// The fields that frames may hold, in the order of output_fields.h, which says all about them.
 enum class OutputField {
   kVelocity,
   kCauchyStress,

@@ -2,10 +2,8 @@
 
 #include <cmath>
 
-#include "core/base/von_mises.h"
 #include "core/eulerian/interpolation.h"
 #include "core/eulerian/surface.h"
-#include "core/sim/field_info.h"
 #include "core/sim/series.h"
 
 namespace fascicle {
@@ -22,21 +20,25 @@ Mat3 StressOf(const EulerianBody& body, const EulerianState& state, const Euleri
   return sigma;
 }
 
-// What a field is in a cell, component by component.
+// What means over cells are taken of: the field, or the tensor that it is computed from.
+OutputField Averaged(OutputField field) {
+  return InfoOf(field).from == FieldSource::kStress ? OutputField::kCauchyStress : field;
+}
+
+// That in a cell, component by component.
 std::vector<double> CellValue(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
                               OutputField field, std::size_t cell) {
-  const Vec3 along = cells.F[cell] * FibreOf(body, state, body.grid.CellAt(cell)).direction;
-  switch (field) {
-    case OutputField::kVolumeRatio:
-      return {cells.J[cell]};
-    case OutputField::kFibreStretch:
-      return {along.norm()};
-    case OutputField::kFibreDirection:
-      return {along[0], along[1], along[2]};
-    default:
-      const Mat3 s = StressOf(body, state, cells, cell);
-      return {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
+  MaterialPoint point;
+  if (InfoOf(field).from == FieldSource::kStress) {
+    point.sigma = StressOf(body, state, cells, cell);
+  } else {
+    point.F = cells.F[cell];
+    point.J = cells.J[cell];
+    point.a0 = FibreOf(body, state, body.grid.CellAt(cell)).direction;
   }
+  std::vector<double> values(InfoOf(Averaged(field)).components);
+  PutField(Averaged(field), point, values.data());
+  return values;
 }
 
 // The mean over solid cells around a point, each by its solid part and its nearness; zero where there is none.
@@ -64,44 +66,34 @@ Mat3 Tensor(const std::vector<double>& s) {
   return (Mat3() << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]).finished();
 }
 
-// From the mean tensor or vector of a vertex to the field's values.
-void AddValues(OutputField field, const std::vector<double>& mean, std::vector<double>& values) {
-  if (field == OutputField::kVonMisesStress) {
-    values.push_back(VonMises(Tensor(mean)));
-  } else if (field == OutputField::kPressure) {
-    values.push_back(Tensor(mean).trace() / 3);
-  } else if (field == OutputField::kFibreDirection) {
-    const Vec3 direction = Vec3(mean[0], mean[1], mean[2]).normalized();
-    values.insert(values.end(), direction.begin(), direction.end());
-  } else {
-    values.insert(values.end(), mean.begin(), mean.end());
+// From the mean at a vertex to the field's values there.
+std::vector<double> AtVertex(OutputField field, const std::vector<double>& mean) {
+  const OutputFieldInfo& info = InfoOf(field);
+  std::vector<double> values = mean;
+  if (info.from == FieldSource::kStress) {
+    MaterialPoint point;
+    point.sigma = Tensor(mean);
+    values.resize(info.components);
+    PutField(field, point, values.data());
   }
+  if (info.is_direction) NormalizeDirections(values);
+  return values;
 }
 
-std::size_t ComponentsOf(OutputField field) {
-  switch (field) {
-    case OutputField::kVolumeRatio:
-    case OutputField::kFibreStretch:
-      return 1;
-    case OutputField::kFibreDirection:
-      return 3;
-    default:
-      return 6;
-  }
-}
-
-std::vector<double> VelocitiesOf(const EulerianBody& body, const EulerianState& state) {
-  std::vector<double> values;
-  for (const Vec3& x : state.surface) {
-    const Vec3 v = Interpolate(body.grid, {&state.v, &state.known}, x).value_or(Vec3::Zero());
-    values.insert(values.end(), v.begin(), v.end());
+std::vector<double> AtVertices(const EulerianBody& body, const EulerianState& state, OutputField field) {
+  const std::size_t components = InfoOf(field).components;
+  std::vector<double> values(components * state.surface.size());
+  for (std::size_t v = 0; v < state.surface.size(); ++v) {
+    MaterialPoint point;
+    point.v = Interpolate(body.grid, {&state.v, &state.known}, state.surface[v]).value_or(Vec3::Zero());
+    PutField(field, point, &values[components * v]);
   }
   return values;
 }
 
 std::vector<double> FieldValuesOf(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
                                   OutputField field) {
-  if (field == OutputField::kVelocity) return VelocitiesOf(body, state);
+  if (InfoOf(field).from == FieldSource::kMotion) return AtVertices(body, state, field);
   std::vector<std::vector<double>> of_cell(cells.inside.size());
   const auto value_of = [&](std::size_t cell) -> const std::vector<double>& {
     if (of_cell[cell].empty()) of_cell[cell] = CellValue(body, state, cells, field, cell);
@@ -109,7 +101,9 @@ std::vector<double> FieldValuesOf(const EulerianBody& body, const EulerianState&
   };
   std::vector<double> values;
   for (const Vec3& x : state.surface) {
-    AddValues(field, MeanAround(body.grid, cells, x, ComponentsOf(field), value_of), values);
+    const std::vector<double> mean = MeanAround(body.grid, cells, x, InfoOf(Averaged(field)).components, value_of);
+    const std::vector<double> at_vertex = AtVertex(field, mean);
+    values.insert(values.end(), at_vertex.begin(), at_vertex.end());
   }
   return values;
 }
@@ -173,7 +167,7 @@ BodyFrame MeasureEulerianBody(const Scene& scene, const EulerianBody& body, cons
   EulerianCells cells;
   UpdateCells(body, state, team, cells);
   for (const OutputField field : scene.output.fields) {
-    frame.fields.push_back(FieldOf(field, FieldLocation::kNode, FieldValuesOf(body, state, cells, field)));
+    frame.fields.push_back(FieldOf(field, Method::kEulerian, FieldValuesOf(body, state, cells, field)));
   }
   return frame;
 }

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <span>
+#include <utility>
 
 namespace fascicle {
 namespace {
@@ -21,6 +22,11 @@ void AddArray(Sha256& sha, const std::vector<Item>& items) {
 }
 
 }  // namespace
+
+FieldValues FieldOf(OutputField field, Method method, std::vector<double> values) {
+  const OutputFieldInfo& info = InfoOf(field);
+  return {info.name, LocationOf(info, method), static_cast<int>(info.components), info.unit, std::move(values)};
+}
 
 Digest DigestOf(const Frame& frame) {
   Sha256 sha;

@@ -7,10 +7,9 @@
 
 #include "core/base/digest.h"
 #include "core/base/types.h"
+#include "core/scene/output_fields.h"
 
 namespace fascicle {
-
-enum class FieldLocation { kNode, kTetrahedron, kBrick };
 
 struct FieldValues {
   std::string name;  // `velocity`, `cauchy_stress`, ... as in scene.proto
@@ -19,6 +18,9 @@ struct FieldValues {
   std::string unit;
   std::vector<double> values;  // component fastest
 };
+
+// A field in the frames of a method, with its values.
+FieldValues FieldOf(OutputField field, Method method, std::vector<double> values);
 
 struct BodyFrame {
   std::vector<Vec3> positions;  // [m]

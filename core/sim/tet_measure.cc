@@ -1,6 +1,5 @@
 #include "core/sim/tet_measure.h"
 
-#include "core/sim/field_info.h"
 #include "core/sim/series.h"
 #include "core/tet/diagnostics.h"
 #include "core/tet/fields.h"
@@ -91,8 +90,8 @@ std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& stat
     frames[b].positions.assign(state.positions.begin() + static_cast<std::ptrdiff_t>(body.node_begin),
                                state.positions.begin() + static_cast<std::ptrdiff_t>(body.mesh_node_end));
     for (const OutputField field : model.scene().output.fields) {
-      frames[b].fields.push_back(FieldOf(field, FieldLocation::kTetrahedron,
-                                         FieldValuesOf(model, b, field, FibreDrive{controls.activation}, state, team)));
+      frames[b].fields.push_back(
+          FieldOf(field, Method::kTet, FieldValuesOf(model, b, field, FibreDrive{controls.activation}, state, team)));
     }
   }
   return frames;

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/base/von_mises.h"
 #include "core/materials/rotation.h"
-#include "core/sim/field_info.h"
 #include "core/sim/series.h"
 #include "core/voxel/brick.h"
 #include "core/voxel/fields.h"
@@ -42,47 +40,44 @@ std::vector<Mat3> StressesOf(const VoxelSceneBody& body, const VoxelField<double
   return stresses;
 }
 
-template <class Value>
-std::vector<double> OfStresses(const std::vector<Mat3>& stresses, const Value& value) {
-  std::vector<double> values;
-  for (const Mat3& s : stresses) value(s, values);
+// Values of a field at points, one after another.
+std::vector<double> ValuesAt(const std::vector<MaterialPoint>& points, OutputField field) {
+  const std::size_t components = InfoOf(field).components;
+  std::vector<double> values(components * points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) PutField(field, points[p], &values[components * p]);
   return values;
 }
 
-std::vector<double> Velocities(const VoxelSceneBody& body, const VoxelState& state, double time_step) {
-  std::vector<double> values;
-  for (std::int32_t n = 0; n < state.displacement.nodes(); ++n) {
+std::vector<MaterialPoint> NodesOf(const VoxelSceneBody& body, const VoxelState& state, double time_step) {
+  std::vector<MaterialPoint> points(static_cast<std::size_t>(state.displacement.nodes()));
+  for (std::int32_t n = 0; time_step > 0 && n < state.displacement.nodes(); ++n) {
     const Vec3 change = state.displacement.At(n) - state.previous.At(n);
-    const Vec3 v = time_step > 0 ? body.ToWorld(change / time_step) : Vec3(Vec3::Zero());
-    values.insert(values.end(), v.begin(), v.end());
+    points[static_cast<std::size_t>(n)].v = body.ToWorld(change / time_step);
   }
-  return values;
+  return points;
+}
+
+std::vector<MaterialPoint> CentresOf(const VoxelSceneBody& body, const VoxelState& state, FieldSource wanted) {
+  const std::vector<Mat3> gradients = GradientsAtCentres(body.model(), state.displacement);
+  std::vector<Mat3> stresses;
+  if (wanted == FieldSource::kStress) stresses = StressesOf(body, state.displacement);
+  std::vector<MaterialPoint> points(gradients.size());
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    points[p].F = body.direction() * gradients[p] * body.direction().transpose();
+    points[p].J = gradients[p].determinant();
+    if (!stresses.empty()) points[p].sigma = stresses[p];
+  }
+  return points;
 }
 
 std::vector<double> FieldValuesOf(const VoxelSceneBody& body, const VoxelState& state, double time_step,
                                   OutputField field) {
-  const VoxelField<double>& u = state.displacement;
-  switch (field) {
-    case OutputField::kVelocity:
-      return Velocities(body, state, time_step);
-    case OutputField::kCauchyStress:
-      return OfStresses(StressesOf(body, u), [](const Mat3& s, std::vector<double>& values) {
-        values.insert(values.end(), {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)});
-      });
-    case OutputField::kVonMisesStress:
-      return OfStresses(StressesOf(body, u),
-                        [](const Mat3& s, std::vector<double>& values) { values.push_back(VonMises(s)); });
-    case OutputField::kPressure:
-      return OfStresses(StressesOf(body, u),
-                        [](const Mat3& s, std::vector<double>& values) { values.push_back(s.trace() / 3); });
-    case OutputField::kVolumeRatio: {
-      std::vector<double> ratios;
-      for (const Mat3& F : GradientsAtCentres(body.model(), u)) ratios.push_back(F.determinant());
-      return ratios;
-    }
-    default:
-      return {};  // fields of fibres: CheckScene lets none through
-  }
+  const FieldSource from = InfoOf(field).from;
+  const std::vector<MaterialPoint> points =
+      from == FieldSource::kMotion ? NodesOf(body, state, time_step) : CentresOf(body, state, from);
+  std::vector<double> values = ValuesAt(points, field);
+  if (InfoOf(field).is_direction) NormalizeDirections(values);
+  return values;
 }
 
 Vec3 PositionOf(const VoxelSceneBody& body, const VoxelField<double>& u, std::size_t node) {
@@ -144,7 +139,7 @@ std::vector<BodyFrame> MeasureVoxelBodies(const Scene& scene, const VoxelSolver&
     }
     for (const OutputField field : scene.output.fields) {
       frames[b].fields.push_back(
-          FieldOf(field, FieldLocation::kBrick, FieldValuesOf(body, state.bodies[b], state.time_step, field)));
+          FieldOf(field, Method::kVoxel, FieldValuesOf(body, state.bodies[b], state.time_step, field)));
     }
   }
   return frames;

@@ -192,9 +192,7 @@ void TetModel::AddElements(const Body& body, TetBody& entry) {
   entry.tet_end = entry.tet_begin + count;
   std::vector<std::size_t> kinds(count);
   for (std::size_t t = 0; t < count; ++t) kinds[t] = MaterialOf(body, t).index();
-  const auto law = [&](std::int32_t t) {
-    return std::pair{kinds[t], PartOf(shape.materials, t)};
-  };
+  const auto law = [&](std::int32_t t) { return std::pair{kinds[t], PartOf(shape.materials, t)}; };
   std::vector<std::int32_t> sorted(count);
   for (std::size_t t = 0; t < count; ++t) sorted[t] = static_cast<std::int32_t>(t);
   std::stable_sort(sorted.begin(), sorted.end(), [&](std::int32_t a, std::int32_t b) { return law(a) < law(b); });
@@ -481,35 +479,28 @@ std::vector<std::int32_t> TetModel::NodesOfRegion(const Region& region, const Te
   return nodes;
 }
 
-// Consistent with the shape functions: of each rest triangle a third of the traction to each of its nodes, or with
-// quadratic elements, where those of the corners integrate to zero, to the middles of its edges.
-std::map<std::int32_t, Vec3> TetModel::TractionForces(const Region& region, const TetBody& body,
-                                                      const Vec3& traction) const {
+// What loads on a region act on: of quadratic elements, where the shares of corners in a face integrate to zero, faces
+// go to the middles of their edges.
+LoadedRegion TetModel::LoadedRegionIn(const Region& region, const TetBody& body) const {
   const auto first = static_cast<std::int32_t>(body.node_begin);
-  std::map<std::int32_t, Vec3> forces;
+  LoadedRegion loaded;
+  loaded.nodes = NodesOfRegion(region, body);
   for (const Triangle& t : region.triangles) {
     const Triangle n = {first + t[0], first + t[1], first + t[2]};
     const Vec3& X0 = rest_positions_[n[0]];
-    const double area = 0.5 * (rest_positions_[n[1]] - X0).cross(rest_positions_[n[2]] - X0).norm();
+    LoadedRegion::Face& face = loaded.faces.emplace_back();
+    face.area = 0.5 * (rest_positions_[n[1]] - X0).cross(rest_positions_[n[2]] - X0).norm();
+    face.count = 3;
     for (int c = 0; c < 3; ++c) {
-      const std::int32_t at =
-          order() == ElementOrder::kLinear ? n[c] : building_.middles.at(std::minmax(n[c], n[(c + 1) % 3]));
-      forces.try_emplace(at, Vec3::Zero()).first->second += area / 3 * traction;
+      face.nodes[c] = order() == ElementOrder::kLinear ? n[c] : building_.middles.at(std::minmax(n[c], n[(c + 1) % 3]));
     }
   }
-  return forces;
+  return loaded;
 }
 
 void TetModel::AddLoads(const Body& source, const TetBody& body) {
   for (const Load& load : source.loads) {
-    const Region& region = source.regions[load.region];
-    std::map<std::int32_t, Vec3> forces;  // ordered, so that sums do not depend on where things lie in memory
-    if (const auto* force = std::get_if<NodalForce>(&load.kind)) {
-      const std::vector<std::int32_t> nodes = NodesOfRegion(region, body);
-      for (const std::int32_t n : nodes) forces.emplace(n, force->total / static_cast<double>(nodes.size()));
-    } else {
-      forces = TractionForces(region, body, std::get<Traction>(load.kind).vector);
-    }
+    const auto forces = NodalForcesOf(load, LoadedRegionIn(source.regions[load.region], body));
     NodalLoad& entry = loads_.emplace_back();
     entry.scale = &load.scale;
     for (const auto& [n, force] : forces) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/linalg/nodal_vector.h"
+#include "core/scene/nodal_forces.h"
 #include "core/scene/scene.h"
 #include "core/tet/element.h"
 #include "core/tet/element_blocks.h"
@@ -195,7 +196,7 @@ class TetModel {
   template <class S>
   void SetBlocks();
   std::vector<std::int32_t> NodesOfRegion(const Region& region, const TetBody& body) const;
-  std::map<std::int32_t, Vec3> TractionForces(const Region& region, const TetBody& body, const Vec3& traction) const;
+  LoadedRegion LoadedRegionIn(const Region& region, const TetBody& body) const;
   void AddLoads(const Body& source, const TetBody& body);
   void AddSupports(const Body& source, std::int32_t body_index);
   void AddContactNodes(const TetBody& body);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <utility>
 
+#include "core/scene/nodal_forces.h"
 #include "core/voxel/free_motions.h"
 #include "core/voxel/prescribed.h"
 
@@ -123,21 +123,8 @@ std::vector<Vec3> VoxelSceneBody::SumOverSupports(const VoxelField<double>& reac
 }
 
 void VoxelSceneBody::AddLoads() {
-  const std::vector<Vec3>& X = source_->nodes();
   for (const Load& load : source_->loads) {
-    const Region& region = source_->regions[load.region];
-    std::map<std::int32_t, Vec3> forces;
-    if (const auto* force = std::get_if<NodalForce>(&load.kind)) {
-      for (const std::int32_t node : region.nodes)
-        forces[node] = force->total / static_cast<double>(region.nodes.size());
-    } else {
-      for (const Quad& q : region.quads) {
-        const double area = (X[q[1]] - X[q[0]]).cross(X[q[3]] - X[q[0]]).norm();
-        for (const std::int32_t node : q) {
-          forces.try_emplace(node, Vec3::Zero()).first->second += area / 4 * std::get<Traction>(load.kind).vector;
-        }
-      }
-    }
+    const auto forces = NodalForcesOf(load, LoadedRegionOf(source_->regions[load.region], source_->nodes()));
     NodalLoad nodal = {&load.scale, {}, {}};
     for (const auto& [node, force] : forces) {
       nodal.nodes.push_back(node);

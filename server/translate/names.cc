@@ -1,7 +1,8 @@
 #include "server/translate/names.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "core/base/edit_distance.h"
 
 namespace fascicle::server {
 namespace {
@@ -18,22 +19,6 @@ bool IsNameCharacter(char c) {
 bool IsName(const std::string& name) {
   return !name.empty() && name.size() <= kMaxLength && std::all_of(name.begin(), name.end(), IsNameCharacter) &&
          name != "." && name != "..";
-}
-
-// Fewest insertions, deletions and replacements between two short texts (Levenshtein).
-std::size_t EditDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
 }
 
 std::string Shortened(const std::string& name) {

@@ -3,35 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/output_fields.h"
+#include "proto/rules/enum_names.h"
 #include "server/translate/values.h"
 
 namespace fascicle::server {
 namespace {
 
 constexpr double kMaxFrames = 100'000;
-
-OutputField ToOutputField(v1::Field field) {
-  switch (field) {
-    case v1::FIELD_CAUCHY_STRESS:
-      return OutputField::kCauchyStress;
-    case v1::FIELD_VON_MISES_STRESS:
-      return OutputField::kVonMisesStress;
-    case v1::FIELD_PRESSURE:
-      return OutputField::kPressure;
-    case v1::FIELD_VOLUME_RATIO:
-      return OutputField::kVolumeRatio;
-    case v1::FIELD_FIBRE_STRETCH:
-      return OutputField::kFibreStretch;
-    case v1::FIELD_FIBRE_DIRECTION:
-      return OutputField::kFibreDirection;
-    default:
-      return OutputField::kVelocity;
-  }
-}
-
-bool IsFibreField(OutputField field) {
-  return field == OutputField::kFibreStretch || field == OutputField::kFibreDirection;
-}
 
 bool AnyFibres(const v1::Scene& scene) {
   return std::any_of(scene.bodies().begin(), scene.bodies().end(),
@@ -52,53 +31,31 @@ std::vector<OutputField> TranslateFields(const v1::Scene& scene, Problems& probl
   std::vector<OutputField> fields;
   for (int i = 0; i < scene.output().fields_size(); ++i) {
     const std::string path = IndexPath("output.fields", static_cast<std::size_t>(i));
-    const v1::Field wire = scene.output().fields(i);
-    if (wire == v1::FIELD_UNSPECIFIED) problems.Add(path, "is missing", "such as velocity or von_mises_stress");
-    if (wire == v1::FIELD_UNSPECIFIED || !v1::Field_IsValid(wire)) continue;
-    const OutputField field = ToOutputField(wire);
-    if (std::find(fields.begin(), fields.end(), field) != fields.end()) {
-      problems.Add(path, "is listed twice", "list each field once");
+    const auto* value = v1::Field_descriptor()->FindValueByNumber(scene.output().fields(i));
+    if (value == nullptr) continue;  // reported with the rules
+    if (value->number() == v1::FIELD_UNSPECIFIED) {
+      problems.Add(path, "is missing", "such as velocity or von_mises_stress");
       continue;
     }
-    if (IsFibreField(field) && !AnyFibres(scene)) {
-      problems.Add(path, "no body has fibres", "give a body `fibres`, or leave the field out");
+    const OutputFieldInfo* info = FindOutputField(NameOf(*value));
+    if (info == nullptr) {
+      problems.Add(path, "is a field that this server does not compute", "leave it out");
+      continue;
     }
-    fields.push_back(field);
+    CheckOutputField(info->field, fields, AnyFibres(scene), path, problems);
+    fields.push_back(info->field);
   }
   return fields;
-}
-
-// How many values a field has that is not of nodes: one for each element, or where there are none, vertex.
-std::size_t PlacesOf(const Body& body) {
-  struct Count {
-    std::size_t operator()(const TetShape& shape) const { return shape.mesh.tetrahedra.size(); }
-    std::size_t operator()(const VoxelShape& shape) const { return shape.mesh.bricks.size(); }
-    std::size_t operator()(const SurfaceShape& shape) const { return shape.mesh.nodes.size(); }
-  };
-  return std::visit(Count{}, body.shape);
-}
-
-std::int64_t FieldBytes(OutputField field, const Body& body) {
-  const auto nodes = static_cast<std::int64_t>(body.nodes().size());
-  const auto elements = static_cast<std::int64_t>(PlacesOf(body));
-  constexpr std::int64_t kDouble = sizeof(double);
-  switch (field) {
-    case OutputField::kVelocity:
-      return 3 * kDouble * nodes;
-    case OutputField::kCauchyStress:
-      return 6 * kDouble * elements;
-    case OutputField::kFibreDirection:
-      return 3 * kDouble * elements;
-    default:
-      return kDouble * elements;
-  }
 }
 
 void CheckFrameSize(const Output& output, const std::vector<Body>& bodies, std::int64_t max_bytes, Problems& problems) {
   std::int64_t bytes = 0;
   for (const Body& body : bodies) {
     bytes += static_cast<std::int64_t>(body.nodes().size() * sizeof(Vec3));
-    for (const OutputField field : output.fields) bytes += FieldBytes(field, body);
+    for (const OutputField field : output.fields) {
+      const OutputFieldInfo& info = InfoOf(field);
+      bytes += static_cast<std::int64_t>(info.components * sizeof(double) * PlacesOf(info, body.shape));
+    }
   }
   if (bytes <= max_bytes) return;
   problems.Add("output.fields", "each frame would have " + std::to_string(bytes) + " bytes",

@@ -6,6 +6,7 @@
 #include "core/eulerian/scene_body.h"
 #include "core/voxel/scene_body.h"
 #include "proto/rules/field_rules.h"
+#include "proto/rules/find_messages.h"
 #include "server/translate/bodies.h"
 #include "server/translate/files.h"
 #include "server/translate/meshes.h"
@@ -43,23 +44,11 @@ void AddCurvedEdgesNote(const TetMethod& method, const std::string& path, Body& 
 
 std::vector<std::string> AssetsOf(const v1::Scene& scene) {
   std::vector<std::string> digests;
-  const auto add = [&digests](const v1::FileRef& file) {
+  ForEachMessage<v1::FileRef>(scene, "", [&digests](const v1::FileRef& file, const std::string&) {
     const std::string digest = DigestOfAsset(file.asset());
-    if (!digest.empty() && std::find(digests.begin(), digests.end(), digest) == digests.end())
-      digests.push_back(digest);
-  };
-  for (const v1::Body& body : scene.bodies()) {
-    add(body.mesh().file());
-    add(body.mesh().elements());
-    add(body.mesh().surface());
-    add(body.mesh().image().file());
-    for (const v1::FileRef& file : body.mesh().image().more_files()) add(file);
-    add(body.fibres().file());
-    add(body.element_parameters());
-    add(body.activation_scale());
-    add(body.initial_displacement());
-    add(body.fibres().bspline().file());
-  }
+    if (digest.empty() || std::find(digests.begin(), digests.end(), digest) != digests.end()) return;
+    digests.push_back(digest);
+  });
   return digests;
 }
 

@@ -1,0 +1,73 @@
+#ifndef FASCICLE_CORE_SCENE_OUTPUT_FIELDS_H_
+#define FASCICLE_CORE_SCENE_OUTPUT_FIELDS_H_
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+#include "core/base/problems.h"
+#include "core/base/types.h"
+#include "core/scene/method.h"
+#include "core/scene/output.h"
+#include "core/scene/shape.h"
+
+namespace fascicle {
+
+// Where the values of a field are.
+enum class FieldLocation { kNode, kTetrahedron, kBrick };
+
+// What a field is computed from, at each point.
+enum class FieldSource {
+  kMotion,       // of nodes: MaterialPoint::v; its values are at nodes
+  kDeformation,  // F, J and a0
+  kStress        // sigma; means over cells are of the tensor
+};
+
+// All that is to be known of a field. To add one: a value of scene.proto's Field and of OutputField, a row of the table
+// in output_fields.cc, and what it is at a point in PutField.
+struct OutputFieldInfo {
+  OutputField field;
+  const char* name;  // as in scene.proto
+  const char* unit;
+  std::size_t components;
+  FieldSource from;
+  bool needs_fibres = false;
+  bool is_direction = false;  // of unit length, or zero where there is none
+};
+
+constexpr std::size_t kMostComponents = 6;
+
+// The table, in the order of OutputField.
+std::span<const OutputFieldInfo> OutputFields();
+const OutputFieldInfo& InfoOf(OutputField field);
+// nullptr when there is no such field.
+const OutputFieldInfo* FindOutputField(std::string_view name);
+
+// The state of a body at a point. Only what the field is computed from has to be set.
+struct MaterialPoint {
+  Vec3 v = Vec3::Zero();      // [m/s]
+  Mat3 F = Mat3::Identity();  // deformation gradient [1]
+  double J = 1;               // det F [1]
+  Vec3 a0 = Vec3::Zero();     // rest direction of the fibre; zero: there is none
+  Mat3 sigma = Mat3::Zero();  // Cauchy stress [Pa]
+};
+
+// The field at a point: InfoOf(field).components values. A direction is not of unit length yet, so that means of it can
+// be taken: F a0.
+void PutField(OutputField field, const MaterialPoint& at, double* values);
+
+// Makes what PutField, or a mean of it, gives for a direction of unit length; leaves zero.
+void NormalizeDirections(std::span<double> values);
+
+// Where a field's values are in the frames of a method, and how many places there are in a body of that shape.
+FieldLocation LocationOf(const OutputFieldInfo& info, Method method);
+std::size_t PlacesOf(const OutputFieldInfo& info, const Shape& shape);
+
+// Adds a problem, at `path`, where a field is listed before already, or none of the bodies can give it.
+//   fibres  whether any body has fibres
+void CheckOutputField(OutputField field, std::span<const OutputField> before, bool fibres, const std::string& path,
+                      Problems& problems);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_SCENE_OUTPUT_FIELDS_H_
