@@ -72,9 +72,10 @@ StepProblem ProblemOf(const NewtonResult& result) {
       return StepProblem::kStopped;
     case NewtonResult::End::kInvalid:
       return StepProblem::kInvertedElement;
-    default:
+    case NewtonResult::End::kNotConverged:
       return StepProblem::kNoEquilibrium;
   }
+  return StepProblem::kNoEquilibrium;
 }
 
 }  // namespace

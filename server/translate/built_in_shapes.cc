@@ -63,7 +63,10 @@ std::optional<ShapeSize> CheckShape(const v1::Mesh& mesh, const std::string& pat
       size.path = JoinPath(path, "sphere");
       size.tetrahedra = CheckSphere(mesh.sphere(), size.path, own);
       break;
-    default:
+    case v1::Mesh::kFile:
+    case v1::Mesh::kImage:
+    case v1::Mesh::kSurface:
+    case v1::Mesh::SOURCE_NOT_SET:
       return std::nullopt;
   }
   problems.Append("", own);
@@ -85,12 +88,18 @@ TetMesh MakeShape(const v1::Mesh& mesh, double metres) {
     }
     case v1::Mesh::kSphere:
       return MakeSphere(mesh.sphere().radius() * metres, mesh.sphere().divisions());
-    default: {
+    case v1::Mesh::kBox: {
       const v1::BoxShape& shape = mesh.box();
       return MakeBox(ToVec3(shape.origin()) * metres, ToVec3(shape.size()) * metres,
                      {shape.divisions(0), shape.divisions(1), shape.divisions(2)});
     }
+    case v1::Mesh::kFile:
+    case v1::Mesh::kImage:
+    case v1::Mesh::kSurface:
+    case v1::Mesh::SOURCE_NOT_SET:
+      break;
   }
+  return {};
 }
 
 }  // namespace fascicle::server

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/scene/scene.h"
+#include "tests/support/full_scenes.h"
 #include "tests/support/tet_scenes.h"
 
 namespace fascicle {
@@ -259,6 +260,77 @@ TEST(CheckSceneTest, Output) {
   EXPECT_EQ(ProblemOf(scene).path, "output.probes[1].point");
   scene.output.probes[1] = {"other", 3, 0};
   EXPECT_EQ(ProblemOf(scene).path, "output.probes[1].body");
+}
+
+TEST(CheckSceneTest, FieldsThatNoBodyCanGive) {
+  Scene scene = GoodScene();
+  scene.output.fields = {OutputField::kVelocity, OutputField::kFibreStretch};
+  Problems none;
+  CheckScene(scene, none);
+  EXPECT_TRUE(none.empty()) << none.ToString();
+  scene.output.fields.push_back(OutputField::kVelocity);
+  EXPECT_EQ(ProblemOf(scene).path, "output.fields[2]");
+  scene.output.fields.pop_back();
+  scene.bodies[0].material = NeoHookean(std::array{1e4, 0.3});
+  scene.bodies[0].tet().fibres.clear();
+  EXPECT_EQ(ProblemOf(scene).path, "output.fields[1]");
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("no body has fibres"));
+}
+
+TEST(CheckSceneTest, BodiesHaveTheShapeOfTheMethod) {
+  for (const Method method : {Method::kVoxel, Method::kEulerian}) {
+    Scene scene = GoodScene();
+    scene.method = method;
+    Problems problems;
+    CheckScene(scene, problems);
+    EXPECT_TRUE(std::any_of(problems.kept().begin(), problems.kept().end(), [](const Problem& problem) {
+      return problem.path == "bodies[0].mesh";
+    })) << problems.ToString();
+  }
+}
+
+// A cube of the eulerian method, that flows and is pressed together.
+Scene PlasticScene() {
+  Scene scene = FullScene(Method::kEulerian, FullSurfaceShape());
+  scene.floors.clear();
+  scene.bodies[0].regions.resize(1);
+  scene.bodies[0].regions[0].selectors = {PlaneSelector{Vec3::Zero(), -Vec3::UnitX()}};
+  return scene;
+}
+
+TEST(CheckSceneTest, NumbersOfPlasticity) {
+  Scene scene = PlasticScene();
+  Problems none;
+  CheckScene(scene, none);
+  EXPECT_TRUE(none.empty()) << none.ToString();
+  Plasticity& plasticity = *scene.bodies[0].surface().plasticity;
+  for (const double wrong : {0.0, -1.0, std::nan("")}) {
+    plasticity = {wrong, 0};
+    EXPECT_EQ(ProblemOf(scene).path, "bodies[0].plasticity.yield_stress") << wrong;
+  }
+  for (const double wrong : {-1.0, double{INFINITY}, std::nan("")}) {
+    plasticity = {1, wrong};
+    EXPECT_EQ(ProblemOf(scene).path, "bodies[0].plasticity.relaxation_time") << wrong;
+  }
+}
+
+TEST(CheckSceneTest, NumbersOfPlaneForceFields) {
+  const Scene good = PlasticScene();
+  Scene scene = good;
+  scene.squeezes[0].normal *= 2;
+  EXPECT_EQ(ProblemOf(scene).path, "squeezes[0]");
+  scene = good;
+  scene.squeezes[0].point.x() = std::nan("");
+  EXPECT_EQ(ProblemOf(scene).path, "squeezes[0]");
+  scene = good;
+  scene.squeezes[0].force_density = INFINITY;
+  EXPECT_EQ(ProblemOf(scene).path, "squeezes[0].force_density");
+  scene = good;
+  scene.squeezes[0].width = -1;
+  EXPECT_EQ(ProblemOf(scene).path, "squeezes[0].width");
+  scene = good;
+  scene.squeezes[0].scale.times.clear();
+  EXPECT_EQ(ProblemOf(scene).path.substr(0, 17), "squeezes[0].scale");
 }
 
 TEST(CheckSceneTest, AllProblemsAtOnce) {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/shapes.h"
+#include "core/scene/output_fields.h"
+#include "proto/rules/enum_names.h"
 #include "scenes.h"
 
 namespace fascicle::server {
@@ -57,6 +59,21 @@ TEST(TranslateScene, TakesDefaultsFromTheRules) {
   EXPECT_EQ(scene->gravity.acceleration, Vec3::Zero());
   EXPECT_FALSE(scene->output.settle_speed.has_value());
   EXPECT_EQ(scene->bodies[0].constraints[0].axes, (std::array<bool, 3>{true, true, true}));
+}
+
+// Each field of the wire is one that is computed, and the other way round.
+TEST(TranslateScene, KnowsAllOutputFields) {
+  const auto& fields = *v1::Field_descriptor();
+  ASSERT_EQ(static_cast<std::size_t>(fields.value_count()), OutputFields().size() + 1);
+  for (int i = 1; i < fields.value_count(); ++i) {
+    v1::Scene wire = BoxScene();
+    ASSERT_TRUE(google::protobuf::TextFormat::MergeFromString("fibres { constant { direction: [1, 0, 0] } }",
+                                                              wire.mutable_bodies(0)));
+    wire.mutable_output()->add_fields(static_cast<v1::Field>(fields.value(i)->number()));
+    const auto scene = Translate(wire);
+    ASSERT_NE(scene, nullptr) << fields.value(i)->name();
+    EXPECT_EQ(InfoOf(scene->output.fields[0]).name, NameOf(*fields.value(i)));
+  }
 }
 
 TEST(TranslateScene, CarriesEverythingElse) {
