@@ -7,19 +7,9 @@
 #include <vector>
 
 #include "core/scene/fields.h"
+#include "core/scene/output_fields.h"
 
 namespace fascicle {
-
-// The fields that frames may hold, in the order of output_fields.h, which says all about them.
-enum class OutputField {
-  kVelocity,
-  kCauchyStress,
-  kVonMisesStress,
-  kPressure,
-  kVolumeRatio,
-  kFibreStretch,
-  kFibreDirection
-};
 
 // A node whose displacement is a series.
 struct Probe {

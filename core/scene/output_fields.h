@@ -3,15 +3,27 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "core/base/problems.h"
 #include "core/base/types.h"
 #include "core/scene/method.h"
-#include "core/scene/output.h"
 #include "core/scene/shape.h"
 
 namespace fascicle {
+
+// The fields that frames may hold, as scene.proto's Field. To add one: a value there and here, a row of the table in
+// output_fields.cc, and what it is at a point in PutField.
+enum class OutputField {
+  kVelocity,
+  kCauchyStress,
+  kVonMisesStress,
+  kPressure,
+  kVolumeRatio,
+  kFibreStretch,
+  kFibreDirection
+};
 
 // Where the values of a field are.
 enum class FieldLocation { kNode, kTetrahedron, kBrick };
@@ -23,8 +35,7 @@ enum class FieldSource {
   kStress        // sigma; means over cells are of the tensor
 };
 
-// All that is to be known of a field. To add one: a value of scene.proto's Field and of OutputField, a row of the table
-// in output_fields.cc, and what it is at a point in PutField.
+// All that is to be known of a field.
 struct OutputFieldInfo {
   OutputField field;
   const char* name;  // as in scene.proto
