@@ -31,7 +31,7 @@ void CheckOutput(const Scene& scene, Problems& problems) {
   }
   const bool fibres = std::any_of(scene.bodies.begin(), scene.bodies.end(), HasFibres);
   for (std::size_t i = 0; i < output.fields.size(); ++i) {
-    CheckOutputField(output.fields[i], std::span(output.fields).first(i), fibres,
+    CheckOutputField(output.fields[i], std::span(output.fields).first(i), scene.method, fibres,
                      JoinPath("output", IndexPath("fields", i)), problems);
   }
   std::set<std::string> names;

@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_SCENE_METHOD_H_
 #define FASCICLE_CORE_SCENE_METHOD_H_
 
+#include <array>
 #include <optional>
 
 #include "core/geometry/bounds.h"
@@ -10,6 +11,8 @@ namespace fascicle {
 
 // What steps a scene. The settings of the other methods are not looked at.
 enum class Method { kTet, kVoxel, kEulerian };
+// As in scene.proto.
+inline constexpr std::array<const char*, 3> kMethodNames = {"tet", "voxel", "eulerian"};
 
 enum class Stepping { kExplicit, kMixed, kBackwardEuler, kNewmark, kBdf2, kQuasiStatic };
 

@@ -14,7 +14,7 @@ Forces ForcesOf(const Traction& traction, const LoadedRegion& region) {
   Forces forces;
   for (const LoadedRegion::Face& face : region.faces) {
     for (int c = 0; c < face.count; ++c) {
-      forces.try_emplace(face.nodes[c], Vec3::Zero()).first->second += face.area / face.count * traction.vector;
+      forces.try_emplace(face.nodes[c], Vec3::Zero()).first->second += face.area.norm() / face.count * traction.vector;
     }
   }
   return forces;
@@ -34,11 +34,10 @@ LoadedRegion LoadedRegionOf(const Region& region, const std::vector<Vec3>& X) {
   LoadedRegion loaded;
   loaded.nodes = region.nodes;
   for (const Triangle& t : region.triangles) {
-    const double area = 0.5 * (X[t[1]] - X[t[0]]).cross(X[t[2]] - X[t[0]]).norm();
-    loaded.faces.push_back({area, 3, {t[0], t[1], t[2]}});
+    loaded.faces.push_back({0.5 * (X[t[1]] - X[t[0]]).cross(X[t[2]] - X[t[0]]), 3, {t[0], t[1], t[2]}});
   }
   for (const Quad& q : region.quads) {
-    loaded.faces.push_back({(X[q[1]] - X[q[0]]).cross(X[q[3]] - X[q[0]]).norm(), 4, q});
+    loaded.faces.push_back({(X[q[1]] - X[q[0]]).cross(X[q[3]] - X[q[0]]), 4, q});
   }
   return loaded;
 }

@@ -18,8 +18,8 @@ struct LoadedRegion {
   // functions of linear triangles and bilinear quads, whose corners these are, and of quadratic triangles, where they
   // are the middles of the edges.
   struct Face {
-    double area = 0;  // [m^2]
-    int count = 0;    // of nodes
+    Vec3 area = Vec3::Zero();  // its outward normal, as long as it is large [m^2]
+    int count = 0;             // of nodes
     std::array<std::int32_t, 4> nodes = {};
   };
   std::vector<std::int32_t> nodes;

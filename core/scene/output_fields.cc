@@ -12,14 +12,16 @@ constexpr auto kMotion = FieldSource::kMotion;
 constexpr auto kDeformation = FieldSource::kDeformation;
 constexpr auto kStress = FieldSource::kStress;
 
+constexpr std::array<bool, 3> kWithFibres = {true, false, true};
+
 constexpr std::array kTable = {
     OutputFieldInfo{OutputField::kVelocity, "velocity", "m/s", 3, kMotion},
     OutputFieldInfo{OutputField::kCauchyStress, "cauchy_stress", "Pa", 6, kStress},
     OutputFieldInfo{OutputField::kVonMisesStress, "von_mises_stress", "Pa", 1, kStress},
     OutputFieldInfo{OutputField::kPressure, "pressure", "Pa", 1, kStress},
     OutputFieldInfo{OutputField::kVolumeRatio, "volume_ratio", "1", 1, kDeformation},
-    OutputFieldInfo{OutputField::kFibreStretch, "fibre_stretch", "1", 1, kDeformation, true},
-    OutputFieldInfo{OutputField::kFibreDirection, "fibre_direction", "1", 3, kDeformation, true, true},
+    OutputFieldInfo{OutputField::kFibreStretch, "fibre_stretch", "1", 1, kDeformation, kWithFibres, true},
+    OutputFieldInfo{OutputField::kFibreDirection, "fibre_direction", "1", 3, kDeformation, kWithFibres, true, true},
 };
 
 constexpr bool IsInOrder() {
@@ -98,11 +100,15 @@ std::size_t PlacesOf(const OutputFieldInfo& info, const Shape& shape) {
   return std::visit(Elements{}, shape);
 }
 
-void CheckOutputField(OutputField field, std::span<const OutputField> before, bool fibres, const std::string& path,
-                      Problems& problems) {
+void CheckOutputField(OutputField field, std::span<const OutputField> before, Method method, bool fibres,
+                      const std::string& path, Problems& problems) {
+  const OutputFieldInfo& info = InfoOf(field);
   if (std::find(before.begin(), before.end(), field) != before.end()) {
     problems.Add(path, "is listed twice", "list each field once");
-  } else if (InfoOf(field).needs_fibres && !fibres) {
+  } else if (const auto m = static_cast<std::size_t>(method); !info.methods.at(m)) {
+    problems.Add(path, std::string("the ") + kMethodNames.at(m) + " method has no " + info.name,
+                 "leave the field out, or use another method");
+  } else if (info.needs_fibres && !fibres) {
     problems.Add(path, "no body has fibres", "give a body `fibres`, or leave the field out");
   }
 }

@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_SCENE_OUTPUT_FIELDS_H_
 #define FASCICLE_CORE_SCENE_OUTPUT_FIELDS_H_
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -42,6 +43,7 @@ struct OutputFieldInfo {
   const char* unit;
   std::size_t components;
   FieldSource from;
+  std::array<bool, 3> methods = {true, true, true};  // those that can give it: tet, voxel, eulerian
   bool needs_fibres = false;
   bool is_direction = false;  // of unit length, or zero where there is none
 };
@@ -74,10 +76,10 @@ void NormalizeDirections(std::span<double> values);
 FieldLocation LocationOf(const OutputFieldInfo& info, Method method);
 std::size_t PlacesOf(const OutputFieldInfo& info, const Shape& shape);
 
-// Adds a problem, at `path`, where a field is listed before already, or none of the bodies can give it.
+// Adds a problem, at `path`, where a field is among those listed before it, or a scene can't give it.
 //   fibres  whether any body has fibres
-void CheckOutputField(OutputField field, std::span<const OutputField> before, bool fibres, const std::string& path,
-                      Problems& problems);
+void CheckOutputField(OutputField field, std::span<const OutputField> before, Method method, bool fibres,
+                      const std::string& path, Problems& problems);
 
 }  // namespace fascicle
 

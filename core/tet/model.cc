@@ -489,7 +489,7 @@ LoadedRegion TetModel::LoadedRegionIn(const Region& region, const TetBody& body)
     const Triangle n = {first + t[0], first + t[1], first + t[2]};
     const Vec3& X0 = rest_positions_[n[0]];
     LoadedRegion::Face& face = loaded.faces.emplace_back();
-    face.area = 0.5 * (rest_positions_[n[1]] - X0).cross(rest_positions_[n[2]] - X0).norm();
+    face.area = 0.5 * (rest_positions_[n[1]] - X0).cross(rest_positions_[n[2]] - X0);
     face.count = 3;
     for (int c = 0; c < 3; ++c) {
       face.nodes[c] = order() == ElementOrder::kLinear ? n[c] : building_.middles.at(std::minmax(n[c], n[(c + 1) % 3]));

@@ -27,7 +27,7 @@ void CheckFrameCount(const v1::Scene& scene, Problems& problems) {
                "at least " + Text(duration / (kMaxFrames - 1)) + " s for this duration");
 }
 
-std::vector<OutputField> TranslateFields(const v1::Scene& scene, Problems& problems) {
+std::vector<OutputField> TranslateFields(const v1::Scene& scene, Method method, Problems& problems) {
   std::vector<OutputField> fields;
   for (int i = 0; i < scene.output().fields_size(); ++i) {
     const std::string path = IndexPath("output.fields", static_cast<std::size_t>(i));
@@ -42,7 +42,7 @@ std::vector<OutputField> TranslateFields(const v1::Scene& scene, Problems& probl
       problems.Add(path, "is a field that this server does not compute", "leave it out");
       continue;
     }
-    CheckOutputField(info->field, fields, AnyFibres(scene), path, problems);
+    CheckOutputField(info->field, fields, method, AnyFibres(scene), path, problems);
     fields.push_back(info->field);
   }
   return fields;
@@ -98,7 +98,7 @@ std::vector<Probe> TranslateProbes(const v1::Scene& scene, const std::vector<Bod
 
 }  // namespace
 
-Output TranslateOutput(const v1::Scene& scene, const std::vector<Body>& bodies, const Names& body_names,
+Output TranslateOutput(const v1::Scene& scene, Method method, const std::vector<Body>& bodies, const Names& body_names,
                        std::int64_t max_frame_bytes, Problems& problems) {
   Output output;
   if (!scene.has_output()) {
@@ -107,7 +107,7 @@ Output TranslateOutput(const v1::Scene& scene, const std::vector<Body>& bodies, 
   }
   CheckFrameCount(scene, problems);
   output.frame_interval = scene.output().frame_interval();
-  output.fields = TranslateFields(scene, problems);
+  output.fields = TranslateFields(scene, method, problems);
   output.probes = TranslateProbes(scene, bodies, body_names, problems);
   if (scene.output().has_settle_speed()) output.settle_speed = scene.output().settle_speed();
   CheckFrameSize(output, bodies, max_frame_bytes, problems);

@@ -13,7 +13,7 @@
 namespace fascicle::server {
 
 // What is kept. `bodies` are those of the scene; one without nodes is not known and not looked at.
-Output TranslateOutput(const v1::Scene& scene, const std::vector<Body>& bodies, const Names& body_names,
+Output TranslateOutput(const v1::Scene& scene, Method method, const std::vector<Body>& bodies, const Names& body_names,
                        std::int64_t max_frame_bytes, Problems& problems);
 
 }  // namespace fascicle::server

@@ -85,7 +85,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     AddCurvedEdgesNote(result->tet, path, body.body);
     result->bodies.push_back(std::move(body.body));
   }
-  result->output = TranslateOutput(filled, result->bodies, names, limits.max_frame_bytes, found);
+  result->output = TranslateOutput(filled, result->method, result->bodies, names, limits.max_frame_bytes, found);
 
   if (result->method == Method::kEulerian && result->eulerian.cell_size > 0) {
     const StageTimer timer(profile, "surfaces");

@@ -29,8 +29,8 @@ Load LoadOf(std::variant<Traction, NodalForce> kind) {
 TEST(NodalForcesTest, TractionIsSharedByTheCornersOfFaces) {
   const LoadedRegion region = LoadedRegionOf(Surface(), kNodes);
   ASSERT_EQ(region.faces.size(), 3u);
-  EXPECT_EQ(region.faces[0].area, 0.5);
-  EXPECT_EQ(region.faces[2].area, 6);
+  EXPECT_EQ(region.faces[0].area, Vec3(0, 0, 0.5));
+  EXPECT_EQ(region.faces[2].area, Vec3(0, 0, 6));
   const Load load = LoadOf(Traction{Vec3(0, 0, 12)});
   EXPECT_TRUE(NeedsSurface(load));
   const auto forces = NodalForcesOf(load, region);

@@ -152,6 +152,9 @@ TEST(VoxelScene, WhatVoxelsCantBe) {
   const Problems problems = ProblemsOf(floored);
   EXPECT_THAT(At(problems, "floors"), HasSubstr("tet method"));
   EXPECT_THAT(At(problems, "output.settle_speed"), HasSubstr("no speed"));
+  v1::Scene with_fibres = VoxelBoxScene();
+  with_fibres.mutable_output()->add_fields(v1::FIELD_FIBRE_STRETCH);
+  EXPECT_THAT(At(ProblemsOf(with_fibres), "output.fields[0]"), HasSubstr("the voxel method has no fibre_stretch"));
   v1::Scene dynamic = VoxelBoxScene();
   dynamic.mutable_voxel()->set_stepping(v1::VOXEL_STEPPING_DYNAMIC);
   dynamic.set_duration(0.95);
