@@ -131,7 +131,7 @@ TEST(RealSurfaceTest, ASurfaceThatCutsItselfIsRepairedOrRefused) {
 
   // Two neighbours grown into one another.
   EXPECT_FALSE(Mesh(Joined(whole, Moved(whole, {8, 1, 2})), 4000, problems));
-  EXPECT_THAT(problems.ToString(), HasSubstr("the surface cuts itself at ("));
+  EXPECT_THAT(problems.ToString(), HasSubstr("the surface intersects itself at ("));
 }
 
 }  // namespace

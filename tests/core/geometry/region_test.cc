@@ -189,7 +189,7 @@ TEST_F(TagRegionTest, PointsGiveNodesAndTheSurfaceBetweenThem) {
   EXPECT_EQ(Select(7).triangles.size(), 1u) << "triangles stay as they are";
   const std::string missing = Replaced(kGmsh2, "1 15 2 0 1 1", "1 15 2 9 1 8");
   EXPECT_FALSE(ReadMesh({"m.msh", missing, ""}, problems).has_value());
-  EXPECT_NE(problems.ToString().find("1 points name nodes that do not exist"), std::string::npos)
+  EXPECT_NE(problems.ToString().find("1 points refer to nodes that do not exist"), std::string::npos)
       << problems.ToString();
 }
 

@@ -86,7 +86,7 @@ TEST(SurfaceReaderTest, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(ProblemsOf("a.step", ""), HasSubstr(".stl, .obj, .ply, .vtp"));
   EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\nv 1 zero 0\n"),
               HasSubstr("line 2: expected a coordinate but found `zero`"));
-  EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\nf 1 2 3\n"), HasSubstr("name nodes that do not exist"));
+  EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\nf 1 2 3\n"), HasSubstr("refer to nodes that do not exist"));
   EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\nv 1 0 0\nv nan 0 0\nf 1 2 3\n"), HasSubstr("not finite"));
   EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\n"), HasSubstr("no triangles"));
   EXPECT_THAT(ProblemsOf("a.stl", std::string(kAsciiStl).substr(0, std::string(kAsciiStl).find(" endloop"))),

@@ -119,7 +119,7 @@ TEST(TetrahedralizeTest, RefusesSeveralBodies) {
 TEST(TetrahedralizeTest, RefusesSurfacesThatCutThemselvesDeeply) {
   const TriangleMesh sphere = SurfaceOf(MakeSphere(1, 8));
   const std::string problems = ProblemsOf(Joined(sphere, Moved(sphere, {1.03, 0.02, 0.01})));
-  EXPECT_THAT(problems, HasSubstr("the surface cuts itself at (0.5"));
+  EXPECT_THAT(problems, HasSubstr("the surface intersects itself at (0.5"));
   EXPECT_THAT(problems, HasSubstr("pairs of triangles"));
 }
 
