@@ -210,7 +210,7 @@ TEST(ImageStage, TellsWhatDoesNotFitTheImage) {
   };
   ImageStage stage = ClassStage(1);
   stage.region = VoxelBox{{10, 0, 0}, {5, 8, 8}};
-  EXPECT_THAT(refusal(stage), HasSubstr("region: does not lie in the image, which has (14, 8, 8) voxels"));
+  EXPECT_THAT(refusal(stage), HasSubstr("region: is not inside of the image, which has (14, 8, 8) voxels"));
   stage = ClassStage(1);
   stage.resample = 1e-5;
   EXPECT_THAT(refusal(stage), HasSubstr("resample: makes (1400, 800, 1600) voxels"));
@@ -224,10 +224,10 @@ TEST(ImageStage, TellsWhatDoesNotFitTheImage) {
   EXPECT_THAT(refusal(stage), HasSubstr("seeds[0]: is in class 2, not in class 1"));
   stage.choice = LabelChoice{{100}};
   stage.cleaning.keep = KeptParts::kSeeds;
-  EXPECT_THAT(refusal(stage), HasSubstr("seeds[0]: voxel (9, 3, 3) is not of the body"));
+  EXPECT_THAT(refusal(stage), HasSubstr("seeds[0]: voxel (9, 3, 3) is not in the body"));
   stage.choice = LabelChoice{{100, 7}};
   EXPECT_THAT(refusal(stage),
-              AllOf(HasSubstr("labels[1]: no voxel has the label 7"), HasSubstr("there are: 100, 200")));
+              AllOf(HasSubstr("labels[1]: no voxel has the label 7"), HasSubstr("existing labels: 100, 200")));
   stage = ClassStage(1);
   stage.cleaning.opening = 3e-3;
   EXPECT_THAT(refusal(stage), HasSubstr("cleaning.opening: nothing is left"));

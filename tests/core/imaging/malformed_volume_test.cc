@@ -68,7 +68,7 @@ TEST(MalformedVolume, PlacesThatAreNoNumbers) {
          {with(kSpacing, {-kInfinity}), with(kSpacing + 8, {kNan}), with(kSpacing, {1e30F}), with(kSpacing, {1e-30F}),
           with(kQuaternion, {kNan}), with(kOffset + 8, {kInfinity}), with(kMatrix, {kNan}), with(kMatrix + 16, {1e38F}),
           with(kMatrix, std::vector<float>(12, 0)), with(kMatrix, std::vector<float>(12, 1e-30F))}) {
-      EXPECT_THAT(Refusal("a.nii", bytes), HasSubstr("where the image lies"));
+      EXPECT_THAT(Refusal("a.nii", bytes), HasSubstr("the image's position"));
     }
   }
 }
@@ -192,7 +192,7 @@ TEST(MalformedVolume, NoVolumeOfOneNumberAVoxel) {
   Problems problems;
   WriteVolume(image, VoxelType::kFloat32, folder / "nan.mha", problems);
   EXPECT_THAT(Refusal("nan.mha", ReadFile(folder / "nan.mha")),
-              HasSubstr("2 voxels are infinite or no numbers: the first is (2, 1, 0)"));
+              HasSubstr("2 voxels are infinite or not numbers: the first is (2, 1, 0)"));
 }
 
 TEST(MalformedVolume, Raw) {

@@ -286,7 +286,7 @@ TEST_F(FittedToASpindle, ThickAttachmentsHaveTheFibresOfTheirFaces) {
 
 TEST_F(FittedToASpindle, NothingWithoutTwoEnds) {
   EXPECT_FALSE(FitMuscleSolid(mesh_, {}, insertion_, {}, problems_));
-  EXPECT_THAT(problems_.ToString(), HasSubstr("origin holds no node"));
+  EXPECT_THAT(problems_.ToString(), HasSubstr("origin contains no node"));
 }
 
 TEST(FitMuscleSolid, ThreeLayersOfTetrahedraAreEnough) {
@@ -305,7 +305,7 @@ TEST(FitMuscleSolid, OneLayerOfTetrahedraIsTooShort) {
   Problems problems;
   EXPECT_FALSE(FitMuscleSolid(cube, NodesWhere(cube, [](const Vec3& X) { return X.z() < 0.5; }),
                               NodesWhere(cube, [](const Vec3& X) { return X.z() > 0.5; }), {}, problems));
-  EXPECT_THAT(problems.ToString(), HasSubstr("misses the mesh"));
+  EXPECT_THAT(problems.ToString(), HasSubstr("is not close to the mesh"));
 }
 
 TEST(FitMuscleSolid, OneTetrahedronIsTooShort) {

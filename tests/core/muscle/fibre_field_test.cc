@@ -236,8 +236,8 @@ TEST(HarmonicFibres, ReportWhatIsWrongWithTheRegions) {
     EXPECT_THAT(HarmonicFibres(box, origin, insertion, problems), IsEmpty());
     return problems.ToString();
   };
-  EXPECT_THAT(message(none, top), HasSubstr("origin holds no node"));
-  EXPECT_THAT(message(bottom, none), HasSubstr("insertion holds no node"));
+  EXPECT_THAT(message(none, top), HasSubstr("origin contains no node"));
+  EXPECT_THAT(message(bottom, none), HasSubstr("insertion contains no node"));
   EXPECT_THAT(message(bottom, lower), HasSubstr("9 nodes belong to"));
   EXPECT_THAT(message(top, outside), HasSubstr("2 nodes of origin and insertion are not in the mesh"));
 }
