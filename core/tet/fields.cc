@@ -16,16 +16,16 @@ std::vector<double> Velocities(const TetBody& body, const NodalVector& v) {
   return values;
 }
 
-// What a field is made of at one point of an element.
+// The state at one point of an element, from which fields are computed.
 struct PointState {
   Mat3 F;
   double J;
   Vec3 fibre;  // a0
-  Mat3 sigma;  // P F^T / J [Pa]; only where stress is asked for
+  Mat3 sigma;  // P F^T / J [Pa]; only if stress is requested
 };
 
-// Calls add(PointState, values) for every point of every element of a body; the values of an element are the mean over
-// its points. Elements in the order of the body's mesh.
+// Calls add(PointState, values) for every point of every element of a body, in the order of the body's mesh. The values
+// of an element are averaged over its points.
 template <bool kStress, class Add>
 std::vector<double> OverElements(const TetModel& model, std::size_t body_index, int components, const FibreDrive& drive,
                                  const NodalVector& x, ThreadTeam& team, const Add& add) {
