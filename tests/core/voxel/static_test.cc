@@ -303,8 +303,8 @@ TEST(Static, HasTheSameBitsForAnyThreads) {
   }
 }
 
-// What is carried to a finer level: exact for linear displacements, also where the coarse level lost its voxels.
-TEST(CoarseAndFine, LinearDisplacementsAreCarriedExactly) {
+// Interpolation to a finer level: exact for linear displacements, also where the coarse level lost its voxels.
+TEST(CoarseAndFine, LinearDisplacementsAreInterpolatedExactly) {
   VoxelGrid grid = BoxGrid({12, 10, 9}, Vec3::Constant(1e-3));
   grid.material[grid.IndexOf({11, 9, 8})] = 0;
   const VoxelGrid coarse_grid = Coarsen(Coarsen(grid, 0.5), 0.9);
@@ -315,13 +315,13 @@ TEST(CoarseAndFine, LinearDisplacementsAreCarriedExactly) {
   for (const GridIndex& at : coarse.NodePlaces()) u.Add(node++, linear(PlaceOf(coarse, at)));
   node = 0;
   for (const GridIndex& at : fine.NodePlaces()) expected.Add(node++, linear(PlaceOf(fine, at)));
-  const CarriedField carried = CarryToFine(coarse, u, fine, 4);
-  const CoarseError error = ErrorOfCoarse(carried, expected);
+  const InterpolatedField interpolated = InterpolateToFine(coarse, u, fine, 4);
+  const CoarseError error = ErrorOfCoarse(interpolated, expected);
   EXPECT_EQ(error.left_out, 0);
   EXPECT_LT(error.largest, 1e-15);
   // A known error.
   for (std::int32_t n = 0; n < fine.nodes(); ++n) expected(n, 1) *= 1.5;
-  const CoarseError half = ErrorOfCoarse(carried, expected);
+  const CoarseError half = ErrorOfCoarse(interpolated, expected);
   EXPECT_NEAR(half.largest, 0.5 * 10e-3, 1e-15);
   EXPECT_GT(half.relative, 0.01);
 }
