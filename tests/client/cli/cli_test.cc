@@ -384,7 +384,7 @@ TEST_F(ServerTest, CtrlCLeavesAWatchedJobRunning) {
   watch.Signal(SIGINT);
   const Finished finished = watch.Wait();
   EXPECT_EQ(finished.exit_code, 4);
-  EXPECT_THAT(finished.err, HasSubstr("it goes on"));
+  EXPECT_THAT(finished.err, HasSubstr("it continues"));
   EXPECT_EQ(json::parse(Call({"show", job, "--json"}).out)["state"], "running");
   EXPECT_EQ(Call({"cancel", job}).exit_code, 0);
 }

@@ -94,11 +94,11 @@ TEST_F(ImportCommandTest, WhatIsNotTakenIsListedAndStrictlyRefused) {
   const std::string out = folder_ / "out";
   const Finished strict = Fascicle({"import", Model(text), "--out", out, "--strict"});
   EXPECT_EQ(strict.exit_code, 2);
-  EXPECT_THAT(strict.err, HasSubstr(where + ": not taken"));
+  EXPECT_THAT(strict.err, HasSubstr(where + ": not supported"));
   EXPECT_FALSE(fs::exists(out));
   const Finished lenient = Fascicle({"import", Model(text), "--out", out});
   EXPECT_EQ(lenient.exit_code, 0);
-  EXPECT_THAT(lenient.out, HasSubstr("not taken:\n  " + where));
+  EXPECT_THAT(lenient.out, HasSubstr("not supported:\n  " + where));
   EXPECT_TRUE(fs::exists(out + "/scene.json"));
   const Finished as_json = Fascicle({"import", Model(text), "--out", out, "--json"});
   const json summary = json::parse(as_json.out);

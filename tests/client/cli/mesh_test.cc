@@ -184,7 +184,7 @@ TEST_F(MeshTest, LabelsOfAnImage) {
   EXPECT_NEAR(report["volume"].get<double>() / 317e3, 1.08, 0.03);
   const Finished wrong = Fascicle({"mesh", image, "--label", "7", "--out", folder_ / "x.msh"});
   EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_THAT(wrong.err, HasSubstr("no voxel has the label 7 (there are: 1, 2)"));
+  EXPECT_THAT(wrong.err, HasSubstr("no voxel has the label 7 (existing labels: 1, 2)"));
   EXPECT_EQ(Fascicle({"mesh", image, "--out", folder_ / "x.msh"}).exit_code, 2) << "without a label";
 }
 

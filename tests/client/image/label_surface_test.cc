@@ -161,7 +161,7 @@ TEST(LabelSurface, SmoothingRoundsCorners) {
 }
 
 TEST(LabelSurface, SaysWhichLabelsThereAre) {
-  EXPECT_THAT(Refusal("ball.mha", BallImage(), 7), HasSubstr("no voxel has the label 7 (there are: 1, 3)"));
+  EXPECT_THAT(Refusal("ball.mha", BallImage(), 7), HasSubstr("no voxel has the label 7 (existing labels: 1, 3)"));
   const std::string nothing = MetaBytes(kSize, kTurned, std::string(20 * 40 * 12, '\0'));
   EXPECT_THAT(Refusal("nothing.mha", nothing), HasSubstr("all voxels are 0"));
 }
@@ -181,7 +181,7 @@ TEST(LabelSurface, RefusesWhatIsNoLabelImage) {
 TEST(LabelSurface, SaysThatSmoothingLeavesNothing) {
   const auto speck = [](const Vec3& index) { return index == Vec3(9, 20, 6) ? 3 : 0; };
   const std::string image = MetaBytes(kSize, kTurned, Voxels<std::uint8_t>(kSize, speck));
-  EXPECT_THAT(Refusal("speck.mha", image, 3, 10), HasSubstr("1 voxels, of which smoothing leaves nothing"));
+  EXPECT_THAT(Refusal("speck.mha", image, 3, 10), HasSubstr("1 voxels, all of which disappear by smoothing"));
 }
 
 }  // namespace

@@ -272,7 +272,7 @@ TEST(FebioFibreTest, AxesAnglesMapsAndElementData) {
   EXPECT_THAT(Refusal(pieces), HasSubstr("lid 3 is not in the set"));
   pieces.data.clear();
   pieces.material = material("<fiber type=\"local\">1,7</fiber>");
-  EXPECT_THAT(Refusal(pieces), HasSubstr("names more nodes than the elements"));
+  EXPECT_THAT(Refusal(pieces), HasSubstr("refers to more nodes than the elements"));
 }
 
 TEST(FebioLoadTest, PressureActsAgainstTheFacetsNormals) {
@@ -460,7 +460,7 @@ TEST(FebioMeshTest, RigidPartsAndShellsAreLeftOut) {
   EXPECT_EQ(MeshOf(imported).tetrahedra.size(), 1u);
   const std::string notices = NoticesOf(imported);
   EXPECT_THAT(notices, HasSubstr("MeshDomains/SolidDomain `b`: a rigid body"));
-  EXPECT_THAT(notices, HasSubstr("Mesh/Elements `skin`: elements of type `tri3` are no volume"));
+  EXPECT_THAT(notices, HasSubstr("Mesh/Elements `skin`: elements of type `tri3` have no volume"));
   EXPECT_THAT(notices, HasSubstr("MeshDomains/ShellDomain `skin`"));
   EXPECT_THAT(notices, HasSubstr("Boundary/bc `zero displacement`: none of its nodes"));
 }

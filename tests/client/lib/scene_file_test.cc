@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"TextForNumber", "{\"duration\": \"1\"}", "duration", "expects a number, got the text \"1\"", ""},
         BadScene{"NumberForText", "{\"name\": 7}", "name", "expects text in quotes, got the number 7", ""},
         BadScene{"BooleanForNumber", "{\"duration\": true}", "duration", "expects a number, got true", ""},
-        BadScene{"Null", "{\"duration\": null}", "duration", "is null", "leave the field out"},
+        BadScene{"Null", "{\"duration\": null}", "duration", "is null", "omit the field"},
         BadScene{"ObjectForList", "{\"bodies\": {}}", "bodies", "expects a list, got an object", "[ ... ]"},
         BadScene{"NumberForList", R"({"bodies": [{"mesh": {"box": {"size": 1}}}]})", "bodies[0].mesh.box.size",
                  "expects a list, got the number 1", ""},
