@@ -138,7 +138,7 @@ void ReadAll(v1::FrameService::Stub& stub, const std::string& name) {
   v1::StreamFramesResponse message;
   std::int64_t bytes = 0;
   while (reader->Read(&message)) bytes += static_cast<std::int64_t>(message.chunk().data().size());
-  if (!reader->Finish().ok() || bytes != kFrames * kFrameSize) throw std::runtime_error("the stream was cut");
+  if (!reader->Finish().ok() || bytes != kFrames * kFrameSize) throw std::runtime_error("the stream was interrupted");
 }
 
 // Readers that take the header of a stream and nothing more, each with a connection of its own, until destroyed.
@@ -152,7 +152,7 @@ class StalledReaders {
       one.stub = v1::FrameService::NewStub(ChannelTo(port));
       one.stream = one.stub->StreamFrames(&one.context, request);
       v1::StreamFramesResponse header;
-      if (!one.stream->Read(&header)) throw std::runtime_error("the stream was cut");
+      if (!one.stream->Read(&header)) throw std::runtime_error("the stream was interrupted");
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until what fits in between is written
   }
