@@ -1,4 +1,4 @@
-// `fascicle import` as its users see it, and what the program makes of the scenes: FEBio's own numbers.
+// `fascicle import` as users see it; results of imported scenes agree with FEBio's.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-// Problem b between symmetry planes: 10 mm, stretched by half.
+// Problem b with symmetry planes: 10 mm, stretched by half.
 FebWriter StretchedCube(const std::string& version) {
   FebWriter feb(version, Box(Vec3(10, 10, 10), {2, 2, 2}));
   const char* names[] = {"x0", "y0", "z0"};

@@ -1,4 +1,4 @@
-// Wrong models: each mistake is told with its line and element, and all of them at once.
+// Wrong models: each mistake is reported with its line and element, all of them at once.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ std::string Replaced(std::string text, const std::string& what, const std::strin
   return at == std::string::npos ? text : text.replace(at, what.size(), by);
 }
 
-// The line on which a piece of text begins.
+// The line at which a piece of text begins.
 long LineOf(const std::string& text, const std::string& piece) {
   const std::size_t at = text.find(piece);
   EXPECT_NE(at, std::string::npos) << piece;
@@ -30,7 +30,7 @@ long LineOf(const std::string& text, const std::string& piece) {
 struct Mistake {
   std::string name;
   std::string what, by;  // the model with one piece of it replaced
-  std::string at;        // what stands on the line that is told
+  std::string at;        // the text of the reported line
   std::string element;   // the end of the path
   std::string message, hint;
 };
@@ -179,7 +179,7 @@ TEST(MalformedModelTest, WhatIsNoModelIsRefused) {
   }
 }
 
-// Nesting, and a file of nothing but mistakes, cost neither stack nor time.
+// Deep nesting and a file full of mistakes need neither a deep stack nor much time.
 TEST(MalformedModelTest, HostileFilesEnd) {
   std::string deep = "<febio_spec version=\"4.0\">";
   for (int k = 0; k < 200'000; ++k) deep += "<a>";

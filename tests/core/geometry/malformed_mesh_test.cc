@@ -1,4 +1,4 @@
-// Files that are wrong in different ways: each must be refused in words that help.
+// Files that are wrong in different ways: each is refused with a helpful message.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ struct Malformed {
   std::string name;
   std::string bytes;
   std::string element_bytes;
-  std::string message;  // part of what is said
+  std::string message;  // part of the message
 };
 
 std::vector<Malformed> MalformedFiles() {
@@ -148,7 +148,7 @@ TEST_P(MalformedMesh, IsRefusedInWords) {
 INSTANTIATE_TEST_SUITE_P(Files, MalformedMesh, testing::ValuesIn(MalformedFiles()),
                          [](const auto& test) { return test.param.title; });
 
-// A header that announces 5 GB in the compressed blocks of a small file allocates next to nothing.
+// A header that announces 5 GB in the compressed blocks of a small file allocates almost nothing.
 TEST(MalformedMeshTest, ClaimsOfHugeCompressedBlocks) {
   const auto words = [](std::vector<std::uint64_t> values) {
     return std::string(reinterpret_cast<const char*>(values.data()), 8 * values.size());

@@ -86,7 +86,7 @@ TEST(CheckMeshTest, Degenerate) {
   EXPECT_THAT(problems.ToString(), testing::Not(HasSubstr("degenerate")));
 }
 
-// A long needle is no sliver: its smallest height is in proportion to its thickness.
+// A long needle is not a sliver: its smallest height is in proportion to its thickness.
 TEST(CheckMeshTest, NeedlesAreNotDegenerate) {
   TetMesh mesh;
   mesh.nodes = {{0, 0, 0}, {1e-4, 0, 0}, {0, 1e-4, 0}, {0, 0, 1}};
@@ -121,7 +121,7 @@ TEST(CheckMeshTest, UnusedNodes) {
 TEST(CheckMeshTest, CoincidentNodesAndComponents) {
   TetMesh mesh = GoodMesh();
   TetMesh second = MakeBox({0.2, 0, 0}, {0.2, 0.1, 0.1}, {4, 2, 2});
-  for (Vec3& node : second.nodes) node.x() += 1e-12;  // less than anybody meant
+  for (Vec3& node : second.nodes) node.x() += 1e-12;  // smaller than any intended size
   for (Tetrahedron tetrahedron : second.tetrahedra) {
     for (std::int32_t& node : tetrahedron) node += 45;
     mesh.tetrahedra.push_back(tetrahedron);
@@ -134,7 +134,7 @@ TEST(CheckMeshTest, CoincidentNodesAndComponents) {
               HasSubstr("2 separate parts without a common face, beginning at: tetrahedron 0, tetrahedron 96"));
 }
 
-// The wall between two cells of the search grid must not hide a pair: pairs all over a body of odd size.
+// Pairs across the boundary of two cells of the search grid are found: pairs all over a body of odd size.
 TEST(CheckMeshTest, CoincidentNodesAreFoundAnywhere) {
   TetMesh mesh = MakeBox({0.1234567, 0.7, -0.3}, {0.777, 0.333, 0.111}, {6, 6, 6});
   const std::size_t count = mesh.nodes.size();
@@ -181,7 +181,7 @@ TEST(CheckMeshTest, EveryKindAtOnce) {
   }
 }
 
-// Nodes in one place, which any pairwise comparison would take quadratic time for.
+// Many nodes at one point; a pairwise comparison would take quadratic time.
 TEST(CheckMeshTest, StaysFastOnBadMeshes) {
   TetMesh mesh = MakeBox({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
   mesh.nodes.resize(200000, Vec3(0.5, 0.5, 0.5));

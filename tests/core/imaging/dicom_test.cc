@@ -1,4 +1,4 @@
-// DICOM slices, stacked to volumes.
+// DICOM slices stacked to volumes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 using std::filesystem::path;
 using ::testing::HasSubstr;
 
-// Sagittal slices 2.5 mm apart along -x, which is the normal of rows along y and columns along -z, not in order.
+// Sagittal slices 2.5 mm apart along -x, the normal of rows along y and columns along -z; in arbitrary order.
 std::vector<DicomSlice> Sagittal(int count) {
   std::vector<DicomSlice> slices;
   for (int n = 0; n < count; ++n) {
@@ -62,7 +62,7 @@ TEST(Dicom, StacksSlicesAlongTheirNormal) {
   const std::vector<path> paths = WriteAll(folder, Sagittal(5));
   Problems problems;
   ExpectSagittal(ReadVolumeFiles(paths, {}, problems), problems);
-  // The folder, with something else in it.
+  // The folder, with an unrelated file in it.
   folder.Write("notes.txt", "head first");
   ExpectSagittal(ReadVolumeFiles({folder.path()}, {}, problems), problems);
 }

@@ -1,4 +1,4 @@
-// The stage from an image to voxels: every member does what it says, and what is wrong is told with its path.
+// The stage from an image to voxels: every member works, and problems are reported with their paths.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// Two bright cubes of 4 voxels in the dark, the second also in the lower half brighter; a hole in the first.
+// Two bright cubes of 4 voxels on a dark background; the lower half of the second is brighter; a hole in the first.
 VolumeImage TwoCubes() {
   VolumeImage image;
   image.size = {14, 8, 8};
@@ -134,7 +134,7 @@ TEST(ImageStage, GridsAreRightHanded) {
   const StagedImage staged = Good(ClassStage(2), image);
   EXPECT_NEAR(staged.grid.direction.determinant(), 1, 1e-12);
   EXPECT_NEAR(staged.body.direction.determinant(), -1, 1e-12);
-  // The middle of the cube stays where it was.
+  // The centre of the cube does not move.
   const Vec3 middle = staged.grid.origin + 0.5 * staged.grid.direction *
                                                staged.grid.spacing.cwiseProduct(
                                                    Vec3(staged.grid.size[0], staged.grid.size[1], staged.grid.size[2]));
@@ -201,7 +201,7 @@ TEST(ImageStage, TellsAllMistakesAtOnce) {
   EXPECT_THAT(PathsOf(labels), ElementsAre("labels[0]", "labels[2]", "filters"));
 }
 
-// What only the image can tell.
+// Problems that only the image reveals.
 TEST(ImageStage, TellsWhatDoesNotFitTheImage) {
   const auto refusal = [](const ImageStage& stage, const VolumeImage& image = TwoCubes()) {
     Problems problems;

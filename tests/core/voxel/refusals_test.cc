@@ -1,4 +1,4 @@
-// Each mistake by itself, and all of them at once: refused with a field path, in plain words.
+// Each mistake alone, and all of them at once: refused with a field path and a plain message.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -122,7 +122,7 @@ TEST(Refusals, RigidModesAreNamed) {
   EXPECT_THAT(body.Problem(), HasSubstr("turns about an axis that is not one of the grid's"));
 }
 
-// Two cubes that touch along an edge are a hinge; held on both sides of it they are not.
+// Two cubes that share an edge form a hinge; with supports on both sides of it they do not.
 TEST(Refusals, IslandsThatTouchInAnEdgeAreAHinge) {
   Body body;
   body.grid = MakeVoxelGrid({8, 8, 4}, Vec3::Constant(1e-3));
