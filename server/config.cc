@@ -10,7 +10,7 @@
 namespace fascicle::server {
 namespace {
 
-// As the XDG base directory specification has it; empty when there is no home.
+// As in the XDG base directory specification; empty if there is no home directory.
 std::string DefaultDataDirectory() {
   const char* data_home = std::getenv("XDG_DATA_HOME");
   if (data_home != nullptr && data_home[0] == '/') return std::string(data_home) + "/fascicle";
@@ -21,14 +21,14 @@ std::string DefaultDataDirectory() {
 constexpr const char* kFooter = R"(
 Examples:
   fascicled                                  serve this machine on port 7300
-  fascicled --listen 127.0.0.1:0             on a free port, which is printed
-  fascicled --data /srv/fascicle --workers 4 four jobs at once, kept in /srv/fascicle
+  fascicled --listen 127.0.0.1:0             choose a free port and print it
+  fascicled --data /srv/fascicle --workers 4 four jobs at once, data in /srv/fascicle
   fascicled --listen 0.0.0.0:7300 --allow-remote
-                                             other machines too: only in a network that you trust
+                                             allow other machines, in trusted networks only
 
-It prints `listening on HOST:PORT` when it is ready. SIGTERM or SIGINT stop it: running jobs keep a checkpoint and go on
-with the next start. A second signal ends it at once.
-Exit codes: 0 stopped, 1 could not start, 2 bad options.)";
+It prints `listening on HOST:PORT` when it is ready. SIGTERM or SIGINT stop it; running jobs store a
+checkpoint and continue with the next start. A second signal ends it at once.
+Exit codes: 0 stopped, 1 could not start, 2 invalid options.)";
 
 }  // namespace
 
@@ -54,12 +54,12 @@ std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std:
   app.add_option("--threads", config.server.default_threads, "Threads of a job that does not ask for a number")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  app.add_option("--checkpoint", checkpoint, "Most work of a job that a crash costs")
+  app.add_option("--checkpoint", checkpoint, "Most work of a job that a crash can lose")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.01, 3600.0))
       ->capture_default_str();
   app.add_flag("--allow-remote", config.server.allow_remote,
-               "Allow other addresses than this machine's own; there is no TLS and no login");
+               "Allow addresses other than loopback; there is no TLS and no login");
   app.add_option("--log-level", level, "What is logged to stderr")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}))
       ->capture_default_str();
@@ -69,7 +69,7 @@ std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std:
     return app.exit(e, out, err) == 0 ? 0 : 2;
   }
   if (config.server.data_directory.empty()) {
-    err << "fascicled: there is no home folder: say where to keep the data with --data\n";
+    err << "fascicled: there is no home directory: choose a data directory with --data\n";
     return 2;
   }
   config.server.checkpoint_interval = std::chrono::milliseconds(static_cast<int>(1000 * checkpoint));

@@ -10,14 +10,14 @@
 
 namespace fascicle::server {
 
-// What the command line of `fascicled` says.
+// The options of `fascicled`'s command line.
 struct Config {
   ServerOptions server;
   spdlog::level::level_enum log_level = spdlog::level::info;
 };
 
-// The configuration, or the exit code with which to end at once: 0 after --help and --version, 2 for bad options.
-// Writes what the user asked for to `out` and what is wrong to `err`.
+// Returns the configuration, or the exit code with which to end at once: 0 after --help and --version, 2 for bad
+// options. Writes the requested text to `out` and errors to `err`.
 std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
 
 }  // namespace fascicle::server

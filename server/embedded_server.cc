@@ -69,7 +69,7 @@ class Server : public EmbeddedServer {
     std::lock_guard lock(stop_mutex_);
     if (std::exchange(stopped_, true)) return;
     log_->info("shutting down");
-    rpc_.Stop();  // first, so that no client sees a job stand still
+    rpc_.Stop();  // first, so that no client sees a stalled job
     jobs_.Drain();
     log_->info("stopped");
   }
@@ -95,7 +95,7 @@ std::unique_ptr<EmbeddedServer> EmbeddedServer::Start(const ServerOptions& optio
   const std::string host = HostOf(options.listen);
   if (!options.allow_remote && !IsLoopback(host)) {
     throw std::runtime_error("refusing to listen on " + options.listen +
-                             ": anyone who reaches this address could run jobs, and nothing is encrypted. "
+                             ": anyone who can reach this address could run jobs, and nothing is encrypted. "
                              "Allow it explicitly, or listen on 127.0.0.1");
   }
   if (options.workers < 1 || options.default_threads < 1) {

@@ -17,24 +17,25 @@ struct ServerOptions {
   std::string data_directory;          // empty: in memory
   int workers = 2;
   int default_threads = 1;
-  bool allow_remote = false;  // refuses other addresses than loopback when false
+  bool allow_remote = false;  // whether addresses other than loopback are allowed
 
   std::int64_t max_asset_size = std::int64_t{4} << 30;                             // [byte]
   std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2);         // of running jobs
-  std::chrono::milliseconds heartbeat_interval = std::chrono::seconds(10);         // of frame streams, at the latest
-  std::chrono::milliseconds progress_interval = std::chrono::milliseconds(1'000);  // ... when a job got further
+  std::chrono::milliseconds heartbeat_interval = std::chrono::seconds(10);         // of frame streams, at most
+  std::chrono::milliseconds progress_interval = std::chrono::milliseconds(1'000);  // the same while a job progresses
   std::shared_ptr<spdlog::logger> log;  // null: warnings and errors to stderr
 };
 
-// A whole server in this process: `fascicled` and `fascicle run` are thin layers over it.
+// A complete server within this process. `fascicled` and `fascicle run` are thin layers over it.
 class EmbeddedServer {
  public:
-  // Listens when it returns. Throws std::runtime_error with a message for people.
+  // Returns when the server is listening. Throws std::runtime_error with a message for users.
   static std::unique_ptr<EmbeddedServer> Start(const ServerOptions& options);
   virtual ~EmbeddedServer() = default;
   virtual std::string address() const = 0;  // "127.0.0.1:PORT"
   virtual int port() const = 0;
-  // Drains: ends every stream with UNAVAILABLE, stops workers with a checkpoint, closes. Idempotent; at most 10 s.
+  // Drains: ends every stream with UNAVAILABLE, stops workers with a checkpoint, closes. Idempotent; takes at most 10
+  // s.
   virtual void Stop() = 0;
 };
 

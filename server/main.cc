@@ -17,7 +17,7 @@
 
 namespace {
 
-// Blocked in every thread, so that only the main thread hears them, and hears them in order.
+// Blocked in every thread, so that only the main thread receives these signals, in order.
 sigset_t BlockStopSignals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -27,8 +27,8 @@ sigset_t BlockStopSignals() {
   return signals;
 }
 
-// Ends the process at a second signal, or when stopping takes too long: the store is safe at any moment, and a worker
-// in a long step would only lose what it made since its last checkpoint.
+// Ends the process at a second signal, or if stopping takes too long. The store is consistent at any moment; a worker
+// in a long step loses only its work since the last checkpoint.
 void WatchOverStop(const sigset_t& signals) {
   std::thread([signals] {
     constexpr timespec kLongest = {9, 0};
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   const auto parsed = fascicle::server::ParseArguments(argc, argv, std::cout, std::cerr);
   if (const int* exit_code = std::get_if<int>(&parsed)) return *exit_code;
   const auto& config = std::get<fascicle::server::Config>(parsed);
-  setenv("GRPC_VERBOSITY", "NONE", 0);  // what matters is told in our own words
+  setenv("GRPC_VERBOSITY", "NONE", 0);  // fascicle reports relevant errors itself
   auto log = std::make_shared<spdlog::logger>("fascicled", std::make_shared<spdlog::sinks::stderr_sink_mt>());
   log->set_level(config.log_level);
   log->flush_on(spdlog::level::info);

@@ -6,7 +6,7 @@
 
 namespace fascicle::client {
 
-// A file of client/examples, as it was when the program was built.
+// A file of client/examples as it was when the program was built.
 struct BuiltinFile {
   std::string_view name;  // "fusiform_isometric.json"
   std::string_view content;

@@ -90,7 +90,7 @@ void PrintJson(const Json& value) {
 }
 
 Client Connect(const Context& context) {
-  // Where `fascicled` listens when nothing else is said.
+  // The default address of `fascicled`.
   constexpr const char* kDefaultServer = "127.0.0.1:7300";
   return Client(context.server.empty() ? kDefaultServer : context.server);
 }
@@ -109,7 +109,7 @@ ScenePackage LoadSceneOrFail(const SceneArgument& scene) {
   Problems problems;
   std::optional<ScenePackage> package = LoadScene(path, problems, scene.settings);
   if (!package) {
-    // What concerns the file as a whole is told with its name.
+    // Problems of the file as a whole are reported with its name.
     Error error{Error::Kind::kInvalid, "the scene " + path + " is not valid", "INVALID_SCENE", {}};
     for (const Problem& problem : problems.kept()) {
       error.problems.Add(problem.path.empty() ? path : problem.path, problem.message, problem.hint);

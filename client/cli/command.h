@@ -19,21 +19,21 @@ namespace fascicle::client {
 
 using Json = nlohmann::ordered_json;
 
-// What the program ends with.
+// Exit codes of the program.
 enum ExitCode { kDone = 0, kJobFailed = 1, kInvalidInput = 2, kNoServer = 3, kCancelled = 4 };
 
-// What every sub-command can see, and what it leaves to be done once the command line has been read.
+// Options common to all sub-commands, and the action to run after the command line has been parsed.
 struct Context {
   std::string server;  // HOST:PORT; empty: none given
-  bool json = false;   // one JSON object a line on stdout
+  bool json = false;   // one JSON object per line on stdout
   std::function<int()> action;
 };
 
-// Ends a sub-command with an error for people and for programs.
+// Ends a sub-command with an error for users and for programs.
 class CommandError : public std::exception {
  public:
   explicit CommandError(Error error) : error_(std::move(error)) {}
-  // Wrong input that has no field path.
+  // Invalid input without a field path.
   static CommandError Invalid(std::string message);
   const Error& error() const { return error_; }
   const char* what() const noexcept override { return error_.message.c_str(); }
@@ -42,7 +42,7 @@ class CommandError : public std::exception {
   Error error_;
 };
 
-// The value of a call, or a CommandError.
+// The value of a call; throws CommandError if it failed.
 template <class T>
 T Take(Result<T> result) {
   if (!result.ok()) throw CommandError(result.error());
@@ -52,25 +52,25 @@ void Check(const std::optional<Error>& error);
 
 int ExitCodeOf(Error::Kind kind);
 
-// Tells an error: each problem as `path: message (hint)` on stderr, or one object on stdout.
+// Prints an error: each problem as `path: message (hint)` on stderr, or one object on stdout.
 void PrintError(const Error& error, bool json);
 
-// One line of JSON on stdout. Numbers that JSON does not know (NaN) become null.
+// One line of JSON on stdout. Numbers that JSON cannot represent (NaN) become null.
 void PrintJson(const Json& value);
 
-// A connection to the server of `--server`, by default this machine's.
+// A connection to the server given by `--server`; by default to this machine's.
 Client Connect(const Context& context);
 
-// A scene file as the command line names it.
+// The scene file and settings given on the command line.
 struct SceneArgument {
   std::string path;
   std::vector<std::string> settings;
 };
 
-// SCENE and --set of a sub-command. `scene` must outlive parsing.
+// Adds SCENE and --set to a sub-command. `scene` must outlive parsing.
 void AddSceneArgument(CLI::App& command, SceneArgument& scene);
 
-// Loads a scene and the files that it names; CommandError with all problems.
+// Loads a scene and its files; CommandError with all problems.
 ScenePackage LoadSceneOrFail(const SceneArgument& scene);
 
 // "jobs/ID" for "ID" or "jobs/ID".
@@ -80,8 +80,8 @@ std::string JobName(const std::string& given);
 CLI::App* AddCommand(CLI::App& app, const std::string& name, const std::string& description,
                      const std::string& examples);
 
-// The sub-commands, each in the file of its name. They add themselves to `app` and set `context.action` when chosen;
-// both must outlive parsing and action.
+// The sub-commands, each in the file of its name. They add themselves to `app` and set `context.action` when selected.
+// Both must outlive parsing and the action.
 void AddRun(CLI::App& app, Context& context);
 void AddSubmit(CLI::App& app, Context& context);
 void AddValidate(CLI::App& app, Context& context);

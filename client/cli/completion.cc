@@ -17,7 +17,7 @@ constexpr const char* kExamples =
   fascicle completion fish > ~/.config/fish/completions/fascicle.fish
 )text";
 
-// What can be completed after a chain of sub-commands.
+// The words that may follow a chain of sub-commands.
 struct Node {
   std::string chain;  // "", "materials", "materials curve"
   std::vector<const CLI::App*> commands;
@@ -59,13 +59,13 @@ std::string WordsOf(const Node& node, const Node& global) {
   return words;
 }
 
-// A function `_fascicle_words CHAIN` that prints what may follow, for bash and zsh alike.
+// Prints a function `_fascicle_words CHAIN` that prints the words that may follow, for bash and zsh.
 void PrintWords(const std::vector<Node>& nodes) {
   std::cout << "_fascicle_words() {\n  case \"$1\" in\n";
   for (const Node& node : nodes)
     std::cout << "    '" << node.chain << "') echo '" << WordsOf(node, nodes[0]) << "' ;;\n";
   std::cout << "    *) return 1 ;;\n  esac\n}\n"
-               "# The longest chain of sub-commands among the words given.\n"
+               "# The longest chain of sub-commands among the given words.\n"
                "_fascicle_chain() {\n  local chain= word\n  for word in \"$@\"; do\n"
                "    if [ -n \"$chain\" ] && _fascicle_words \"$chain $word\" >/dev/null; then chain=\"$chain $word\"\n"
                "    elif [ -z \"$chain\" ] && _fascicle_words \"$word\" >/dev/null; then chain=$word\n"

@@ -31,7 +31,7 @@ int Delete(const std::vector<std::string>& names, const Context& context) {
 }  // namespace
 
 void AddDelete(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "delete", "Delete finished jobs and all that they stored", kExamples);
+  CLI::App* command = AddCommand(app, "delete", "Delete finished jobs with all of their data", kExamples);
   const auto jobs = std::make_shared<std::vector<std::string>>();
   command->add_option("JOB", *jobs, "The jobs")->required();
   command->callback([jobs, &context] { context.action = [jobs, &context] { return Delete(*jobs, context); }; });

@@ -29,7 +29,7 @@ void PrintDigest(const v1::Frame& frame, bool json) {
   } else {
     std::printf("frame %lld  t = %.9g s  %s\n", static_cast<long long>(frame.index()), frame.time(),
                 HexOf(frame.digest()).c_str());
-    std::fflush(stdout);  // a reader at the other end of a pipe follows too
+    std::fflush(stdout);  // for a reader at the other end of a pipe
   }
 }
 

@@ -5,7 +5,7 @@
 
 namespace fascicle::client {
 
-// A line with the frame's index, time and SHA-256, or a JSON object, on stdout.
+// Prints the frame's index, time and SHA-256 as a line, or as a JSON object, to stdout.
 void PrintDigest(const v1::Frame& frame, bool json);
 
 }  // namespace fascicle::client

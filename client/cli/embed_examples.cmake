@@ -6,7 +6,7 @@ set(entries)
 set(index 0)
 foreach(file ${files})
   file(READ ${FOLDER}/${file} text)
-  # Compilers limit the length of a string literal; neighbours are joined.
+  # Compilers limit the length of a string literal; adjacent literals are concatenated.
   string(LENGTH "${text}" length)
   set(literals)
   set(start 0)

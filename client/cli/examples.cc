@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExamples = R"(  fascicle examples                                   what there is
+constexpr const char* kExamples = R"(  fascicle examples                                   list the examples
   fascicle examples show tension                      print a scene
   fascicle examples write fusiform_isometric          into fusiform_isometric.json
   fascicle examples write --all --out scenes          all of them, with their meshes, into scenes/
@@ -34,8 +34,8 @@ struct Example {
   std::string name;
   std::string_view text;
   v1::Scene scene;
-  std::vector<const BuiltinFile*> files;  // built in, too
-  std::vector<std::string> foreign;       // to be had elsewhere
+  std::vector<const BuiltinFile*> files;  // embedded in the program, too
+  std::vector<std::string> foreign;       // not part of the project
 };
 
 const BuiltinFile* FindFile(const std::string& name) {
@@ -108,13 +108,13 @@ Example FindExample(std::string name) {
   for (Example& example : AllExamples()) {
     if (example.name == name) return std::move(example);
   }
-  throw CommandError::Invalid("there is no example `" + name + "`; `fascicle examples` lists them");
+  throw CommandError::Invalid("there is no example `" + name + "`; see `fascicle examples`");
 }
 
 void WriteFile(const std::string& name, std::string_view content, const Options& options, const Context& context) {
   const fs::path path = fs::path(options.out) / name;
   if (fs::exists(path) && !options.force) {
-    throw CommandError::Invalid(path.string() + " is there already; --force overwrites it");
+    throw CommandError::Invalid(path.string() + " exists already; --force overwrites it");
   }
   ReplaceFile(path, content);
   if (context.json) {
@@ -160,16 +160,16 @@ void AddExamples(CLI::App& app, Context& context) {
     if (command->get_subcommands().empty()) context.action = [&context] { return List(context); };
   });
   const auto options = std::make_shared<Options>();
-  CLI::App* list = AddCommand(*command, "list", "List them", kExamples);
+  CLI::App* list = AddCommand(*command, "list", "List the examples", kExamples);
   list->callback([&context] { context.action = [&context] { return List(context); }; });
-  CLI::App* show = AddCommand(*command, "show", "Print one", kExamples);
+  CLI::App* show = AddCommand(*command, "show", "Print an example", kExamples);
   show->add_option("NAME", options->name, "The example")->required();
   show->callback([options, &context] { context.action = [options] { return Show(options->name); }; });
-  CLI::App* write = AddCommand(*command, "write", "Write one, or all, as scene files", kExamples);
+  CLI::App* write = AddCommand(*command, "write", "Write an example, or all, as scene files", kExamples);
   write->add_option("NAME", options->name, "The example");
   write->add_option("--out", options->out, "Folder for the files")->type_name("DIR");
   write->add_flag("--all", options->all, "All examples");
-  write->add_flag("--force", options->force, "Overwrite files that are there");
+  write->add_flag("--force", options->force, "Overwrite existing files");
   write->callback([options, &context] { context.action = [options, &context] { return Write(*options, context); }; });
 }
 

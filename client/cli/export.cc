@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kExamples =
     R"(  fascicle export 3f2a --out results                  frames.pvd with its .vtu files, and series.csv
-  fascicle export 3f2a --out results --format csv     the table alone
+  fascicle export 3f2a --out results --format csv     only the table
   fascicle export 3f2a --out results --from 10 --to 20 --every 2
 )";
 

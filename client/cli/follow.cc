@@ -23,7 +23,7 @@ void Show(const v1::Job& job, ProgressBar& bar) { bar.Show(job.state(), job.prog
 
 bool HasStarted(v1::Job::State state) { return state != v1::Job::STATE_QUEUED && state != v1::Job::STATE_STARTING; }
 
-// The job once it has been started or is final, or as it is when a stop was requested.
+// Waits until the job has been started or is final, or until a stop is requested; returns its current state.
 v1::Job AwaitStart(Client& client, const std::string& name, ProgressBar& bar, const std::stop_token& stop) {
   std::chrono::milliseconds pause(20);
   for (;;) {
@@ -35,7 +35,7 @@ v1::Job AwaitStart(Client& client, const std::string& name, ProgressBar& bar, co
   }
 }
 
-// Asks for the job's progress now and then, so that the bar moves between frames.
+// Polls the job's progress, so that the bar moves between frames.
 std::jthread PollProgress(Client& client, const std::string& name, ProgressBar& bar) {
   return std::jthread([&client, &bar, name](const std::stop_token& stop) {
     for (; !stop.stop_requested(); Sleep(std::chrono::milliseconds(400), stop)) {
@@ -45,7 +45,7 @@ std::jthread PollProgress(Client& client, const std::string& name, ProgressBar& 
   });
 }
 
-// The geometry, unless the job ended before it had any.
+// The geometry, unless the job ended before it had one.
 std::optional<v1::Geometry> FetchGeometry(Client& client, const v1::Job& job) {
   Result<v1::Geometry> geometry = client.GetGeometry(job.name());
   if (geometry.ok()) return std::move(geometry.value());

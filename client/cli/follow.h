@@ -12,23 +12,23 @@
 
 namespace fascicle::client {
 
-// A job as it was seen from one of its frames on.
+// A job as followed from one of its frames on.
 struct Followed {
   v1::Job job;
-  v1::Geometry geometry;  // empty when the job ended before it had any
+  v1::Geometry geometry;  // empty if the job ended before it had one
   SeriesTable table;
   std::optional<v1::Frame> last_frame;
-  bool stopped = false;  // by the stop request, before the job was final
+  bool stopped = false;  // by a stop request, before the job was final
 };
 
 using FrameHook = std::function<void(const v1::Geometry& geometry, const v1::Frame& frame)>;
 
 // Waits for the job to start and follows it to its end, with a progress bar on stderr. `on_frame` may be empty.
-// CommandError when the server is lost or knows no such job.
+// CommandError if the connection is lost or the job does not exist.
 Followed Follow(Client& client, const std::string& job, std::int64_t start_index, const FrameHook& on_frame,
                 const std::stop_token& stop);
 
-// What is stored of a job, from `start_index` on; `on_frame` returns whether it wants more. No progress bar.
+// Reads the stored frames of a job from `start_index` on, until `on_frame` returns false. No progress bar.
 Followed ReadStored(Client& client, const std::string& job, std::int64_t start_index,
                     const std::function<bool(const v1::Geometry& geometry, const v1::Frame& frame)>& on_frame);
 

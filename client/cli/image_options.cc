@@ -39,7 +39,7 @@ std::vector<std::string> Split(const std::string& text, char separator) {
   return parts;
 }
 
-// Three numbers with commas between.
+// Parses three numbers separated by commas.
 template <class T>
 std::optional<std::array<T, 3>> ParseThree(const std::string& text) {
   const std::vector<std::string> parts = Split(text, ',');
@@ -56,7 +56,7 @@ std::optional<VoxelBox> ParseRegion(const std::string& text, Problems& problems)
   const auto first = ParseThree<std::int32_t>(parts[0]);
   const auto size = parts.size() == 2 ? ParseThree<std::int32_t>(parts[1]) : std::nullopt;
   if (first && size) return VoxelBox{*first, *size};
-  problems.Add("--region", "`" + text + "` is no box of voxels", "I,J,K:NI,NJ,NK, such as 20,30,0:100,90,31");
+  problems.Add("--region", "`" + text + "` is not a box of voxels", "I,J,K:NI,NJ,NK, such as 20,30,0:100,90,31");
   return std::nullopt;
 }
 
@@ -102,7 +102,8 @@ VolumeReaderOptions ReadRawOptions(const ImageOptions& options, Problems& proble
   if (const auto size = ParseThree<std::int32_t>(options.raw_size)) {
     layout.size = *size;
   } else {
-    problems.Add("--raw-size", "`" + options.raw_size + "` is no number of voxels", "NI,NJ,NK, such as 140,220,71");
+    problems.Add("--raw-size", "`" + options.raw_size + "` is not a number of voxels along three axes",
+                 "NI,NJ,NK, such as 140,220,71");
   }
   if (const auto spacing = ParseThree<double>(options.raw_spacing)) {
     layout.spacing = kMillimetre * Vec3((*spacing)[0], (*spacing)[1], (*spacing)[2]);
@@ -135,7 +136,7 @@ std::variant<Classification, LabelChoice> ReadChoice(const ImageOptions& options
   return choice;
 }
 
-// Fields of a stage as options.
+// The option that corresponds to a field of the stage.
 std::string OptionOf(const std::string& path) {
   static const std::map<std::string, std::string> options = {{"region", "--region"},
                                                              {"resample", "--resample"},
@@ -152,7 +153,7 @@ std::string OptionOf(const std::string& path) {
                                                              {"cleaning.keep", "--keep"},
                                                              {"level", "--level"},
                                                              {"fraction", "--fraction"}};
-  // "filters[0].deviation" is of "filters".
+  // "filters[0].deviation" belongs to "filters".
   for (std::string field = path; !field.empty();) {
     const auto found = options.find(field);
     if (found != options.end()) return found->second;
@@ -181,80 +182,78 @@ void AddImageOptions(CLI::App& command, ImageOptions& options) {
       .add_option("IMAGE", options.files,
                   "The scan: .mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz, .raw, or a DICOM series as its folder or files")
       ->required();
-  CLI::Option* raw = command.add_option("--raw-size", options.raw_size, "Of a .raw file: voxels along i, j, k")
+  CLI::Option* raw = command.add_option("--raw-size", options.raw_size, "For a .raw file: voxels along i, j, k")
                          ->type_name("NI,NJ,NK")
                          ->group("Image");
-  command.add_option("--raw-spacing", options.raw_spacing, "Of a .raw file: size of a voxel [mm]")
+  command.add_option("--raw-spacing", options.raw_spacing, "For a .raw file: size of a voxel [mm]")
       ->type_name("X,Y,Z")
       ->needs(raw)
       ->group("Image");
-  command.add_option("--raw-type", options.raw_type, "Of a .raw file: its numbers")
+  command.add_option("--raw-type", options.raw_type, "For a .raw file: type of its numbers")
       ->check(CLI::IsMember({"uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"}))
       ->needs(raw)
       ->group("Image");
-  command.add_flag("--raw-big-endian", options.raw_big_endian, "Of a .raw file: most significant bytes first")
+  command.add_flag("--raw-big-endian", options.raw_big_endian, "For a .raw file: big-endian numbers")
       ->needs(raw)
       ->group("Image");
-  command.add_option("--raw-skip", options.raw_skip, "Of a .raw file: bytes before the numbers")
+  command.add_option("--raw-skip", options.raw_skip, "For a .raw file: bytes before the numbers")
       ->check(CLI::NonNegativeNumber)
       ->needs(raw)
       ->group("Image");
-  command.add_option("--region", options.region, "Part of the image that is looked at: its first voxel and its size")
+  command.add_option("--region", options.region, "Crop the image: first voxel and size")
       ->type_name("I,J,K:NI,NJ,NK")
       ->group("Image");
-  command.add_option("--resample", options.resample, "Make cubes of this size [mm] first")
+  command.add_option("--resample", options.resample, "Resample to cubes of this size [mm]")
       ->check(CLI::PositiveNumber)
       ->type_name("MM")
       ->group("Image");
   command
-      .add_option(
-          "--filter", options.filters,
-          "Prepares the image; may be repeated, in order. Against noise: wavelet[:SCALES[:THRESHOLD]] (3 scales, 3 "
-          "deviations of the noise), gaussian[:MM] (1 mm), curvature[:ITERATIONS[:CONDUCTANCE]] (5, 1). Against a "
-          "coil's uneven sensitivity: bias-field[:REFINEMENTS[:ITERATIONS]] (3, 50)")
+      .add_option("--filter", options.filters,
+                  "Filter; may be repeated, in order. Noise: wavelet[:SCALES[:THRESHOLD]] (3 scales, 3 "
+                  "deviations of the noise), gaussian[:MM] (1 mm), curvature[:ITERATIONS[:CONDUCTANCE]] (5, 1). Uneven "
+                  "sensitivity of a coil: bias-field[:REFINEMENTS[:ITERATIONS]] (3, 50)")
       ->type_name("FILTER")
       ->allow_extra_args(false)
       ->group("Image");
-  command.add_option("--method", options.method, "How classes of values are found: fuzzy c-means or Otsu's thresholds")
+  command.add_option("--method", options.method, "Classification method: fuzzy c-means or Otsu's thresholds")
       ->check(CLI::IsMember({"fuzzy", "otsu"}))
-      ->group("What is the body");
-  command.add_option("--classes", options.classes, "How many there are, such as air, muscle and fat")
+      ->group("Selection of the body");
+  command.add_option("--classes", options.classes, "Number of classes, such as air, muscle and fat")
       ->check(CLI::Range(2, 8))
-      ->group("What is the body");
-  command.add_option("--thresholds", options.thresholds, "Values between classes, given instead")
+      ->group("Selection of the body");
+  command.add_option("--thresholds", options.thresholds, "Thresholds between classes, instead of a method")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("V,V,...")
-      ->group("What is the body");
-  command.add_option("--class", options.wanted_class, "The class of the body, from 0 at the darkest")
-      ->group("What is the body");
-  command.add_option("--fuzziness", options.fuzziness, "Of fuzzy c-means, above 1")->group("What is the body");
-  command.add_option("--membership", options.membership, "Voxels with less of it in the class stay out")
+      ->group("Selection of the body");
+  command.add_option("--class", options.wanted_class, "Class of the body, counted from 0, the darkest")
+      ->group("Selection of the body");
+  command.add_option("--fuzziness", options.fuzziness, "Fuzziness of c-means, above 1")->group("Selection of the body");
+  command.add_option("--membership", options.membership, "Least membership in the class of the body's voxels")
       ->check(CLI::Range(0.0, 1.0))
-      ->group("What is the body");
+      ->group("Selection of the body");
   command
       .add_option("--seed", options.seeds,
-                  "A voxel of the body: tells its class, and which part is kept; may be repeated")
+                  "A voxel of the body, which determines its class and the island to keep; may be repeated")
       ->type_name("I,J,K")
       ->allow_extra_args(false)
-      ->group("What is the body");
-  command.add_option("--label", options.labels, "The image has labels: the value of the body; may be repeated")
+      ->group("Selection of the body");
+  command.add_option("--label", options.labels, "For an image of labels: the label of the body; may be repeated")
       ->allow_extra_args(false)
-      ->group("What is the body");
-  command.add_flag("--mask", options.mask, "The image is a mask: all that is not 0 is the body")
-      ->group("What is the body");
-  command
-      .add_option("--opening", options.opening,
-                  "Cut what a ball of this radius [mm] does not pass, before parts are told apart")
+      ->group("Selection of the body");
+  command.add_flag("--mask", options.mask, "For a mask: all voxels other than 0 are the body")
+      ->group("Selection of the body");
+  command.add_option("--opening", options.opening, "Opening by a ball of this radius [mm] before islands are found")
       ->check(CLI::NonNegativeNumber)
       ->type_name("MM")
-      ->group("What is the body");
+      ->group("Selection of the body");
   command
-      .add_option("--keep", options.keep, "Parts that are kept; those of seeds where there are some, else the largest")
+      .add_option("--keep", options.keep,
+                  "Islands to keep; by default those of the seeds, or the largest without seeds")
       ->check(CLI::IsMember({"all", "largest", "seeds"}))
-      ->group("What is the body");
-  command.add_flag("--no-fill", options.no_fill, "Leave holes open")->group("What is the body");
-  command.add_option("--threads", options.threads, "Threads that work; the result does not depend on it")
+      ->group("Selection of the body");
+  command.add_flag("--no-fill", options.no_fill, "Do not fill holes")->group("Selection of the body");
+  command.add_option("--threads", options.threads, "Number of threads; the result does not depend on it")
       ->check(CLI::Range(1, 256));
   command.add_option("--picture", options.picture, "Draw slices with the body's outline")->type_name("FILE.png");
 }
@@ -269,7 +268,7 @@ GivenImage ReadGivenImage(const ImageOptions& options, Problems problems) {
     if (const std::optional<ImageFilter> filter = ParseFilter(text)) {
       stage.filters.push_back(*filter);
     } else {
-      problems.Add("--filter", "`" + text + "` is no filter",
+      problems.Add("--filter", "`" + text + "` is not a filter",
                    "wavelet[:SCALES[:THRESHOLD]], gaussian[:MM], curvature[:ITERATIONS[:CONDUCTANCE]] or "
                    "bias-field[:REFINEMENTS[:ITERATIONS]]");
     }
@@ -280,10 +279,10 @@ GivenImage ReadGivenImage(const ImageOptions& options, Problems problems) {
     if (const auto seed = ParseThree<std::int32_t>(text)) {
       seeds.push_back(*seed);
     } else {
-      problems.Add("--seed", "`" + text + "` is no voxel", "I,J,K, such as 98,119,35");
+      problems.Add("--seed", "`" + text + "` is not a voxel", "I,J,K, such as 98,119,35");
     }
   }
-  // Placed when the image is there.
+  // Positions are set once the image is available.
   stage.seeds.assign(options.seeds.size(), Vec3::Zero());
   stage.cleaning.opening = options.opening * kMillimetre;
   const std::string keep = !options.keep.empty() ? options.keep : options.seeds.empty() ? "largest" : "seeds";

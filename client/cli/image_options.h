@@ -14,8 +14,8 @@
 
 namespace fascicle::client {
 
-// What `segment` and `voxelize` are told about an image and what of it is the body. Lengths in millimetres, voxels
-// counted from 0 along i, j, k of the file.
+// Options of `segment` and `voxelize` that describe the image and the selection of the body. Lengths in millimetres,
+// voxels counted from 0 along i, j, k of the file.
 struct ImageOptions {
   std::vector<std::string> files;
   std::string raw_size, raw_spacing, raw_type = "int16";
@@ -34,34 +34,34 @@ struct ImageOptions {
   bool mask = false;
   std::vector<std::string> seeds;
   double opening = 0;
-  std::string keep;  // empty: seeds where there are some, else largest
+  std::string keep;  // empty: the islands of the seeds, or the largest without seeds
   bool no_fill = false;
   int threads = 1;
   std::string out;
   std::string picture;
 };
 
-// IMAGE and all options of it. `options` must outlive parsing.
+// Adds IMAGE and all of its options. `options` must outlive parsing.
 void AddImageOptions(CLI::App& command, ImageOptions& options);
 
 struct GivenImage {
   VolumeImage image;
   ImageStage stage;
 };
-// Reads the image and the options. CommandError with all problems (paths: the option or file), and those that are
-// given, when there is any.
+// Reads the image and evaluates the options. CommandError with all problems (the path is the option or file), including
+// the given ones, if there are any.
 GivenImage ReadGivenImage(const ImageOptions& options, Problems problems);
 
 // Runs the stage with progress on stderr. CommandError with all problems, whose paths are options.
 StagedImage RunStage(const ImageOptions& options, const GivenImage& given);
 
-// Writes the body's outline over slices of the image.
+// Draws the body's outline on slices of the image.
 void DrawBody(const StagedImage& staged, const ImageOptions& options, const std::string& title);
 
-// A file for people: the last part of the first path.
+// The last component of the first path, for titles.
 std::string TitleOf(const ImageOptions& options);
 
-// Writes whole numbers below 256 as an image. CommandError when that fails.
+// Writes integers below 256 as an image. CommandError if that fails.
 void WriteLabels(const VolumeImage& labels, const std::string& path);
 
 }  // namespace fascicle::client

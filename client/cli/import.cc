@@ -20,14 +20,14 @@ namespace fs = std::filesystem;
 
 constexpr const char* kExamples =
     R"(  fascicle import biceps.feb --out biceps                 biceps/scene.json, its mesh and its fibres
-  fascicle import biceps.feb --out biceps --units SI      lengths in m, forces in N: FEBio has no units of its own
+  fascicle import biceps.feb --out biceps --units SI      lengths in m, forces in N (FEBio has no units itself)
   fascicle import knee.feb --out knee --split-hexahedra   hexahedra, wedges and pyramids become tetrahedra
-  fascicle import biceps.feb --out biceps --strict        fail unless the scene is all that the model is
+  fascicle import biceps.feb --out biceps --strict        fail unless the scene is complete and unchanged
   fascicle run biceps/scene.json --out results
 
-Taken are tetrahedra, neo-Hookean, isotropic elastic and Mooney-Rivlin solids, their mixtures with the fibres of muscle
+Supported: tetrahedra, neo-Hookean, isotropic elastic and Mooney-Rivlin solids, their mixtures with the fibres of muscle
 and tendon material, fixed and prescribed displacements, nodal forces, tractions, pressures, gravity, fibres and load
-curves of the first step. What is not taken is listed in the end.
+curves of the first step. Everything else is listed at the end.
 )";
 
 struct Options {
@@ -59,14 +59,14 @@ const char* KindName(Notice::Kind kind) {
   return "";
 }
 
-// What the scene lacks or has otherwise than the model.
+// Refuses the import if the scene lacks or changes anything of the model.
 void RefuseNotices(const ImportedScene& imported, const std::string& path) {
-  Error error{Error::Kind::kInvalid, path + " is not taken as it is", "INVALID_MODEL", {}};
+  Error error{Error::Kind::kInvalid, path + " cannot be imported unchanged", "INVALID_MODEL", {}};
   for (const Notice& notice : imported.notices) {
     if (notice.kind == Notice::Kind::kSetting) continue;
     const bool missing = notice.kind == Notice::Kind::kNotTaken;
     error.problems.Add(notice.where,
-                       (missing ? "not taken" : "changed") + (notice.message.empty() ? "" : ": " + notice.message));
+                       (missing ? "not supported" : "changed") + (notice.message.empty() ? "" : ": " + notice.message));
   }
   if (!error.problems.empty()) throw CommandError(std::move(error));
 }
@@ -118,31 +118,31 @@ int Import(const Options& options, const Context& context) {
     return kDone;
   }
   const std::string scene = (fs::path(options.out) / "scene.json").string();
-  std::cout << febio.name << " (FEBio " << imported->version << ", units " << imported->units << ") is in " << scene
-            << '\n';
-  PrintNotices(*imported, Notice::Kind::kSetting, "left to fascicle");
+  std::cout << febio.name << " (FEBio " << imported->version << ", units " << imported->units << ") imported to "
+            << scene << '\n';
+  PrintNotices(*imported, Notice::Kind::kSetting, "replaced by fascicle's own settings");
   PrintNotices(*imported, Notice::Kind::kChanged, "changed");
-  PrintNotices(*imported, Notice::Kind::kNotTaken, "not taken");
+  PrintNotices(*imported, Notice::Kind::kNotTaken, "not supported");
   return kDone;
 }
 
 }  // namespace
 
 void AddImport(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "import", "Make a scene of a FEBio model (.feb, version 3.0 or 4.0)", kExamples);
+  CLI::App* command =
+      AddCommand(app, "import", "Convert a FEBio model (.feb, version 3.0 or 4.0) to a scene", kExamples);
   const auto options = std::make_shared<Options>();
   command->add_option("MODEL", options->path, "The model file")->required()->type_name("MODEL.feb");
-  command->add_option("--out", options->out, "Folder for scene.json and the files that it names")
-      ->required()
-      ->type_name("DIR");
+  command->add_option("--out", options->out, "Folder for scene.json and its files")->required()->type_name("DIR");
   command
-      ->add_option("--units", options->febio.units,
-                   "The model's units: mm-N-MPa (mm-N-s), m-N-Pa (SI), mm-kg-s, um-nN-s or CGS; those that the file "
-                   "names when not given, or mm-N-MPa")
+      ->add_option(
+          "--units", options->febio.units,
+          "The model's units: mm-N-MPa (mm-N-s), m-N-Pa (SI), mm-kg-s, um-nN-s or CGS; by default those named by the "
+          "file, or mm-N-MPa")
       ->type_name("SYSTEM");
   command->add_flag("--split-hexahedra", options->febio.split_hexahedra,
                     "Split hexahedra, wedges and pyramids into tetrahedra");
-  command->add_flag("--strict", options->strict, "Fail, and write nothing, when anything is not taken or changed");
+  command->add_flag("--strict", options->strict, "Fail, without writing, if anything is not supported or changed");
   command->callback(
       [options, &context] { context.action = [options, &context] { return Import(*options, context); }; });
 }

@@ -8,7 +8,7 @@
 
 namespace fascicle::client {
 
-// The bytes of a file; when it can't be read a problem with an empty path, and nothing.
+// The bytes of a file. If it can't be read, adds a problem with an empty path and returns nothing.
 std::optional<std::string> ReadInputFile(const std::string& path, Problems& problems);
 
 }  // namespace fascicle::client

@@ -6,8 +6,8 @@
 
 namespace fascicle::client {
 
-// While it lives, Ctrl-C and SIGTERM call `on_interrupt` on a thread of their own instead of ending the program; the
-// second one ends it at once. To be made before any other thread, so that none of them takes the signals.
+// While this object lives, Ctrl-C and SIGTERM call `on_interrupt` on a separate thread instead of ending the program; a
+// second one ends it at once. Create it before any other thread, so that no thread receives the signals.
 class Interrupts {
  public:
   explicit Interrupts(std::function<void()> on_interrupt);

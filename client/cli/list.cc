@@ -14,8 +14,8 @@ namespace fascicle::client {
 namespace {
 
 constexpr const char* kExamples = R"(  fascicle list                       the newest 50 jobs
-  fascicle list --state running       those that run now
-  fascicle list --limit 500 --json    one object a line
+  fascicle list --state running       running jobs
+  fascicle list --limit 500 --json    one object per line
 )";
 
 struct Options {
@@ -56,7 +56,7 @@ int List(const Options& options, const Context& context) {
 void AddList(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "list", "List the jobs of a server, newest first", kExamples);
   const auto options = std::make_shared<Options>();
-  command->add_option("--limit", options->limit, "Most jobs to list")->check(CLI::Range(1, 1000000));
+  command->add_option("--limit", options->limit, "Largest number of jobs to list")->check(CLI::Range(1, 1000000));
   std::vector<std::string> names;
   for (const auto& [name, state] : KnownStates()) names.push_back(name);
   command->add_option("--state", options->states, "Only jobs in this state; may be repeated")

@@ -12,14 +12,14 @@ namespace {
 constexpr const char* kFooter = R"(First steps:
   fascicle examples write fusiform_isometric      a muscle that contracts between fixed ends
   fascicle run fusiform_isometric.json --out out  simulate it here; out/ gets tables and pictures
-  fascicle schema                                 what a scene can say
+  fascicle schema                                 all fields of a scene
   fascicle COMMAND --help                         more, with examples
 
 Exit codes:
   0  done
-  1  the job failed, or something went wrong on the way
-  2  invalid input: each problem stands on a line of its own
-  3  no server, or it does not answer
+  1  the job failed, or another error occurred
+  2  invalid input; each problem is on its own line
+  3  no server, or no response
   4  cancelled
 )";
 
@@ -28,10 +28,10 @@ Exit codes:
 int Main(int argc, char** argv) {
   CLI::App app("fascicle simulates skeletal muscle and other soft tissue, here or on a server.", "fascicle");
   Context context;
-  app.add_option("--server", context.server, "The server; 127.0.0.1:7300 when not given. `run` needs none")
+  app.add_option("--server", context.server, "The server; 127.0.0.1:7300 by default. `run` needs none")
       ->envname("FASCICLE_SERVER")
       ->type_name("HOST:PORT");
-  app.add_flag("--json", context.json, "Write one JSON object a line to stdout");
+  app.add_flag("--json", context.json, "Write one JSON object per line to stdout");
   app.set_version_flag("--version", std::string("fascicle ") + FASCICLE_VERSION);
   app.require_subcommand(1);
   app.footer(kFooter);

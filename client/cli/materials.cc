@@ -81,10 +81,10 @@ const LawInfo& LawOrFail(const std::string& name) {
   if (const LawInfo* law = FindLaw(name)) return *law;
   std::string known;
   for (const LawInfo& law : Laws()) known += std::string(known.empty() ? "" : ", ") + law.name;
-  throw CommandError::Invalid("there is no law `" + name + "`; there are: " + known);
+  throw CommandError::Invalid("there is no law `" + name + "`; known laws: " + known);
 }
 
-// The law's parameters: defaults, then what `--set name=value` says; all mistakes at once.
+// The law's parameters: defaults, overridden by `--set name=value`; reports all mistakes at once.
 std::vector<double> ParameterValues(const LawInfo& law, const std::vector<std::string>& settings) {
   std::vector<double> values;
   for (const ParameterInfo& p : law.parameters) values.push_back(p.default_value);
@@ -186,7 +186,7 @@ int List(const std::string& name, const Context& context) {
 void AddMaterials(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "materials", "The constitutive laws, and their stress-stretch curves", kExamples);
   const auto name = std::make_shared<std::string>();
-  command->add_option("LAW", *name, "One law; all when not given");
+  command->add_option("LAW", *name, "One law; all by default");
   command->callback([name, command, &context] {
     if (command->get_subcommands().empty()) context.action = [name, &context] { return List(*name, context); };
   });
@@ -198,12 +198,12 @@ void AddMaterials(CLI::App& app, Context& context) {
   curve->add_option("--activation", options->activations, "Activations, one curve each")
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("A ...");
-  curve->add_option("--stretch", options->range, "Lowest and highest stretch")->expected(2)->type_name("LOW HIGH");
+  curve->add_option("--stretch", options->range, "Range of the stretch")->expected(2)->type_name("LOW HIGH");
   curve
       ->add_option("--velocity", options->velocity,
-                   "Rate of the fibre stretch [1/s], negative while it shortens; for laws that heed it")
+                   "Rate of the fibre stretch [1/s], negative while it shortens; for laws that depend on it")
       ->type_name("V");
-  curve->add_option("--points", options->points, "Points of a curve")->check(CLI::Range(2, 100000));
+  curve->add_option("--points", options->points, "Number of points per curve")->check(CLI::Range(2, 100000));
   curve->add_option("--csv", options->csv, "Write the curves as a table")->type_name("FILE.csv");
   curve->add_option("--out", options->out, "Draw the curves")->type_name("FILE.png");
   curve->callback([options, &context] { context.action = [options, &context] { return Curve(*options, context); }; });

@@ -25,16 +25,16 @@ namespace fs = std::filesystem;
 
 constexpr const char* kExamples =
     R"(  fascicle mesh muscle.stl --out muscle.msh                   about 50,000 tetrahedra
-  fascicle mesh muscle.stl --out muscle.msh --size 2.5        edges of about 2.5 at the surface, in its own unit
+  fascicle mesh muscle.stl --out muscle.msh --size 2.5        edges of about 2.5 at the surface, in the surface's unit
   fascicle mesh muscle.stl --out muscle.msh --region origin=near:femur.stl:3 --region insertion=near:tibia.stl:3 \
-    --scene muscle.json --picture muscle.png                  attachments, a scene to begin with, and a picture
+    --scene muscle.json --picture muscle.png                  attachments, a first scene, and a picture
   fascicle mesh muscle.stl --out muscle.msh --region origin=end:0,0,1:20 --region insertion=end:0,0,-1:20 \
-    --scene muscle.json                                       attached by 20 of its own units at its two ends
+    --scene muscle.json                                       attached over 20 length units at both ends
   fascicle mesh muscle.stl --out muscle.msh --region top=side:0,0,1:30
-  fascicle mesh labels.mha --label 2 --out triceps.msh        the voxels of a segmentation that have the value 2
+  fascicle mesh labels.mha --label 2 --out triceps.msh        the voxels with label 2 of a segmentation
 
-Reads .stl, .obj, .ply and .vtp. Small holes are closed; larger ones, surfaces that cut themselves and surfaces around
-several bodies are refused with the place. Regions become physical tags, which scenes name.
+Reads .stl, .obj, .ply and .vtp. Small holes are closed; larger holes, self-intersections and surfaces around
+several bodies are refused with their location. Regions become physical tags, to which scenes refer.
 )";
 
 struct Options {
@@ -107,15 +107,15 @@ void PrintReport(const Options& options, const MeshingResult& result, const std:
     std::printf("closed a hole at %s, with a boundary %.4g %s long\n", PlaceText(hole).c_str(), hole.length, unit);
   }
   for (const SurfacePlace& cut : report.surface.cuts) {
-    std::printf("the surface cuts itself at %s (%lld pairs of triangles): meshed as one body\n", PlaceText(cut).c_str(),
-                static_cast<long long>(cut.count));
+    std::printf("the surface intersects itself at %s (%lld pairs of triangles): meshed as one body\n",
+                PlaceText(cut).c_str(), static_cast<long long>(cut.count));
   }
   if (report.surface.removed_triangles > 0) {
-    std::printf("left out %lld triangles without area, or that stood twice\n",
+    std::printf("removed %lld triangles without area, or duplicates\n",
                 static_cast<long long>(report.surface.removed_triangles));
   }
   if (report.surface.turned_triangles > 0) {
-    std::printf("turned %lld triangles outward\n", static_cast<long long>(report.surface.turned_triangles));
+    std::printf("reoriented %lld triangles\n", static_cast<long long>(report.surface.turned_triangles));
   }
   std::printf("tetrahedra          %zu\nnodes               %zu\nsize                %.4g %s\n",
               result.mesh.tetrahedra.size(), result.mesh.nodes.size(), report.size, unit);
@@ -124,7 +124,7 @@ void PrintReport(const Options& options, const MeshingResult& result, const std:
   std::printf("volume              %.6g %s^3, %+.3f %% of the surface's\n", report.volume, unit,
               100 * report.VolumeError());
   if (report.lost_volume > 0) {
-    std::printf("left out            %.3g %% of the volume, in crumbs that hang on nothing\n",
+    std::printf("left out            %.3g %% of the volume, in disconnected parts\n",
                 100 * report.lost_volume / report.surface_volume);
   }
   std::printf("surface distance    at most %.3g %s, at (%.4g, %.4g, %.4g)\n", report.surface_distance, unit,
@@ -141,7 +141,7 @@ void PrintReport(const Options& options, const MeshingResult& result, const std:
   }
 }
 
-// A muscle between its first two regions, in equilibrium at growing activation.
+// A scene with a muscle between its first two regions, in equilibrium at increasing activation.
 Json SceneJson(const Options& options, const std::vector<Region>& regions) {
   Json list = Json::array(), constraints = Json::array();
   for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -165,7 +165,7 @@ Json SceneJson(const Options& options, const std::vector<Region>& regions) {
           {"tet", {{"stepping", "quasi_static"}}}};
 }
 
-// The problems of a file or the command line as an error with all of them.
+// Reports the problems of a file or the command line as one error.
 void FailOn(const Problems& problems, const std::string& file) {
   if (problems.empty()) return;
   Error error{Error::Kind::kInvalid, "the surface " + file + " can't be meshed", "INVALID_SURFACE", {}};
@@ -184,10 +184,10 @@ Input ReadInput(const Options& options, Problems& problems) {
   Input input;
   const bool is_image = IsImageName(options.surface);
   if (is_image && !options.label) {
-    problems.Add("--label", "is required for an image", "give the value of the voxels that are the body");
+    problems.Add("--label", "is required for an image", "give the label of the body");
   }
   if (!is_image && options.label) {
-    problems.Add("--label", options.surface + " is no label image", "images end in .mha, .mhd, .nii or .nii.gz");
+    problems.Add("--label", options.surface + " is not a label image", "images end in .mha, .mhd, .nii or .nii.gz");
   }
   const std::optional<std::string> bytes = ReadInputFile(options.surface, problems);
   if (!bytes) return input;
@@ -262,39 +262,40 @@ void AddMesh(CLI::App& app, Context& context) {
       ->add_option("SURFACE", options->surface,
                    "The surface: .stl, .obj, .ply or .vtp; or a label image: .mha, .mhd, .nii or .nii.gz")
       ->required();
-  command->add_option("--out", options->out, "The mesh, for scenes to name")->required()->type_name("FILE.msh");
-  command->add_option("--unit", options->unit, "Unit of the surface's lengths, and of all lengths here")
+  command->add_option("--out", options->out, "The mesh file")->required()->type_name("FILE.msh");
+  command->add_option("--unit", options->unit, "Unit of the surface and of all lengths given here")
       ->check(CLI::IsMember({"m", "cm", "mm"}));
-  CLI::Option* size = command->add_option("--size", options->size, "Length of edges at the surface")
+  CLI::Option* size = command->add_option("--size", options->size, "Edge length at the surface")
                           ->check(CLI::PositiveNumber)
                           ->type_name("LENGTH");
-  command->add_option("--tets", options->tetrahedra, "About how many tetrahedra, when no --size is given; 50000")
+  command->add_option("--tets", options->tetrahedra, "Approximate number of tetrahedra, without --size; 50000")
       ->check(CLI::Range(std::int64_t{100}, std::int64_t{20'000'000}))
       ->excludes(size);
   command
       ->add_option("--grading", options->grading,
-                   "How much edges may grow for each length of distance from the surface; 0: not at all")
+                   "Growth of the edge length per unit of distance from the surface; 0: uniform")
       ->check(CLI::Range(0.0, 2.0));
   command
-      ->add_option("--max-hole", options->largest_hole, "Holes up to this far across are closed; a tenth of the whole")
+      ->add_option("--max-hole", options->largest_hole,
+                   "Size of the largest holes to fill; a tenth of the surface's size")
       ->check(CLI::NonNegativeNumber)
       ->type_name("LENGTH");
   command
       ->add_option(
           "--region", options->regions,
-          "Name a part of the mesh's surface: the end of a direction, what faces it, or what is near another surface; "
-          "may be repeated")
+          "Name a part of the mesh's surface: its end along a direction, its side facing a direction, or its part near "
+          "another surface; may be repeated")
       ->type_name("NAME=end:X,Y,Z:LENGTH|NAME=side:X,Y,Z[:DEGREES]|NAME=near:SURFACE:DISTANCE")
       ->allow_extra_args(false);
-  command->add_option("--scene", options->scene, "Write a scene: a muscle between the first two regions")
+  command->add_option("--scene", options->scene, "Write a scene with a muscle between the first two regions")
       ->type_name("FILE.json");
   command->add_option("--picture", options->picture, "Draw the mesh, coloured by its regions")->type_name("FILE.png");
-  command->add_option("--label", options->label, "Of an image: the value of the voxels that are the body");
+  command->add_option("--label", options->label, "For an image: the label of the body");
   command
       ->add_option("--smooth", options->smoothing,
-                   "Of an image: how far its stairs are smoothed, as the standard deviation of a Gaussian [voxel]")
+                   "For an image: standard deviation of the Gaussian that smooths the voxel staircase [voxel]")
       ->check(CLI::Range(0.3, 10.0));
-  command->add_option("--threads", options->threads, "Threads that work; the mesh does not depend on it")
+  command->add_option("--threads", options->threads, "Number of threads; the mesh does not depend on it")
       ->check(CLI::Range(1, 256));
   command->callback(
       [options, &context] { context.action = [options, &context] { return MakeMesh(*options, context); }; });

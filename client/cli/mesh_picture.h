@@ -9,8 +9,8 @@
 
 namespace fascicle::client {
 
-// Draws a mesh with its edges, each region in a colour of its own. `unit` is that of its lengths [m]. Throws
-// std::runtime_error with a message for people.
+// Draws a mesh with its edges, each region in its own colour. `unit` is the unit of its lengths [m]. Throws
+// std::runtime_error with a message for users.
 void DrawMesh(const TetMesh& mesh, const std::vector<Region>& regions, double unit, const std::string& title,
               const std::filesystem::path& path);
 

@@ -26,14 +26,14 @@ bool ParseNumber(std::string_view text, double& value) {
   return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
 }
 
-// As scenes have them.
+// Whether the text is a valid name in a scene.
 bool IsName(const std::string& name) {
   return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
   });
 }
 
-// X,Y,Z of which one at least is not zero.
+// Parses X,Y,Z, not all zero.
 std::optional<Vec3> ParseDirection(std::string_view text) {
   Vec3 direction;
   for (int axis = 0; axis < 3; ++axis) {
@@ -81,7 +81,7 @@ void ReadOther(RegionRequest::Near& near, const std::string& path, Problems& pro
   for (const Problem& problem : in_file.kept()) problems.Add(path, near.file + ": " + problem.message, problem.hint);
 }
 
-// All that is beyond the plane across the direction, `length` below the furthest node.
+// Selects everything within `length` of the farthest node along a direction.
 PlaneSelector BelowFurthest(const TetMesh& mesh, const RegionRequest::End& end) {
   const Vec3 direction = end.direction.normalized();
   double furthest = -std::numeric_limits<double>::infinity();
@@ -89,7 +89,7 @@ PlaneSelector BelowFurthest(const TetMesh& mesh, const RegionRequest::End& end) 
   return {(furthest - end.length) * direction, direction};
 }
 
-// What to try where a region is empty.
+// A hint for an empty region.
 std::string EmptyHint(const RegionRequest& request, const TetMesh& mesh, const std::vector<Triangle>& surface) {
   if (std::holds_alternative<RegionRequest::End>(request.selector)) return "try a larger length";
   const auto* near = std::get_if<RegionRequest::Near>(&request.selector);
@@ -120,15 +120,15 @@ std::vector<RegionRequest> ReadRegionRequests(const std::vector<std::string>& op
       problems.Add(path, "has no =", std::string("expects ") + kForms);
       continue;
     }
-    if (!IsName(name)) problems.Add(path, "is no name", "letters, digits, _, - and ., at most 64");
-    if (!names.insert(name).second) problems.Add(path, "stands twice", "give each region a name of its own");
+    if (!IsName(name)) problems.Add(path, "is not a name", "letters, digits, _, - and ., at most 64");
+    if (!names.insert(name).second) problems.Add(path, "occurs twice", "give each region a unique name");
     const std::string_view value = std::string_view(option).substr(equals + 1);
     RegionRequest request{name, SideSelector{}};
     if (value.starts_with("side:")) {
       if (const auto side = ParseSide(value.substr(5))) {
         request.selector = *side;
       } else {
-        problems.Add(path, "expects a direction, and perhaps an angle of 0 to 180 degrees", "such as side:0,0,1:30");
+        problems.Add(path, "expects a direction, and optionally an angle of 0 to 180 degrees", "such as side:0,0,1:30");
       }
     } else if (value.starts_with("end:")) {
       if (const auto end = ParseEnd(value.substr(4))) {
@@ -144,7 +144,7 @@ std::vector<RegionRequest> ReadRegionRequests(const std::vector<std::string>& op
         problems.Add(path, "expects a surface and a distance of 0 or more", "such as near:fibula.stl:3");
       }
     } else {
-      problems.Add(path, "is of no known kind", std::string("expects ") + kForms);
+      problems.Add(path, "has an unknown kind", std::string("expects ") + kForms);
     }
     requests.push_back(std::move(request));
   }
@@ -158,7 +158,7 @@ void CheckEnds(const Region& origin, const Region& insertion, Problems& problems
   if (common.empty()) return;
   problems.Add("--region " + insertion.name,
                "has " + std::to_string(common.size()) + " nodes in common with " + origin.name,
-               "the ends of a muscle are apart: take smaller regions, or end:X,Y,Z:LENGTH");
+               "the ends of a muscle must be separate: use smaller regions, or end:X,Y,Z:LENGTH");
 }
 
 std::vector<Region> MarkRegions(const std::vector<RegionRequest>& requests, TetMesh& mesh, Problems& problems) {

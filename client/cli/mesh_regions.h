@@ -12,7 +12,7 @@
 
 namespace fascicle::client {
 
-// What `--region NAME=...` asks for, lengths in the surface's unit.
+// A region requested by `--region NAME=...`; lengths in the surface's unit.
 struct RegionRequest {
   // NAME=near:FILE:DISTANCE
   struct Near {
@@ -20,7 +20,7 @@ struct RegionRequest {
     TriangleMesh surface;
     double distance = 0;
   };
-  // NAME=end:X,Y,Z:LENGTH: no further below the furthest point in a direction.
+  // NAME=end:X,Y,Z:LENGTH: within LENGTH of the farthest point along a direction.
   struct End {
     Vec3 direction = Vec3::Zero();
     double length = 0;
@@ -29,14 +29,14 @@ struct RegionRequest {
   std::variant<SideSelector, Near, End> selector;
 };
 
-// Reads `--region` options and the surfaces that they name; adds every mistake to `problems`.
+// Reads `--region` options and the surfaces that they refer to; adds every mistake to `problems`.
 std::vector<RegionRequest> ReadRegionRequests(const std::vector<std::string>& options, Problems& problems);
 
-// Problems of two regions that are the ends of a muscle: they may not have a node in common.
+// Checks two regions that are the ends of a muscle: they must not share a node.
 void CheckEnds(const Region& origin, const Region& insertion, Problems& problems);
 
-// Marks the triangles of each region, the first by tag 1 and so on, and all tetrahedra by the tag after the last. A
-// region without a triangle is a problem.
+// Tags the triangles of each region, the first region by 1 and so on, and all tetrahedra by the next number. A region
+// without triangles is a problem.
 std::vector<Region> MarkRegions(const std::vector<RegionRequest>& requests, TetMesh& mesh, Problems& problems);
 
 }  // namespace fascicle::client

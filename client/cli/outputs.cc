@@ -30,7 +30,7 @@ std::vector<const SeriesTable::Column*> Choose(const SeriesTable& table, const s
   if (chosen.empty() && !globs.empty()) {
     std::string known;
     for (const SeriesTable::Column& column : table.columns()) known += "\n  " + column.name;
-    throw CommandError::Invalid("no series matches; there are:" + known);
+    throw CommandError::Invalid("no series matches; existing series:" + known);
   }
   return chosen;
 }
@@ -44,7 +44,7 @@ std::vector<PlotPanel> PanelsOf(const SeriesTable& table, const std::vector<std:
     const std::string unit = column->unit == "1" ? "" : " [" + column->unit + "]";
     const std::string label = QuantityOf(column->unit) + unit;
     auto panel = std::find_if(panels.rbegin(), panels.rend(), [&](const PlotPanel& p) { return p.y_label == label; });
-    // Pure numbers have sizes of their own, such as volume ratios and iterations.
+    // Dimensionless series have different scales, such as volume ratios and iterations, and get separate panels.
     const bool apart = column->unit == "1" || panel == panels.rend() || panel->lines.size() == kMostLines;
     if (apart) {
       panels.push_back({column->unit == "1" ? column->name : "", "time [s]", label, {}});

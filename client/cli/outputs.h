@@ -11,14 +11,15 @@
 
 namespace fascicle::client {
 
-// Panels of a plot: the columns that match one of `globs`, those of one unit together. Without globs all columns but
-// those that stay zero and those of the solver. CommandError when a glob matches nothing.
+// The panels of a plot: the columns that match one of `globs`, grouped by unit. Without globs, all columns except those
+// that are always zero and those of the solver. CommandError if a glob matches nothing.
 std::vector<PlotPanel> PanelsOf(const SeriesTable& table, const std::vector<std::string>& globs);
 
-// The panels with up to 8 lines each as a PNG, higher the more panels there are.
+// Writes the panels, with at most 8 lines each, as a PNG whose height grows with their number.
 void WritePlot(const std::vector<PlotPanel>& panels, const std::filesystem::path& path);
 
-// The frame's title, and the field that tells most: the von Mises stress when the scene keeps it, or displacement.
+// Defaults for a picture: the frame's title, coloured by von Mises stress if the scene stores it, otherwise by
+// displacement.
 PictureOptions DefaultPicture(const v1::Job& job, const v1::Frame& frame);
 
 }  // namespace fascicle::client

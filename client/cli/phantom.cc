@@ -18,8 +18,8 @@ constexpr const char* kExamples =
   fascicle phantom arm.nii.gz --noise 0.1 --truth truth.nii.gz
   fascicle segment arm.mha --filter wavelet --seed 98,119,35 --opening 0.6 --picture anconeus.png
 
-A section of an arm near the elbow, as T1-weighted magnetic resonance shows it, made of formulas. Labels of the truth: 0 air,
-1 skin, 2 fat, 3 muscles, 4 anconeus, 5 hard bone, 6 marrow.
+A section of an arm near the elbow, as in a T1-weighted magnetic resonance image, defined by formulas. Labels: 0 air,
+1 skin, 2 fat, 3 muscles, 4 anconeus, 5 cortical bone, 6 marrow.
 )";
 
 struct Options {
@@ -51,7 +51,7 @@ int MakePhantom(const Options& options, const Context& context) {
     PrintJson(report);
     return kDone;
   }
-  std::printf("the anconeus is around voxel %d,%d,%d\n", seed[0], seed[1], seed[2]);
+  std::printf("the anconeus contains voxel %d,%d,%d\n", seed[0], seed[1], seed[2]);
   for (const std::string& file : {options.out, options.truth}) {
     if (!file.empty()) std::cout << "written to " << file << '\n';
   }
@@ -61,15 +61,16 @@ int MakePhantom(const Options& options, const Context& context) {
 }  // namespace
 
 void AddPhantom(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "phantom", "Make a scan of an arm whose truth is known", kExamples);
+  CLI::App* command = AddCommand(app, "phantom", "Make a synthetic scan of an arm with known anatomy", kExamples);
   const auto options = std::make_shared<Options>();
   command->add_option("OUT", options->out, "The scan: .mha, .nrrd, .nii or .nii.gz")->required();
-  command->add_option("--truth", options->truth, "Write what each voxel is, too")->type_name("FILE");
-  command->add_option("--noise", options->settings.noise, "Standard deviation of the noise, of fat's value; 0.05")
+  command->add_option("--truth", options->truth, "Also write the tissue of each voxel")->type_name("FILE");
+  command
+      ->add_option("--noise", options->settings.noise, "Standard deviation of the noise, relative to fat's value; 0.05")
       ->check(CLI::Range(0.0, 0.5));
-  command->add_option("--bias", options->settings.bias, "How uneven the scanner's field is; 0.1")
+  command->add_option("--bias", options->settings.bias, "Variation of the coil's sensitivity; 0.1")
       ->check(CLI::Range(0.0, 0.5));
-  command->add_option("--noise-seed", options->settings.seed, "Another one gives other noise; 1");
+  command->add_option("--noise-seed", options->settings.seed, "Seed of the noise; 1");
   command->callback(
       [options, &context] { context.action = [options, &context] { return MakePhantom(*options, context); }; });
 }

@@ -22,7 +22,7 @@ constexpr const char* kExamples =
   fascicle plot 3f2a --series '*/reaction/*' --series 'energy/*'
   fascicle plot 3f2a --series '*volume_ratio' --out volume.png
   fascicle plot 3f2a 77c1 --series '*/reaction/end/z' --x probe/end/z --from 1 --out force_length.png
-  fascicle plot 3f2a --series 'probe/*' --json              times and values, one object for each series
+  fascicle plot 3f2a --series 'probe/*' --json              times and values, one object per series
 )";
 
 struct Options {
@@ -44,10 +44,10 @@ const SeriesTable::Column& ColumnOf(const SeriesTable& table, const std::string&
     if (column.name == name) return column;
     known += "\n  " + column.name;
   }
-  throw CommandError::Invalid("no series is called " + name + "; there are:" + known);
+  throw CommandError::Invalid("there is no series " + name + "; existing series:" + known);
 }
 
-// Puts a series in place of time, and leaves out what was before `from`.
+// Replaces time by a series as the abscissa, and drops everything before `from`.
 void SetAbscissa(const SeriesTable& table, const Options& options, std::vector<PlotPanel>& panels) {
   const SeriesTable::Column* const x = options.x.empty() ? nullptr : &ColumnOf(table, options.x);
   const std::vector<double>& times = table.times();
@@ -62,7 +62,7 @@ void SetAbscissa(const SeriesTable& table, const Options& options, std::vector<P
   }
 }
 
-// Adds a job's lines to the panels of other jobs with the same axes.
+// Adds the lines of a job to the panels of other jobs with the same axes.
 void Merge(const v1::Job& job, std::vector<PlotPanel> own, std::vector<PlotPanel>& panels) {
   for (PlotPanel& panel : own) {
     for (PlotLine& line : panel.lines) line.name = job.scene_name() + ": " + line.name;
@@ -93,7 +93,7 @@ std::vector<PlotPanel> PanelsOfJobs(Client& client, const Options& options) {
 int Plot(const Options& options, const Context& context) {
   Client client = Connect(context);
   const std::vector<PlotPanel> panels = PanelsOfJobs(client, options);
-  if (panels.empty()) throw CommandError::Invalid("all series stay zero; choose some with --series");
+  if (panels.empty()) throw CommandError::Invalid("all series are zero; choose some with --series");
   if (!options.out.empty()) WritePlot(panels, options.out);
   if (context.json) {
     for (const PlotPanel& panel : panels) {
@@ -115,15 +115,14 @@ int Plot(const Options& options, const Context& context) {
 }  // namespace
 
 void AddPlot(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "plot", "Plot series of jobs over time, or over each other", kExamples);
+  CLI::App* command = AddCommand(app, "plot", "Plot series of jobs over time, or over another series", kExamples);
   const auto options = std::make_shared<Options>();
-  command->add_option("JOB", options->jobs, "The job; several are drawn together")->required();
+  command->add_option("JOB", options->jobs, "The job; several are plotted together")->required();
   command->add_option("--series", options->series, "Series by name, with * and ?; may be repeated")
       ->type_name("GLOB")
       ->allow_extra_args(false);
-  command->add_option("--x", options->x, "The series that goes along x, in place of time")->type_name("SERIES");
-  command->add_option("--from", options->from, "Leave out what was before this time [s]")
-      ->check(CLI::NonNegativeNumber);
+  command->add_option("--x", options->x, "The series on the x axis, in place of time")->type_name("SERIES");
+  command->add_option("--from", options->from, "Omit everything before this time [s]")->check(CLI::NonNegativeNumber);
   command->add_option("--out", options->out, "Also draw a picture")->type_name("FILE.png");
   command->callback([options, &context] { context.action = [options, &context] { return Plot(*options, context); }; });
 }

@@ -10,7 +10,7 @@
 namespace fascicle::client {
 namespace {
 
-// What is left of a stage is worth a line from this part of the whole on.
+// The unaccounted part of a stage gets a line if it is at least this fraction of the whole.
 constexpr double kLeastRest = 0.001;
 
 struct Row {
@@ -29,7 +29,7 @@ Stages StagesOf(const v1::Profile& profile, bool concurrent) {
   return stages;
 }
 
-// Whether `name` is a part of `whole`, and none of a part; of the empty name are those without a slash.
+// Whether `name` is a direct child of `whole`; children of the empty name have no slash.
 bool IsPartOf(const std::string& whole, const std::string& name) {
   const std::size_t slash = name.rfind('/');
   return slash == std::string::npos ? whole.empty() : name.compare(0, slash, whole) == 0 && slash == whole.size();
@@ -43,7 +43,7 @@ double SecondsOfParts(const Stages& stages, const std::string& whole) {
   return sum;
 }
 
-// The parts of a stage, each followed by its own, and what they leave of it.
+// Adds rows for the children of a stage, recursively, and for the rest of its time.
 void AddRows(const Stages& stages, const v1::Profile::Stage& whole, int depth, double least_rest,
              std::vector<Row>& rows) {
   const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
@@ -98,7 +98,7 @@ void PrintProfile(const v1::Job& job) {
   for (const Row& row : rows) Print(row, width, profile.wall_seconds());
   std::printf("processor time of all threads %.4g s\n", profile.cpu_seconds());
   if (profile.runs() < job.attempt()) {
-    std::printf("%d of %d runs: what a killed server had not stored is missing\n", profile.runs(), job.attempt());
+    std::printf("%d of %d runs; the others were killed before they stored a profile\n", profile.runs(), job.attempt());
   }
   if (concurrent.empty()) return;
   std::printf("meanwhile, in the thread that stores frames:\n");

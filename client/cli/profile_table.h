@@ -6,11 +6,11 @@
 
 namespace fascicle::client {
 
-// Where the time of a job went, as a table on stdout: each stage with its calls, seconds and part of the whole, and
-// what is left of a stage beside its parts. A line that says so for a job without profile.
+// Prints the profile of a job as a table: each stage with its calls, seconds and fraction of the whole, and the time of
+// a stage outside of its parts. For a job without a profile, prints a line that says so.
 void PrintProfile(const v1::Job& job);
 
-// The same as an object; null for a job without profile.
+// The same as an object; null for a job without a profile.
 Json ProfileJson(const v1::Job& job);
 
 }  // namespace fascicle::client

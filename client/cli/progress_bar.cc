@@ -75,7 +75,7 @@ void ProgressBar::Say(const std::string& line) {
 
 std::string ProgressBar::Text(std::size_t bar_width) const {
   std::string text = StateName(state_);
-  if (state_ == v1::Job::STATE_QUEUED) return text + ", " + std::to_string(queue_position_) + " before it";
+  if (state_ == v1::Job::STATE_QUEUED) return text + ", " + std::to_string(queue_position_) + " ahead of it";
   if (bar_width > 0) {
     const double filled = std::clamp(progress_.fraction(), 0.0, 1.0) * static_cast<double>(bar_width);
     text += " [";

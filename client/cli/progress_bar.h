@@ -10,7 +10,8 @@
 
 namespace fascicle::client {
 
-// Shows on stderr how far a job is: a bar that is redrawn on a terminal, otherwise a line now and then. Thread-safe.
+// Shows the progress of a job on stderr: a bar that is redrawn on a terminal, otherwise a line from time to time.
+// Thread-safe.
 class ProgressBar {
  public:
   ProgressBar();
@@ -22,7 +23,7 @@ class ProgressBar {
   bool on_terminal() const { return on_terminal_; }
   void Show(v1::Job::State state, const v1::Progress& progress, int queue_position = 0);
   void SetFrames(std::int64_t frames);
-  // A line of its own, above the bar.
+  // Prints a separate line above the bar.
   void Say(const std::string& line);
 
  private:

@@ -30,16 +30,16 @@ constexpr const char* kExamples =
   fascicle render 3f2a --out fibres.png --fibres --view front --size 900x1200
   fascicle render 3f2a --out a.png --colour volume_ratio --range 0.98 1.02 --azimuth 30 --elevation 15
 
-  fascicle render 3f2a --out all.png --frames all                 panels side by side, with one scale of colours
+  fascicle render 3f2a --out all.png --frames all                 panels side by side, with a common colour scale
   fascicle render 3f2a --out series.png --frames 0,2,4 --style volume
-  fascicle render 3f2a --out release.gif --frames all --fps 12    one after the other, as an animated GIF
+  fascicle render 3f2a --out release.gif --frames all --fps 12    an animated GIF
   fascicle render 3f2a --out cut.png --style slices --scan arm.mha
-  fascicle render 3f2a --out round.gif --turntable 48 --smooth    the eye goes round the last frame
+  fascicle render 3f2a --out round.gif --turntable 48 --smooth    the view rotates around the last frame
 
-Styles: surface (shaded; --wireframe adds the edges, --smooth takes the steps of voxels away), wireframe (edges alone),
+Styles: surface (shaded; --wireframe adds the edges, --smooth smooths voxel steps), wireframe (edges only),
 volume (rays cast through the body), slices (the outline of the deformed bodies on slices of the scan). Bodies of the
-eulerian method are surfaces: they have the styles surface and wireframe, and no --fibres.
-Needs no display: without one it draws on a virtual one (Xvfb).
+eulerian method are surfaces: only the styles surface and wireframe apply, without --fibres.
+Needs no display: without one it uses a virtual display (Xvfb).
 )";
 
 struct Options {
@@ -101,7 +101,7 @@ std::int64_t FrameIndex(const std::string& text, const v1::Job& job) {
   return index;
 }
 
-// "all", or numbers with commas between; a GIF takes any number of them.
+// "all", or numbers separated by commas. Any number for a GIF.
 std::vector<std::int64_t> FrameIndices(const Options& options, const v1::Job& job) {
   if (options.frames.empty()) return {FrameIndex(options.frame, job)};
   std::vector<std::int64_t> indices;
@@ -141,7 +141,7 @@ PictureOptions PictureOf(const Options& options, const v1::Job& job, const v1::F
   return picture;
 }
 
-// Bodies of the eulerian method come as their surface alone: there is no inside to look into.
+// Bodies of the eulerian method are surfaces without an interior.
 void CheckCanBeSeen(const Options& options, const v1::Geometry& geometry) {
   const bool inside = options.style == "volume" || options.style == "slices";
   if (!inside && !options.fibres) return;
@@ -149,12 +149,12 @@ void CheckCanBeSeen(const Options& options, const v1::Geometry& geometry) {
     if (body.triangles().empty()) continue;
     throw CommandError::Invalid((inside ? "--style " + options.style : std::string("--fibres")) + ": the body `" +
                                 body.name() +
-                                "` is a surface, without elements inside; take the style surface or "
+                                "` is a surface, without elements inside; use the style surface or "
                                 "wireframe, and --colour for fields of fibres");
   }
 }
 
-// The scan with what the bodies of a frame fill of it.
+// Draws the scan with the outline of a frame's bodies.
 void DrawOnScan(const Options& options, const v1::Geometry& geometry, const v1::Frame& frame,
                 const PictureOptions& picture) {
   Problems problems;
@@ -175,7 +175,7 @@ void DrawOnScan(const Options& options, const v1::Geometry& geometry, const v1::
     input.names.push_back(shapes[b].name);
   }
   if (std::all_of(labels.begin(), labels.end(), [](std::uint8_t label) { return label == 0; })) {
-    throw CommandError::Invalid("--scan: no body lies in the image; it must be the one that the scene was made of");
+    throw CommandError::Invalid("--scan: no body is inside of the image; it must be the image of the scene");
   }
   input.size = scan->size;
   input.spacing = scan->spacing;
@@ -187,11 +187,11 @@ void DrawOnScan(const Options& options, const v1::Geometry& geometry, const v1::
 
 int Render(const Options& options, const Context& context) {
   if ((options.style == "slices") != !options.scan.empty()) {
-    throw CommandError::Invalid("--style slices and --scan go together: the outline is drawn on the scan");
+    throw CommandError::Invalid("--style slices and --scan must be used together: the outline is drawn on the scan");
   }
   (void)ParseSize(options.size);
   if (options.turntable > 0 && !IsGif(options)) {
-    throw CommandError::Invalid("--turntable: turns in an animated GIF; let --out end in .gif");
+    throw CommandError::Invalid("--turntable: needs an animated GIF: --out must end in .gif");
   }
   Client client = Connect(context);
   const std::string name = JobName(options.job);
@@ -242,35 +242,36 @@ void AddRender(CLI::App& app, Context& context) {
   command->add_option("JOB", options->job, "The job")->required();
   command->add_option("--out", options->out, "The picture, or animation")->required()->type_name("FILE.png|FILE.gif");
   const auto frame = command->add_option("--frame", options->frame, "Index of the frame, or `last`");
-  command->add_option("--frames", options->frames, "Several: indices with commas between, or `all`")
+  command->add_option("--frames", options->frames, "Several frames: indices separated by commas, or `all`")
       ->excludes(frame)
       ->type_name("I,J,...");
   command->add_option("--style", options->style, "How bodies are drawn")
       ->check(CLI::IsMember({"surface", "wireframe", "volume", "slices"}));
-  command->add_flag("--smooth", options->smooth, "Draw the surface without the steps between voxels");
-  command->add_option("--scan", options->scan, "The image under the outlines of --style slices, in the place it has")
-      ->type_name("FILE...");
-  command->add_option("--turntable", options->turntable, "Go round the body in so many pictures (GIF)")
+  command->add_flag("--smooth", options->smooth, "Smooth the steps between voxels");
+  command->add_option("--scan", options->scan, "The image for the outlines of --style slices")->type_name("FILE...");
+  command
+      ->add_option("--turntable", options->turntable,
+                   "Rotate the view around the body in this number of pictures (GIF)")
       ->check(CLI::Range(2, 360));
-  command->add_option("--fps", options->fps, "Pictures a second of a GIF")->check(CLI::Range(0.1, 50.0));
+  command->add_option("--fps", options->fps, "Pictures per second of a GIF")->check(CLI::Range(0.1, 50.0));
   command->add_option("--colour,--color", options->colour,
-                      "What to colour by: displacement, a field of the frame, NAME/COMPONENT, or none");
-  command->add_option("--range", options->range, "Values at the ends of the colour scale, in the field's unit")
+                      "Quantity to colour by: displacement, a field of the frame, NAME/COMPONENT, or none");
+  command->add_option("--range", options->range, "Range of the colour scale, in the field's unit")
       ->expected(2)
       ->type_name("LOW HIGH");
   command->add_flag("--wireframe", options->wireframe, "Draw the edges");
-  command->add_flag("--no-surface", options->no_surface, "Leave the surface out");
-  command->add_flag("--no-rest", options->no_rest, "Leave the outline of the rest shape out");
+  command->add_flag("--no-surface", options->no_surface, "Do not draw the surface");
+  command->add_flag("--no-rest", options->no_rest, "Do not draw the outline of the rest shape");
   command->add_flag("--fibres", options->fibres, "Draw the fibres, through a transparent surface");
   std::vector<std::string> views = {"auto"};
   for (const auto& [view, angles] : Views()) views.push_back(view);
-  command->add_option("--view", options->view, "Where the eye stands")->check(CLI::IsMember(views));
-  command->add_option("--azimuth", options->azimuth, "Angle of the eye around z, from x to y [degree]");
-  command->add_option("--elevation", options->elevation, "Angle of the eye above the xy plane [degree]")
+  command->add_option("--view", options->view, "Viewpoint")->check(CLI::IsMember(views));
+  command->add_option("--azimuth", options->azimuth, "Angle of the viewpoint about z, from x to y [degree]");
+  command->add_option("--elevation", options->elevation, "Angle of the viewpoint above the xy plane [degree]")
       ->check(CLI::Range(-90.0, 90.0));
   command->add_option("--zoom", options->zoom, "Magnification")->check(CLI::Range(0.01, 100.0));
   command->add_option("--size", options->size, "Size of the picture [pixel]")->type_name("WxH");
-  command->add_option("--title", options->title, "Heading; the scene's name when not given");
+  command->add_option("--title", options->title, "Title; the scene's name by default");
   command->callback(
       [options, &context] { context.action = [options, &context] { return Render(*options, context); }; });
 }

@@ -25,14 +25,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExamples = R"(  fascicle run scene.json                         simulate and print what came out
+constexpr const char* kExamples = R"(  fascicle run scene.json                         simulate and print a summary
   fascicle run scene.json --out out               and keep series.csv, series.png, frames.pvd and last.png in out/
   fascicle run scene.json --threads 2 --data db   on two threads; the server's database stays in db/
-  fascicle run scene.json --profile               and print where the time went
+  fascicle run scene.json --profile               and print the time spent in each stage
   fascicle run scene.json --set 'bodies[0].activation.values=[0, 0.5]'
   fascicle run scene.json --json | jq .series     for programs
 
-Ctrl-C cancels the job (exit code 4); what was computed until then is kept.
+Ctrl-C cancels the job (exit code 4); results so far are kept.
 )";
 
 struct Options {
@@ -44,7 +44,7 @@ struct Options {
   bool profile = false;
 };
 
-// A folder that is removed in the end.
+// A temporary folder, removed by the destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -77,7 +77,7 @@ void WriteResults(const Followed& followed, const fs::path& folder) {
 int Run(const Options& options, const Context& context) {
   const ScenePackage package = LoadSceneOrFail(options.scene);
   std::stop_source interrupted;
-  // Before the server, whose threads must not take the signals.
+  // Created before the server, whose threads must not receive the signals.
   const Interrupts interrupts([&] { interrupted.request_stop(); });
   std::unique_ptr<TemporaryFolder> temporary;
   if (options.data.empty()) temporary = std::make_unique<TemporaryFolder>();
@@ -109,7 +109,7 @@ int Run(const Options& options, const Context& context) {
   }
   if (!options.out.empty()) {
     WriteResults(followed, options.out);
-    if (!context.json) std::cout << "results are in " << options.out << "\n";
+    if (!context.json) std::cout << "results written to " << options.out << "\n";
   }
   return ExitCodeOf(followed.job);
 }
@@ -117,16 +117,16 @@ int Run(const Options& options, const Context& context) {
 }  // namespace
 
 void AddRun(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "run", "Simulate a scene here: no server is needed", kExamples);
+  CLI::App* command = AddCommand(app, "run", "Simulate a scene on this machine, without a server", kExamples);
   const auto options = std::make_shared<Options>();
   AddSceneArgument(*command, options->scene);
   command->add_option("--out", options->out, "Folder for results: series.csv, frames.pvd, pictures, summary.json")
       ->type_name("DIR");
   command->add_option("--data", options->data, "Keep the server's database in this folder")->type_name("DIR");
-  command->add_option("--threads", options->threads, "Threads that step the scene; results do not depend on it")
+  command->add_option("--threads", options->threads, "Number of threads; results do not depend on it")
       ->check(CLI::Range(1, 256));
   command->add_flag("--digests", options->digests, "Print a line with the digest of each frame");
-  command->add_flag("--profile", options->profile, "Print where the time went, stage by stage");
+  command->add_flag("--profile", options->profile, "Print the time spent in each stage");
   command->callback([options, &context] { context.action = [options, &context] { return Run(*options, context); }; });
 }
 

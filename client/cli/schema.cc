@@ -23,18 +23,18 @@ using google::protobuf::Descriptor;
 using google::protobuf::EnumDescriptor;
 using google::protobuf::FieldDescriptor;
 
-constexpr const char* kExamples = R"(  fascicle schema                     everything that a scene can say
+constexpr const char* kExamples = R"(  fascicle schema                     all fields of a scene
   fascicle schema Body                one message; also by field name: `fascicle schema fusiform`
   fascicle schema --json              the same for programs, one object for each message and enum
 )";
 
 constexpr const char* kHeading =
     R"(A scene file is JSON with // and /* */ comments: an object with the fields of Scene below. Names of choices are short and
-lower-case ("mm", "mixed"). Lists of fixed length are written [x, y, z]. Of fields that say `one of`, give exactly one.
+lower-case ("mm", "mixed"). Lists of fixed length are written [x, y, z]. Give exactly one of the fields marked `one of`.
 
 )";
 
-// Messages and enums that a scene is made of, in the order in which they are met.
+// The messages and enums of a scene, in the order in which they are referred to.
 struct Types {
   std::vector<const Descriptor*> messages;
   std::vector<const EnumDescriptor*> enums;
@@ -161,7 +161,7 @@ Json EnumJson(const EnumDescriptor& type) {
   return {{"enum", type.name()}, {"comment", CommentOf(type)}, {"values", std::move(values)}};
 }
 
-// Keeps the types called `name`, or that a field of that name has.
+// Keeps the types called `name`, or the type of a field called so.
 void Select(const std::string& name, Types& types) {
   std::set<const void*> wanted;
   for (const Descriptor* message : types.messages) {
@@ -181,7 +181,7 @@ void Select(const std::string& name, Types& types) {
   if (wanted.empty()) {
     std::string known;
     for (const Descriptor* message : types.messages) known += (known.empty() ? "" : ", ") + message->name();
-    throw CommandError::Invalid("a scene has no `" + name + "`; there are: " + known);
+    throw CommandError::Invalid("a scene has no `" + name + "`; known names: " + known);
   }
   std::erase_if(types.messages, [&](const Descriptor* message) { return !wanted.contains(message); });
   std::erase_if(types.enums, [&](const EnumDescriptor* type) { return !wanted.contains(type); });
@@ -205,7 +205,7 @@ int Schema(const std::string& name, const Context& context) {
 }  // namespace
 
 void AddSchema(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "schema", "What a scene can say: fields, units, ranges, defaults", kExamples);
+  CLI::App* command = AddCommand(app, "schema", "The fields of a scene: units, ranges, defaults", kExamples);
   const auto name = std::make_shared<std::string>();
   command->add_option("NAME", *name, "One message, enum or field");
   command->callback([name, &context] { context.action = [name, &context] { return Schema(*name, context); }; });

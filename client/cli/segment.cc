@@ -17,15 +17,15 @@ namespace fascicle::client {
 namespace {
 
 constexpr const char* kExamples =
-    R"(  fascicle phantom arm.mha --truth truth.mha                  an arm to try it on
+    R"(  fascicle phantom arm.mha --truth truth.mha                  a synthetic arm
   fascicle segment arm.mha --filter wavelet --seed 98,119,35 --opening 0.6 --out anconeus.mha --picture anconeus.png
-  fascicle segment arm.mha --seed 98,119,35 --truth truth.mha --truth-label 4     how well it is found
+  fascicle segment arm.mha --seed 98,119,35 --truth truth.mha --truth-label 4     compare with the true anatomy
   fascicle segment thigh.nii.gz --filter bias-field --filter wavelet --classes 4 --class 3 --opening 2 --picture muscles.png
   fascicle segment ct/ --thresholds 200 --class 1 --out bone.mha          a DICOM series in a folder
   fascicle segment scan.raw --raw-size 140,220,71 --raw-spacing 0.5,0.5,1 --class 1
-  fascicle segment labels.mha --label 1 --label 2 --picture both.png      what is labelled already
+  fascicle segment labels.mha --label 1 --label 2 --picture both.png      an existing segmentation
 
-Region, resampling, filters, classes, opening, parts and holes are gone through in this order. Look at the picture before
+Steps in order: region, resampling, filters, classes, opening, islands, holes. Check the picture before
 you trust the result. The label image has 1 where the body is, or 1, 2, ... for the labels in their order.
 )";
 
@@ -39,17 +39,17 @@ Json StatisticsJson(const ClassStatistics& statistics) {
           {"highest", statistics.highest}, {"mean", statistics.mean},     {"deviation", statistics.deviation}};
 }
 
-// The overlap with the label of a given image of the same size.
+// Dice coefficient with a label of a reference image of the same size.
 std::optional<double> OverlapWithTruth(const Options& options, const StagedImage& staged, const GivenImage& given,
                                        Problems& problems) {
   if (options.truth.empty()) return std::nullopt;
-  if (given.stage.resample) problems.Add("--truth", "can't be compared with a resampled image", "");
+  if (given.stage.resample) problems.Add("--truth", "cannot be compared with a resampled image", "");
   Problems found;
   std::optional<VolumeImage> truth = ReadVolumeFiles({options.truth}, {}, found);
   problems.Append(options.truth, found);
   if (!truth || !problems.empty()) return std::nullopt;
   if (truth->size != given.image.size) {
-    problems.Add("--truth", "its size is another than the image's", "");
+    problems.Add("--truth", "its size differs from the image's", "");
     return std::nullopt;
   }
   if (given.stage.region) truth = Crop(*truth, *given.stage.region);
@@ -84,7 +84,7 @@ void PrintReport(const Options& options, const StagedImage& staged, const std::o
                     !labels && static_cast<int>(c) == staged.wanted_class ? "   wanted" : "");
   }
   PrintStatistics("body", staged.body_statistics, "");
-  if (overlap) std::printf("\nDice overlap with the truth  %.4f\n", *overlap);
+  if (overlap) std::printf("\nDice coefficient with the truth  %.4f\n", *overlap);
   for (const std::string& file : {options.out, options.picture}) {
     if (!file.empty()) std::cout << "written to " << file << '\n';
   }
@@ -128,13 +128,13 @@ int Segment(const Options& options, const Context& context) {
 }  // namespace
 
 void AddSegment(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "segment", "Find a body in a scan", kExamples);
+  CLI::App* command = AddCommand(app, "segment", "Segment a body in a scan", kExamples);
   const auto options = std::make_shared<Options>();
   AddImageOptions(*command, *options);
   command->add_option("--out", options->out, "Write the body as a label image: .mha, .nrrd, .nii or .nii.gz")
       ->type_name("FILE");
   CLI::Option* truth =
-      command->add_option("--truth", options->truth, "A label image to compare with: prints the Dice overlap")
+      command->add_option("--truth", options->truth, "A label image to compare with: prints the Dice coefficient")
           ->type_name("FILE");
   command->add_option("--truth-label", options->truth_label, "Value of the body in it; 1")->needs(truth);
   command->callback(

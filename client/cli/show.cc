@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kExamples = R"(  fascicle show jobs/3f2a             where a job stands, and why it failed
   fascicle show 3f2a --scene          its scene, as a scene file
-  fascicle show 3f2a --profile        where its time went, stage by stage
+  fascicle show 3f2a --profile        the time spent in each stage
 )";
 
 struct Options {
@@ -78,8 +78,7 @@ void AddShow(CLI::App& app, Context& context) {
   const auto options = std::make_shared<Options>();
   command->add_option("JOB", options->job, "The job")->required();
   CLI::Option* scene = command->add_flag("--scene", options->scene, "Print the job's scene instead");
-  command->add_flag("--profile", options->profile, "Print where its time went instead, stage by stage")
-      ->excludes(scene);
+  command->add_flag("--profile", options->profile, "Print the time spent in each stage instead")->excludes(scene);
   command->callback([options, &context] { context.action = [options, &context] { return Show(*options, context); }; });
 }
 

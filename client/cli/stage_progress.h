@@ -6,8 +6,8 @@
 
 namespace fascicle::client {
 
-// Shows on stderr how far work in this process is: a bar that is redrawn on a terminal, otherwise a line now and then.
-// From one thread.
+// Shows the progress of work in this process on stderr: a bar that is redrawn on a terminal, otherwise a line from time
+// to time. Not thread-safe.
 class StageProgress {
  public:
   StageProgress();
@@ -16,7 +16,7 @@ class StageProgress {
   StageProgress(const StageProgress&) = delete;
   StageProgress& operator=(const StageProgress&) = delete;
 
-  // `fraction` of the whole is done, and what comes next.
+  // Reports the completed fraction and the next stage.
   void Show(double fraction, const std::string& stage);
 
  private:

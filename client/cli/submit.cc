@@ -40,7 +40,7 @@ void AddSubmit(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "submit", "Send a scene to a server and return at once", kExamples);
   const auto options = std::make_shared<Options>();
   AddSceneArgument(*command, options->scene);
-  command->add_option("--threads", options->threads, "Threads that step the scene; the server's default when 0")
+  command->add_option("--threads", options->threads, "Number of threads; 0: the server's default")
       ->check(CLI::Range(0, 256));
   command->callback(
       [options, &context] { context.action = [options, &context] { return Submit(*options, context); }; });

@@ -21,7 +21,7 @@ Extremes ExtremesOf(const std::vector<double>& values) {
   Extremes extremes;
   for (const double value : values) {
     extremes.final = value;
-    extremes.lowest = std::fmin(extremes.lowest, value);  // passes over NaN
+    extremes.lowest = std::fmin(extremes.lowest, value);  // ignores NaN
     extremes.highest = std::fmax(extremes.highest, value);
   }
   return extremes;
@@ -109,7 +109,7 @@ void PrintSummary(const Followed& followed) {
     std::printf(", t = %.6g s, %lld steps", table.times().back(), static_cast<long long>(table.steps().back()));
   }
   const double wall = WallSeconds(job);
-  if (std::isfinite(wall)) std::printf(", took %.3g s", wall);
+  if (std::isfinite(wall)) std::printf(", wall time %.3g s", wall);
   std::printf("\n");
   if (job.has_failure()) PrintFailure(job.failure());
   for (const v1::BodyGeometry& body : followed.geometry.bodies()) {

@@ -7,15 +7,15 @@
 
 namespace fascicle::client {
 
-// What a job came to: state, frames, and final, lowest and highest value of every series in its table, notes on bodies.
+// The outcome of a job: state, frames, final, lowest and highest value of every series, notes on bodies.
 Json SummaryJson(const Followed& followed);
 // The same as a table on stdout; the failure, if any, with its advice.
 void PrintSummary(const Followed& followed);
 
-// 0, 1 or 4, by the job's final state; 0 while it goes on.
+// 0, 1 or 4 for the job's final state; 0 while it is running.
 int ExitCodeOf(const v1::Job& job);
 
-// A job as `show`, `list`, `submit` and others print it.
+// A job in the form in which `show`, `list`, `submit` and others print it.
 Json JobJson(const v1::Job& job);
 void PrintFailure(const v1::Failure& failure);
 

@@ -18,7 +18,7 @@ struct Range {
     low = std::min(low, value);
     high = std::max(high, value);
   }
-  // Room for a line that is level.
+  // Extends an empty range, for constant lines.
   void Widen() {
     const double size = std::max(std::abs(low), std::abs(high));
     if (high - low > 1e-12 * size) return;
@@ -70,7 +70,7 @@ class BrailleCanvas {
  private:
   void Dot(int x, int y, int colour) {
     if (x < 0 || y < 0 || x >= 2 * width_ || y >= 4 * height_) return;
-    // Bits of U+2800 in the order of Unicode: the fourth row was added to the first six dots later.
+    // Bits of U+2800 in Unicode's order: the fourth row was added later than the first six dots.
     constexpr std::uint8_t kBits[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
     const std::size_t cell = static_cast<std::size_t>((y / 4) * width_ + x / 2);
     dots_[cell] |= kBits[y % 4][x % 2];
@@ -114,7 +114,7 @@ std::string TerminalPlot(const PlotPanel& panel, int width, int height, bool col
   for (std::size_t l = 0; l < panel.lines.size(); ++l) {
     const PlotLine& line = panel.lines[l];
     for (std::size_t i = 0; i < line.x.size(); ++i) {
-      // From the point before to this one; a point without neighbours stays a dot.
+      // Draws a line from the previous point; a point without neighbours is a dot.
       const std::size_t from = i > 0 && std::isfinite(line.y[i - 1]) ? i - 1 : i;
       if (!std::isfinite(line.x[i]) || !std::isfinite(line.y[i])) continue;
       canvas.Line(x.Part(line.x[from]), y.Part(line.y[from]), x.Part(line.x[i]), y.Part(line.y[i]),

@@ -7,8 +7,8 @@
 
 namespace fascicle::client {
 
-// A panel drawn with Braille characters (2 x 4 dots each), with axes and a legend; each line in a colour of its own
-// when `coloured`. `width` and `height` [character] of the drawing without its labels.
+// Draws a panel with Braille characters (2 x 4 dots each), with axes and a legend, each line in its own colour if
+// `coloured`. `width` and `height` [character] exclude the labels.
 std::string TerminalPlot(const PlotPanel& panel, int width, int height, bool coloured);
 
 }  // namespace fascicle::client

@@ -11,13 +11,13 @@ namespace fascicle::client {
 namespace {
 
 constexpr const char* kExamples =
-    R"(  fascicle validate scene.json            every problem on a line of its own, exit code 2
+    R"(  fascicle validate scene.json            one line per problem, exit code 2
   fascicle validate scene.json --json     the same as one object
 )";
 
 int Validate(const SceneArgument& scene, const Context& context) {
   const ScenePackage package = LoadSceneOrFail(scene);
-  // The server knows all rules; without one, one is started here.
+  // The server knows all rules. Without one, one is started in this process.
   std::unique_ptr<server::EmbeddedServer> own;
   if (context.server.empty()) own = server::EmbeddedServer::Start({});
   Client client(own ? own->address() : context.server);

@@ -13,13 +13,13 @@ namespace fascicle::client {
 namespace {
 
 constexpr const char* kExamples =
-    R"(  fascicle phantom arm.mha                                    an arm to try it on
+    R"(  fascicle phantom arm.mha                                    a synthetic arm
   fascicle voxelize arm.mha --filter wavelet --seed 98,119,35 --opening 0.6       the levels of the muscle, as a table
   fascicle voxelize labels.mha --label 1 --fraction 0.25 --level 2 --out coarse.mha
   fascicle voxelize labels.mha --label 1 --level 1 --picture coarse.png
 
-What is the body is said as for `fascicle segment`. A voxel of the next level joins 2 x 2 x 2 and is solid where the given
-fraction of them is. --out and --picture show the level that --level names.
+The body is selected as for `fascicle segment`. A voxel of the next level joins 2 x 2 x 2 and is solid if the given
+fraction of them is solid. --out and --picture show the level given by --level.
 )";
 
 struct Options : ImageOptions {
@@ -61,7 +61,7 @@ Json TableJson(const Options& options, const std::vector<VoxelLevel>& hierarchy)
   return report;
 }
 
-// The voxels of a level over the image: each voxel of it gets the material of that which holds its centre.
+// Shows the voxels of a level in the image: each voxel of the image gets the material at its centre.
 void ShowLevel(const VoxelGrid& level, StagedImage& staged) {
   VolumeImage labels = MakeLabelImage(level);
   const VolumeImage& image = staged.image;
@@ -82,8 +82,8 @@ int Voxelize(const Options& options, const Context& context) {
   StagedImage staged = RunStage(options, given);
   const std::vector<VoxelLevel> hierarchy = MakeHierarchy(staged.grid, options.fraction, options.levels);
   if (options.level >= static_cast<int>(hierarchy.size())) {
-    problems.Add("--level", "has no voxels: there are levels 0 to " + std::to_string(hierarchy.size() - 1),
-                 "take a lower one, or a smaller --fraction");
+    problems.Add("--level", "has no voxels: existing levels are 0 to " + std::to_string(hierarchy.size() - 1),
+                 "use a lower level, or a smaller --fraction");
     throw CommandError({Error::Kind::kInvalid, "there is no such level", "INVALID_IMAGE", problems});
   }
   const VoxelGrid& level = hierarchy[options.level].grid;
@@ -105,13 +105,13 @@ int Voxelize(const Options& options, const Context& context) {
 }  // namespace
 
 void AddVoxelize(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "voxelize", "Make levels of voxels of a body in a scan", kExamples);
+  CLI::App* command = AddCommand(app, "voxelize", "Coarsen a segmented body to levels of voxels", kExamples);
   const auto options = std::make_shared<Options>();
   AddImageOptions(*command, *options);
-  command->add_option("--levels", options->levels, "At most so many; 5")->check(CLI::Range(1, 11));
-  command->add_option("--fraction", options->fraction, "Of the eight voxels that must be solid, above 0; 0.5")
+  command->add_option("--levels", options->levels, "Largest number of levels; 5")->check(CLI::Range(1, 11));
+  command->add_option("--fraction", options->fraction, "Part of the eight voxels that must be solid, above 0; 0.5")
       ->check(CLI::Range(0.01, 1.0));
-  command->add_option("--level", options->level, "The one that is written and drawn, from 0 at the finest")
+  command->add_option("--level", options->level, "The level to write and draw, counted from 0, the finest")
       ->check(CLI::Range(0, 10));
   command->add_option("--out", options->out, "Write a level as a label image: .mha, .nrrd, .nii or .nii.gz")
       ->type_name("FILE");

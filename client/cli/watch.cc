@@ -16,10 +16,10 @@ namespace {
 
 constexpr const char* kExamples =
     R"(  fascicle watch jobs/3f2a             follow a job to its end, then print what came out
-  fascicle watch 3f2a --digests        and a line for each frame: index, time, SHA-256 of its numbers
-  fascicle watch 3f2a --from 12        start with frame 12: the frames are the same however often one joins
+  fascicle watch 3f2a --digests        also a line for each frame: index, time, SHA-256 of its numbers
+  fascicle watch 3f2a --from 12        start with frame 12: frames do not depend on when one joins
 
-Ctrl-C leaves (exit code 4); the job goes on.
+Ctrl-C leaves (exit code 4); the job continues.
 )";
 
 struct Options {
@@ -47,7 +47,7 @@ int Watch(const Options& options, const Context& context) {
     if (options.profile) PrintProfile(followed.job);
   }
   if (followed.stopped) {
-    std::cerr << "fascicle: left " << followed.job.name() << "; it goes on. To stop it: fascicle cancel "
+    std::cerr << "fascicle: left " << followed.job.name() << "; it continues. To stop it: fascicle cancel "
               << followed.job.name() << '\n';
     return kCancelled;
   }
@@ -62,7 +62,7 @@ void AddWatch(CLI::App& app, Context& context) {
   command->add_option("JOB", options->job, "The job, as `submit` and `list` print it")->required();
   command->add_option("--from", options->from, "First frame to read")->check(CLI::NonNegativeNumber);
   command->add_flag("--digests", options->digests, "Print a line with the digest of each frame");
-  command->add_flag("--profile", options->profile, "Print where the time went, stage by stage");
+  command->add_flag("--profile", options->profile, "Print the time spent in each stage");
   command->callback([options, &context] { context.action = [options, &context] { return Watch(*options, context); }; });
 }
 

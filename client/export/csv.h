@@ -9,11 +9,11 @@
 
 namespace fascicle::client {
 
-// Comma-separated text by RFC 4180 with a heading: `frame,time [s],step,NAME [UNIT],...`. Numbers are written so that
-// they read back as the same number; a value that is not a number is left empty.
+// Comma-separated text by RFC 4180 with a header: `frame,time [s],step,NAME [UNIT],...`. Numbers read back as the same
+// number; NaN is an empty field.
 std::string CsvOf(const SeriesTable& table);
 
-// The same for any columns of equal length; a heading is `NAME [UNIT]`.
+// The same for any columns of equal length; a header entry is `NAME [UNIT]`.
 struct CsvColumn {
   std::string heading;
   std::vector<double> values;

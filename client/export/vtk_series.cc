@@ -133,7 +133,7 @@ std::string Exact(double value) {
 
 VtkSeriesWriter::VtkSeriesWriter(const v1::Geometry& geometry, fs::path folder)
     : folder_(std::move(folder)), shapes_(DecodeGeometry(geometry)) {
-  // Names come from the server, which checks them; a wrong one must not lead out of the folder all the same.
+  // Names come from the server, which checks them. They must not lead out of the folder in any case.
   for (const BodyShape& shape : shapes_) {
     if (shape.name.empty() || shape.name.find('/') != std::string::npos) {
       throw std::runtime_error("the server sent a body with the unusable name \"" + shape.name + "\"");

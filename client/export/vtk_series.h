@@ -10,17 +10,17 @@
 
 namespace fascicle::client {
 
-// Writes frames as a VTK series that ParaView and others open: one .vtu for each body and frame (binary, appended,
-// zlib), and frames.pvd with their times [s]. Nodes carry `displacement` [m], the frame's node fields and a flag for
-// each region; elements carry the frame's element fields and `rest_fibre`. Each file appears whole or not at all.
-// Not thread-safe. Functions throw std::runtime_error with a message for people.
+// Writes frames as a VTK series for ParaView and other programs: one .vtu for each body and frame (binary, appended,
+// zlib), and frames.pvd with their times [s]. Nodes have `displacement` [m], the frame's node fields and a flag for
+// each region; elements have the frame's element fields and `rest_fibre`. Each file is complete or absent. Not
+// thread-safe. Functions throw std::runtime_error with a message for users.
 class VtkSeriesWriter {
  public:
-  // Folders are made as needed; files of an earlier series in `folder` are overwritten.
+  // Creates folders as needed. Files of an earlier series in `folder` are overwritten.
   VtkSeriesWriter(const v1::Geometry& geometry, std::filesystem::path folder);
 
   void Add(const v1::Frame& frame);
-  // Writes frames.pvd, which names all frames added so far.
+  // Writes frames.pvd, which lists all frames added so far.
   void Finish() const;
 
  private:

@@ -33,7 +33,7 @@ constexpr std::size_t kLabelsTold = 20;
 
 using Index = std::array<int, 3>;
 
-// From voxel indices to places.
+// Maps voxel indices to positions.
 struct Image {
   vtkSmartPointer<vtkImageData> data;
   Eigen::Affine3d place = Eigen::Affine3d::Identity();
@@ -49,7 +49,7 @@ bool IsMetaImage(const std::string& name) {
   return lower.ends_with(".mha") || lower.ends_with(".mhd");
 }
 
-// The directions of a MetaImage's axes, which VTK's reader leaves out: its columns are those of the axes.
+// The directions of a MetaImage's axes, which VTK's reader ignores.
 Eigen::Matrix3d Directions(const std::filesystem::path& path) {
   constexpr int kLongestHeader = 200;  // lines
   Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
@@ -100,7 +100,7 @@ std::optional<Image> ReadNifti(const std::filesystem::path& path, vtkCallbackCom
 }
 
 std::optional<Image> ReadImage(const std::filesystem::path& path, Problems& problems) {
-  // VTK would print errors by itself.
+  // Otherwise VTK would print errors itself.
   bool failed = false;
   vtkNew<vtkCallbackCommand> on_error;
   on_error->SetClientData(&failed);
@@ -124,7 +124,7 @@ std::optional<Image> ReadImage(const std::filesystem::path& path, Problems& prob
   return image;
 }
 
-// The voxels of a label: 1 in a box with room around them, everything else 0.
+// The voxels of a label: 1 in a box with a margin, everything else 0.
 struct Mask {
   vtkNew<vtkImageData> data;  // float, in index space
   std::int64_t voxels = 0;
@@ -141,7 +141,8 @@ void AddUnknownLabel(vtkDataArray& values, int label, Problems& problems) {
     if (value != 0) known << (known.tellp() > 0 ? ", " : "") << value;
   }
   problems.Add("", "no voxel has the label " + std::to_string(label),
-               known.tellp() > 0 ? (many ? "some that there are: " : "there are: ") + known.str() : "all voxels are 0");
+               known.tellp() > 0 ? (many ? "some of the existing labels: " : "existing labels: ") + known.str()
+                                 : "all voxels are 0");
 }
 
 bool MakeMask(const Image& image, int label, double smoothing, Mask& mask, Problems& problems) {
@@ -200,7 +201,7 @@ TriangleMesh SurfaceAt(vtkImageData& blurred, double level) {
   return surface;
 }
 
-// The surface in index space that encloses as much as the voxels: less for a higher level.
+// The surface in index space that encloses the given volume; the volume decreases with the level.
 TriangleMesh SurfaceOfVolume(vtkImageData& blurred, double volume) {
   double low = 0.02, high = 0.98, level = 0.5;
   TriangleMesh surface;
@@ -235,7 +236,7 @@ std::optional<LabelSurface> ReadLabelSurface(const std::filesystem::path& path, 
   LabelSurface result;
   result.surface = SurfaceOfVolume(*blur->GetOutput(), voxels);
   if (result.surface.triangles.empty()) {
-    problems.Add("", "the label has " + std::to_string(mask.voxels) + " voxels, of which smoothing leaves nothing",
+    problems.Add("", "the label has " + std::to_string(mask.voxels) + " voxels, all of which disappear by smoothing",
                  "smooth less");
     return std::nullopt;
   }

@@ -10,7 +10,7 @@
 
 namespace fascicle::client {
 
-// A label of an image as a closed surface, in the image's unit, mostly mm.
+// A label of an image as a closed surface, in the image's unit, usually mm.
 struct LabelSurface {
   TriangleMesh surface;
   double voxel_volume = 0;    // of all voxels of the label
@@ -20,9 +20,9 @@ struct LabelSurface {
 // Whether a file's extension is that of an image: .mha, .mhd, .nii or .nii.gz.
 bool IsImageName(const std::string& name);
 
-// Reads an image of one component a voxel, and makes a surface of the voxels whose value is `label`, smoothed by a
-// Gaussian of `smoothing` voxels (standard deviation, 0.3 to 10) so that the volume stays. Adds to `problems` (with
-// empty paths) what is wrong with the file, or the labels that there are when this one is none of them.
+// Reads an image with one component per voxel and makes a surface of the voxels whose value is `label`, smoothed by a
+// Gaussian of `smoothing` voxels (standard deviation, 0.3 to 10) with the volume preserved. Adds to `problems` (with
+// empty paths) what is wrong with the file, or the existing labels if this one does not exist.
 std::optional<LabelSurface> ReadLabelSurface(const std::filesystem::path& path, int label, double smoothing,
                                              Problems& problems);
 

@@ -12,16 +12,16 @@
 
 namespace fascicle::client {
 
-// A part of the tetrahedra that shares no face with the others, with nodes of its own numbering.
+// Face-connected tetrahedra, with their own node numbering.
 struct MeshBody {
-  std::vector<std::size_t> tetrahedra;                   // indices into Tetrahedra
-  std::vector<std::int32_t> nodes;                       // node indices of the model: corners and middles, ascending
-  std::vector<std::int32_t> parts;                       // indices of its parts, in the order of the model
-  std::unordered_map<std::int32_t, std::int32_t> local;  // index in `nodes` of a node of the model
-  std::vector<char> is_corner;                           // of each of its nodes
+  std::vector<std::size_t> tetrahedra;  // indices into Tetrahedra
+  std::vector<std::int32_t> nodes;      // node indices of the model: corners and mid-edge nodes, ascending
+  std::vector<std::int32_t> parts;      // indices of its parts, in the order of the model
+  std::unordered_map<std::int32_t, std::int32_t> local;  // maps a node of the model to its index in `nodes`
+  std::vector<char> is_corner;                           // for each of its nodes
   std::vector<Triangle> surface;                         // outward, in node indices of the model
   std::vector<Triangle> surface_keys;                    // the same with ascending nodes, sorted
-  bool quadratic = false;                                // of ten nodes
+  bool quadratic = false;                                // ten-node elements
 
   bool HasSurface(const Triangle& triangle) const;
   bool HasCorner(std::int32_t node) const {

@@ -8,7 +8,7 @@
 namespace fascicle::client {
 
 std::string NewName(const std::string& wanted, std::set<std::string>& taken) {
-  constexpr std::size_t kLongest = 56;  // of 64, so that a number fits behind
+  constexpr std::size_t kLongest = 56;  // of 64, to leave room for a number
   std::string name;
   for (const char c : wanted.substr(0, kLongest)) {
     const bool good =
@@ -17,7 +17,7 @@ std::string NewName(const std::string& wanted, std::set<std::string>& taken) {
   }
   if (name.empty() || name == "." || name == "..") name = "part";
   std::string unique = name;
-  // Where there are many, numbers go on from their count: no search from 2 for each.
+  // With many names, numbers continue from their count, to avoid a search from 2 for each.
   for (std::size_t k = taken.size() < 100 ? 2 : taken.size(); !taken.insert(unique).second; ++k) {
     unique = name + "_" + std::to_string(k);
   }
@@ -60,7 +60,7 @@ const std::string& BodyDraft::SurfaceRegion(const std::string& key, const std::s
 const std::string& BodyDraft::PartRegion(std::int32_t part, const std::string& wanted) {
   const std::string key = "p:" + std::to_string(part);
   if (const auto found = region_of_.find(key); found != region_of_.end()) return found->second;
-  // Tags of the tetrahedra stand there already: parts are the first of the file.
+  // The file already has the tags of tetrahedra: the parts come first.
   const auto at = std::find(mesh.parts.begin(), mesh.parts.end(), part) - mesh.parts.begin();
   TaggedPart& tagged = file.parts[static_cast<std::size_t>(at)];
   v1::Region& region = *body.add_regions();
@@ -83,7 +83,7 @@ std::optional<std::vector<std::int32_t>> NodeSets::Collect(const std::string& ki
     if (ids == nullptr) return std::nullopt;
     for (const std::int64_t id : *ids) {
       const auto found = mesh_.element_index.find(id);
-      if (found == mesh_.element_index.end()) continue;  // told of already
+      if (found == mesh_.element_index.end()) continue;  // already reported
       const auto& [p, e] = found->second;
       const Part& part = mesh_.parts[static_cast<std::size_t>(p)];
       const std::ptrdiff_t count = NodesOf(part.shape);

@@ -13,16 +13,16 @@
 
 namespace fascicle::client {
 
-// A name of a scene that is as near to `wanted` as its rules allow, and not among `taken`, to which it is added.
+// The valid name of a scene nearest to `wanted` that is not among `taken`; adds it to `taken`.
 std::string NewName(const std::string& wanted, std::set<std::string>& taken);
 
-// A body of the scene while it is made: the message, the mesh file, and where both came from.
+// A body of the scene under construction: the message, the mesh file, and their origin in the model.
 class BodyDraft {
  public:
   BodyDraft(const MeshBody& of, std::string at, v1::Body& made) : mesh(of), path(std::move(at)), body(made) {}
 
-  // The region of these nodes or triangles (in node indices of the model) or of a part; made when it is asked for
-  // first. `key` tells sets of the model apart, `wanted` becomes its name.
+  // The region of these nodes or triangles (in node indices of the model) or of a part; created on first use. `key`
+  // identifies a set of the model; `wanted` becomes the name.
   const std::string& NodeRegion(const std::string& key, const std::string& wanted,
                                 const std::vector<std::int32_t>& nodes);
   const std::string& SurfaceRegion(const std::string& key, const std::string& wanted,
@@ -41,15 +41,15 @@ class BodyDraft {
   std::set<std::string> names_;
 };
 
-// Where fields of the scene came from, by their path.
+// The origin of fields of the scene, by path.
 using Origins = std::map<std::string, pugi::xml_node>;
 
-// The steps of making a scene, one file for each. All go on past problems.
+// The steps of building a scene, one file each. All of them continue after problems.
 
 // Nodes and tetrahedra of a body, in the scene's unit.
 void DraftMesh(const Model& model, const Tetrahedra& tetrahedra, XmlSource& source, BodyDraft& draft);
-// The mesh file, once the draft has all of its regions; where nothing else is wrong, reads and checks it as a server
-// would.
+// The mesh file, once the draft has all of its regions. If there are no other problems, reads and checks the file as a
+// server would.
 std::string MeshText(const Model& model, const Tetrahedra& tetrahedra, XmlSource& source, const BodyDraft& draft);
 // Laws, density and activation.
 void SetMaterials(const Model& model, XmlSource& source, CurveMaker& curves, Origins& origins, BodyDraft& draft);
@@ -62,8 +62,8 @@ void SetSupports(const Model& model, XmlSource& source, CurveMaker& curves, Orig
 void SetLoads(const Model& model, const Tetrahedra& tetrahedra, XmlSource& source, CurveMaker& curves, Origins& origins,
               std::vector<BodyDraft>& drafts);
 
-// The nodes that a set of the model names: a node set, "@surface:NAME" or "@elem_set:NAME"; null, with a problem at
-// `node`, when there is none.
+// The nodes of a set of the model: a node set, "@surface:NAME" or "@elem_set:NAME". Null, with a problem at `node`, if
+// it does not exist.
 class NodeSets {
  public:
   NodeSets(const Mesh& mesh, XmlSource& source) : mesh_(mesh), source_(source) {}

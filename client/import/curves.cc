@@ -10,8 +10,8 @@ namespace fascicle::client {
 namespace {
 
 constexpr std::size_t kMaxPoints = 10'000;  // of a scene's curve
-constexpr int kSamples = 20;                // in an interval of a curve that is not straight
-constexpr double kRamp = 1e-6;              // of an interval that begins with a step
+constexpr int kSamples = 20;                // in an interval of a curve that is not linear
+constexpr double kRamp = 1e-6;              // relative to an interval that starts with a step
 
 double Line(double t, double t0, double f0, double t1, double f1) { return f0 + (f1 - f0) * (t - t0) / (t1 - t0); }
 
@@ -28,7 +28,7 @@ double Parabola(const LoadCurve& c, std::size_t first, double t) {
   return sum;
 }
 
-// Between points k and k + 1: the parabolas through the neighbours on either side, blended [FEBio, load curve
+// Value between points k and k + 1: a blend of the parabolas through the neighbours on either side [FEBio, load curve
 // "smooth"].
 double Smooth(const LoadCurve& c, std::size_t k, double t) {
   const std::size_t last = c.times.size() - 2;
@@ -57,8 +57,8 @@ std::optional<CurveMaker::Points> CurveMaker::Resolve(std::int64_t controller, p
   const auto found = model_.curves.find(controller);
   if (found == model_.curves.end()) return refuse("does not exist", "add it to LoadData, or remove lc");
   const LoadCurve& curve = found->second;
-  if (!curve.refused.empty()) return refuse("can't be taken: " + curve.refused, "write it as a linear load curve");
-  if (curve.times.empty()) return std::nullopt;  // told already
+  if (!curve.refused.empty()) return refuse("is not supported: " + curve.refused, "write it as a linear load curve");
+  if (curve.times.empty()) return std::nullopt;  // already reported
   const std::size_t intervals = curve.times.size() - 1;
   const bool is_step = curve.interpolation == LoadCurve::Interpolation::kStep;
   const bool is_smooth = curve.interpolation == LoadCurve::Interpolation::kSmooth;
@@ -81,10 +81,10 @@ std::optional<CurveMaker::Points> CurveMaker::Resolve(std::int64_t controller, p
     points.Add(end, curve.values[k + 1]);
   }
   if (is_step) TellOnce(controller, curve, "each step is a ramp over a millionth of its interval");
-  if (!is_step && !is_straight) TellOnce(controller, curve, "taken as 20 straight lines in each interval");
+  if (!is_step && !is_straight) TellOnce(controller, curve, "replaced by 20 straight lines in each interval");
   const bool leaves = points.times.front() > 0 || points.times.back() < End();
   if (leaves && curve.extension == LoadCurve::Extension::kOther) {
-    return refuse("repeats itself, which is not taken", "write all of its points up to the end of the analysis");
+    return refuse("repeats itself, which is not supported", "write all of its points up to the end of the analysis");
   }
   if (curve.extension == LoadCurve::Extension::kExtrapolate && is_straight && intervals > 0) {
     const auto& [t, v] = std::pair(points.times, points.values);
@@ -95,7 +95,7 @@ std::optional<CurveMaker::Points> CurveMaker::Resolve(std::int64_t controller, p
       points.times.insert(points.times.begin(), 0);
     }
   } else if (leaves && curve.extension == LoadCurve::Extension::kExtrapolate && !is_step && intervals > 0) {
-    return refuse("is extrapolated beyond its smooth points, which is not taken", "write points up to the end");
+    return refuse("is extrapolated beyond its smooth points, which is not supported", "write points up to the end");
   }
   return points;
 }
@@ -109,7 +109,7 @@ std::optional<v1::Curve> CurveMaker::ToCurve(double factor, const Points& points
   };
   for (std::size_t i = 0; i < points.times.size(); ++i) {
     const double t = points.times[i], value = factor * points.values[i];
-    // A scene begins at time 0.
+    // A scene starts at time 0.
     const bool is_before = i + 1 < points.times.size() && points.times[i + 1] <= 0;
     if (t < 0 && is_before) continue;
     if (t < 0 && i + 1 < points.times.size()) {
@@ -143,7 +143,7 @@ std::optional<v1::Curve> CurveMaker::MakeMotion(double factor, const std::option
   if (!curve || curve->values_size() == 0) return curve;
   const double step = model_.control.step_size;
   if (curve->values(0) == 0 || !(step > 0)) return curve;
-  // What the curve has at the end of the first step, and after it.
+  // The curve's value at the end of the first step, and the curve after it.
   v1::Curve started;
   const auto add = [&](double time, double value) {
     started.add_times(time);

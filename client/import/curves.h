@@ -10,17 +10,16 @@
 
 namespace fascicle::client {
 
-// Turns what drives a value into curves of a scene.
+// Converts load controllers to curves of a scene.
 class CurveMaker {
  public:
   CurveMaker(const Model& model, XmlSource& source) : model_(model), source_(source) {}
 
-  // `factor` times the controller, within [low, high]; nothing, with a problem at `node`, when there is no such curve
-  // or it leaves the range. Without a controller the value is there from the end of the first time step on, as in
-  // FEBio.
+  // `factor` times the controller, within [low, high]. Nothing, with a problem at `node`, if there is no such curve or
+  // if it leaves the range. Without a controller the value is reached at the end of the first time step, as in FEBio.
   std::optional<v1::Curve> Make(double factor, const std::optional<std::int64_t>& controller, double low, double high,
                                 pugi::xml_node node);
-  // The same for a motion: it starts at rest, and where FEBio jumps it takes the first time step.
+  // The same for a motion: it starts at rest, and a jump in FEBio takes the first time step.
   std::optional<v1::Curve> MakeMotion(double factor, const std::optional<std::int64_t>& controller, double low,
                                       double high, pugi::xml_node node);
 

@@ -17,12 +17,12 @@ constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
 constexpr std::size_t kMaxBodies = 1000;
 constexpr double kMaxFrames = 100'000;  // of a scene
 
-// The elements that hold sections: the model itself and its first step.
+// The elements that contain sections: the model itself and its first step.
 std::vector<pugi::xml_node> Holders(XmlSource& source) {
   std::vector<pugi::xml_node> holders = {source.root()};
   for (const pugi::xml_node list : source.root().children("Step")) {
     source.Take(list);
-    // Version 3 and 4 have <Step><step>...; a <Step> may also be one by itself.
+    // Versions 3 and 4 have <Step><step>...; a <Step> may also occur by itself.
     std::vector<pugi::xml_node> steps;
     for (const pugi::xml_node step : list.children("step")) steps.push_back(step);
     if (steps.empty()) steps.push_back(list);
@@ -47,7 +47,7 @@ class Importer {
     const pugi::xml_node root = source_.root();
     source_.Take(root);
     if (std::string_view(root.name()) != "febio_spec") {
-      source_.Fail(root, "the file is no FEBio model: it begins with " + Quoted(root.name()), "give a .feb file");
+      source_.Fail(root, "the file is not a FEBio model: it starts with " + Quoted(root.name()), "give a .feb file");
       return false;
     }
     model_.version = root.attribute("version").value();
@@ -115,7 +115,7 @@ class Importer {
     for (const pugi::xml_node holder : holders_) {
       for (const pugi::xml_node section : holder.children()) {
         if (std::string_view(section.name()) != "Include" && !section.attribute("from")) continue;
-        source_.Fail(section, "is in another file, which is not read", "put its content here");
+        source_.Fail(section, "is in another file, which is not supported", "put its content here");
       }
     }
   }
@@ -145,14 +145,14 @@ class Importer {
   void TellOfBodies(const std::vector<MeshBody>& bodies) {
     const pugi::xml_node mesh = source_.root().child("Mesh");
     if (bodies.empty() && source_.failures() == 0) {
-      source_.Fail(mesh, "nothing of the mesh is taken", "a scene needs at least one deformable part");
+      source_.Fail(mesh, "no part of the mesh is supported", "a scene needs at least one deformable part");
     }
     if (bodies.size() > kMaxBodies) {
-      source_.Fail(mesh, "falls into " + std::to_string(bodies.size()) + " parts that share no face",
+      source_.Fail(mesh, "falls into " + std::to_string(bodies.size()) + " parts without a common face",
                    "merge the nodes of neighbouring elements");
     } else if (bodies.size() > 1) {
       source_.notices.push_back({Notice::Kind::kSetting, source_.LineOf(mesh), source_.Where(mesh),
-                                 "its parts that share no face are " + std::to_string(bodies.size()) +
+                                 "its parts without a common face are " + std::to_string(bodies.size()) +
                                      " bodies, which pass through each other"});
     }
   }
@@ -213,7 +213,7 @@ class Importer {
     SetElement(bodies, scene);
   }
 
-  // Elements as in the model: of four or ten nodes; hexahedra are best replaced by what the stepping takes by itself.
+  // Elements as in the model: four or ten nodes. Hexahedra become the default element of the stepping.
   void SetElement(const std::vector<MeshBody>& bodies, v1::Scene& scene) {
     bool any_quadratic = false, any_split = false, any_linear = false;
     for (const MeshBody& body : bodies) {
@@ -232,17 +232,17 @@ class Importer {
     if (any_linear && (any_quadratic || any_split)) {
       const pugi::xml_node mesh = source_.root().child("Mesh");
       source_.notices.push_back({Notice::Kind::kChanged, source_.LineOf(mesh), source_.Where(mesh),
-                                 "elements of four nodes become elements of ten, as others of the model"});
+                                 "elements of four nodes become elements of ten nodes, like others of the model"});
     }
   }
 
-  // What the proto's rules say of numbers, told at the lines that they came from.
+  // Reports violations of the proto's rules at the lines from which the numbers came.
   void CheckFields(const v1::Scene& scene) {
     if (source_.failures() > 0) return;
     Problems problems;
     CheckRules(scene, problems);
     for (const Problem& problem : problems.kept()) {
-      // The longest path above the field's own.
+      // The origin of the longest prefix of the field's path.
       pugi::xml_node origin = source_.root();
       std::size_t longest = 0;
       for (const auto& [path, node] : origins_) {

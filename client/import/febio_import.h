@@ -11,12 +11,12 @@
 
 namespace fascicle::client {
 
-// Something that an import says beside what it gives.
+// A remark of an import in addition to its result.
 struct Notice {
   enum class Kind {
-    kNotTaken,  // of the model, and missing in the scene
-    kChanged,   // in the scene, but not quite what the model says
-    kSetting,   // how to solve and what to write: fascicle's own way is taken
+    kNotTaken,  // part of the model that the scene lacks
+    kChanged,   // in the scene, but not exactly as in the model
+    kSetting,   // solver and output settings, replaced by fascicle's own
   };
   Kind kind = Kind::kNotTaken;
   int line = 0;
@@ -25,12 +25,12 @@ struct Notice {
 };
 
 struct FebioOptions {
-  // What names the file in messages.
+  // Name of the file in messages.
   std::string name = "model.feb";
-  // SI, mm-N-s, mm-kg-s, um-nN-s or CGS, or mm-N-MPa for mm-N-s and m-N-Pa for SI. When empty: what the file says, and
-  // mm-N-s when it says nothing.
+  // SI, mm-N-s, mm-kg-s, um-nN-s or CGS, or mm-N-MPa for mm-N-s and m-N-Pa for SI. If empty: the units named by the
+  // file, or mm-N-s if it names none.
   std::string units;
-  // Split hexahedra, wedges and pyramids into tetrahedra instead of refusing them. Neighbours fit together.
+  // Whether to split hexahedra, wedges and pyramids into tetrahedra instead of refusing them. Neighbours match.
   bool split_hexahedra = false;
 };
 
@@ -39,7 +39,7 @@ struct ImportedFile {
   std::string bytes;
 };
 
-// A scene, the files that it names, and what has to be said of both.
+// A scene, its files, and remarks on both.
 struct ImportedScene {
   v1::Scene scene;
   std::vector<ImportedFile> files;
@@ -50,11 +50,11 @@ struct ImportedScene {
 
 // Reads a FEBio model (febio_spec 4.0 or 3.0): tetrahedra of four and ten nodes, the materials of scene.proto, fixed
 // and prescribed displacements, nodal forces, tractions, pressures, constant body forces, fibres, load curves, one
-// analysis step. Each part of the mesh that shares no face with the others becomes a body of its own.
+// analysis step. Each face-connected part of the mesh becomes a body.
 //
-// All problems are added at once, each with file, line and element. Any bytes are safe: nothing crashes, hangs or takes
-// more memory than a small multiple of the file, and no other file is read. What of the model is not in the scene
-// stands in `notices`, in the order of the file.
+// All problems are added at once, each with file, line and element. Any input is safe: nothing crashes, hangs or needs
+// more memory than a small multiple of the file, and no other file is read. Parts of the model that the scene lacks are
+// listed in `notices`, in the order of the file.
 //
 // Source: FEBio User Manual 4, chapter 3; FEBio Feature Manual. Thread-safe.
 std::optional<ImportedScene> ImportFebio(std::string_view bytes, const FebioOptions& options, Problems& problems);

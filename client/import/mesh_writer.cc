@@ -21,7 +21,7 @@ class Lines {
   template <class Number>
   Lines& operator<<(Number number) {
     char buffer[32];
-    text_.append(buffer, std::to_chars(buffer, buffer + sizeof(buffer), number).ptr);  // the shortest that reads back
+    text_.append(buffer, std::to_chars(buffer, buffer + sizeof(buffer), number).ptr);  // shortest that reads back
     return *this;
   }
   std::string text_;
@@ -48,7 +48,7 @@ void WriteElements(const MeshToWrite& mesh, Lines& out) {
     }
     const auto& c = mesh.tetrahedra[t];
     const auto& m = mesh.middles[t];
-    // Gmsh has the edge from 2 to 3 before that from 1 to 3.
+    // Gmsh has edge 2-3 before edge 1-3.
     WriteElement(number, kTetrahedron10, mesh.tetrahedron_tags[t],
                  std::array{c[0], c[1], c[2], c[3], m[0], m[1], m[2], m[3], m[5], m[4]}, out);
   }

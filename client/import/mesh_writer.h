@@ -11,7 +11,7 @@
 
 namespace fascicle::client {
 
-// A named part of a mesh, with a tag of its own among all parts.
+// A named part of a mesh with its own tag.
 struct TaggedPart {
   std::string name;
   int dimension = 3;  // 0: nodes, 2: triangles, 3: tetrahedra
@@ -28,7 +28,7 @@ struct MeshToWrite {
   std::vector<TaggedPart> parts;
 };
 
-// The text of a Gmsh 2.2 file; coordinates are written so that they are read as they are.
+// The text of a Gmsh 2.2 file. Coordinates read back exactly.
 std::string GmshText(const MeshToWrite& mesh);
 
 }  // namespace fascicle::client

@@ -18,7 +18,7 @@
 
 namespace fascicle::client {
 
-// A FEBio model as far as it can become a scene, in its own units. Plain data; sections.h fills it.
+// The supported part of a FEBio model, in the model's units. Plain data, filled by sections.h.
 
 enum class Shape { kTet4, kTet10, kHex8, kPenta6, kPyra5 };
 int NodesOf(Shape shape);
@@ -30,7 +30,7 @@ struct Part {
   Shape shape = Shape::kTet4;
   std::vector<std::int64_t> ids;
   std::vector<std::int32_t> nodes;  // indices, NodesOf(shape) for each element
-  std::int32_t material = -1;       // index, or -1 when the part is not taken
+  std::int32_t material = -1;       // index, or -1 if the part is not supported
   std::size_t size() const { return ids.size(); }
 };
 
@@ -46,7 +46,7 @@ struct Facet {
 
 struct Surface {
   std::vector<Facet> facets;
-  std::vector<std::int32_t> middles;  // nodes in the middle of edges
+  std::vector<std::int32_t> middles;  // mid-edge nodes
   pugi::xml_node node;
 };
 
@@ -55,23 +55,23 @@ struct Mesh {
   std::vector<std::int64_t> ids;
   std::unordered_map<std::int64_t, std::int32_t> index_of;
   std::vector<Part> parts;
-  std::set<std::string> part_names;                         // of all <Elements>, also those that are not taken
+  std::set<std::string> part_names;                         // of all <Elements>, unsupported ones included
   std::unordered_map<std::string, std::size_t> part_index;  // of those in `parts`, by name
-  // Index of the part and place in it of an element, by its id.
+  // Index of the part and index within it of an element, by its id.
   std::unordered_map<std::int64_t, std::pair<std::int32_t, std::int32_t>> element_index;
   std::map<std::string, NodeSet> node_sets;
   std::map<std::string, Surface> surfaces;
   std::map<std::string, std::vector<std::int64_t>> element_sets;  // element ids
 };
 
-// A right-handed frame of orthonormal axes, given or by three nodes of each element.
+// A right-handed orthonormal frame, given explicitly or by three nodes of each element.
 struct Axes {
   Mat3 given = Mat3::Identity();
   std::optional<std::array<int, 3>> local;  // counted from 0
   pugi::xml_node node;
 };
 
-// Where a material's fibres point in its axes.
+// Definition of a material's fibre direction in its axes.
 struct FibreSource {
   enum class Kind { kVector, kLocal, kMap };
   Kind kind = Kind::kVector;
@@ -89,9 +89,9 @@ struct ImportedMaterial {
   v1::Material law;  // in SI
   bool needs_fibres = false;
   FibreSource fibre;
-  std::vector<Axes> axes;  // outer to inner
-  double density = 0;      // [kg/m^3]; 0 when not given
-  // Activation of the law in [0, 1]: this number, driven.
+  std::vector<Axes> axes;  // from outer to inner
+  double density = 0;      // [kg/m^3]; 0 if absent
+  // Activation of the law in [0, 1]: this number, times a controller.
   std::optional<Driven> activation;
 };
 
@@ -101,11 +101,11 @@ struct LoadCurve {
   std::vector<double> times, values;
   Interpolation interpolation = Interpolation::kLinear;
   Extension extension = Extension::kConstant;
-  std::string refused;  // why it can't be taken; empty when it can
+  std::string refused;  // why it is not supported; empty if it is
   pugi::xml_node node;
 };
 
-// A displacement of a set of nodes along one axis; held when there is no motion.
+// A displacement of a set of nodes along one axis; fixed if there is no motion.
 struct Support {
   std::string set;
   int axis = 0;
@@ -123,7 +123,7 @@ struct NodalForces {
 struct SurfaceLoad {
   std::string surface;
   Vec3 traction = Vec3::Zero();
-  double pressure = 0;  // against the outward normal
+  double pressure = 0;  // positive against the outward normal
   std::optional<std::int64_t> controller;
   pugi::xml_node node;
 };

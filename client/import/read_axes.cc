@@ -35,7 +35,7 @@ Angles ReadAngles(pugi::xml_node node, XmlSource& source) {
   return angles;
 }
 
-// Local node numbers counted from 0; 0, 0 (, 0) stands for the first ones.
+// Local node numbers counted from 0; 0, 0 (, 0) means the first ones.
 template <std::size_t N>
 std::optional<std::array<int, N>> ReadLocal(pugi::xml_node node, XmlSource& source, std::array<int, N> standard) {
   const auto numbers = source.Integers(node, N);
@@ -71,7 +71,7 @@ std::optional<Mat3> ReadFrame(pugi::xml_node node, XmlSource& source) {
     if (!read) return std::nullopt;
     *vector = *read;
   }
-  // In two steps, so that no length under- or overflows.
+  // In two steps, so that no length underflows or overflows.
   a = a.stableNormalized();
   d = d.stableNormalized();
   const Vec3 across = a.cross(d);
@@ -100,7 +100,7 @@ std::optional<Axes> ReadAxes(pugi::xml_node node, XmlSource& source) {
     axes.local = ReadLocal<3>(node, source, {0, 1, 3});
     if (!axes.local) return std::nullopt;
   } else {
-    source.Fail(node, "material axes of type " + Quoted(type) + " are not taken",
+    source.Fail(node, "material axes of type " + Quoted(type) + " are not supported",
                 "give them by vector, angles, local, or as element data");
     return std::nullopt;
   }
@@ -112,7 +112,7 @@ std::optional<FibreSource> ReadFibre(pugi::xml_node node, XmlSource& source) {
   fibre.node = node;
   const std::string_view type = node.attribute("type").as_string("vector");
   if (type == "vector" || type == "const") {
-    // Version 4 writes the vector as an element of its own, too.
+    // Version 4 also writes the vector as an element.
     source.Take(node);
     const pugi::xml_node inner = node.child("vector");
     const auto vector = source.Vector(inner ? inner : node);
@@ -129,9 +129,9 @@ std::optional<FibreSource> ReadFibre(pugi::xml_node node, XmlSource& source) {
     fibre.kind = FibreSource::Kind::kMap;
     fibre.map = source.Text(node);
   } else if (type == "user") {
-    source.Take(node);  // version 3: the element data say it
+    source.Take(node);  // version 3: the element data define it
   } else {
-    source.Fail(node, "fibres of type " + Quoted(type) + " are not taken",
+    source.Fail(node, "fibres of type " + Quoted(type) + " are not supported",
                 "give them by vector, angles, local, map, or as element data");
     return std::nullopt;
   }

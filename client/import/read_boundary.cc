@@ -1,4 +1,4 @@
-// <Boundary>: held and moved node sets [FEBio User Manual, 3.11]. Version 3 has `fix` and `prescribe` for `zero
+// <Boundary>: fixed and moved node sets [FEBio User Manual, 3.11]. Version 3 has `fix` and `prescribe` for `zero
 // displacement` and `prescribed displacement`.
 #include <string_view>
 
@@ -8,7 +8,7 @@
 namespace fascicle::client {
 namespace {
 
-// 0, 1, 2 for x, y, z; -1 for another.
+// 0, 1, 2 for x, y, z; -1 otherwise.
 int AxisNamed(std::string_view name) { return name == "x" ? 0 : name == "y" ? 1 : name == "z" ? 2 : -1; }
 
 void ReadFixed(pugi::xml_node node, XmlSource& source, Model& model) {
@@ -31,11 +31,11 @@ void ReadFixed(pugi::xml_node node, XmlSource& source, Model& model) {
       if (axis >= 0) {
         fix(axis);
       } else if (!name.empty()) {
-        source.Fail(list, Quoted(name) + " is no direction of a solid's node", "fascicle has x, y and z");
+        source.Fail(list, Quoted(name) + " is not a direction of a solid's node", "fascicle has x, y and z");
       }
     }
   }
-  if (!any) source.Fail(node, "holds no direction", "set x_dof, y_dof or z_dof to 1");
+  if (!any) source.Fail(node, "contains no direction", "set x_dof, y_dof or z_dof to 1");
 }
 
 void ReadPrescribed(pugi::xml_node node, XmlSource& source, Model& model) {
@@ -43,13 +43,13 @@ void ReadPrescribed(pugi::xml_node node, XmlSource& source, Model& model) {
   const pugi::xml_node dof = node.child("dof");
   const std::string name = dof ? source.Text(dof) : std::string();
   const int axis = AxisNamed(name);
-  if (axis < 0) source.Fail(dof ? dof : node, Quoted(name) + " is no direction", "<dof> must be x, y or z");
+  if (axis < 0) source.Fail(dof ? dof : node, Quoted(name) + " is not a direction", "<dof> must be x, y or z");
   pugi::xml_node value = node.child("value");
   if (!value) value = node.child("scale");
   if (!value) return source.Fail(node, "has no value", "give <value lc=\"...\">");
   const Driven motion = source.DrivenNumber(value);
   if (const pugi::xml_node relative = node.child("relative"); relative && source.Flag(relative)) {
-    source.Tell(Notice::Kind::kSetting, relative, "in the first step nodes move from rest: the same");
+    source.Tell(Notice::Kind::kSetting, relative, "in the first step, relative and absolute motions are the same");
   }
   if (!set.empty() && axis >= 0) model.supports.push_back({set, axis, motion, node});
 }
@@ -68,7 +68,7 @@ void ReadBoundary(pugi::xml_node section, XmlSource& source, Model& model) {
       source.Take(node);
       ReadPrescribed(node, source, model);
     } else {
-      source.Tell(Notice::Kind::kNotTaken, node, "boundary conditions of type " + Quoted(type) + " are not taken");
+      source.Tell(Notice::Kind::kNotTaken, node, "boundary conditions of type " + Quoted(type) + " are not supported");
     }
   }
 }

@@ -13,12 +13,12 @@ void ReadModule(pugi::xml_node section, XmlSource& source, Model& model) {
   source.Take(section);
   const std::string type = source.Required(section, "type");
   if (!type.empty() && type != "solid" && type != "explicit-solid") {
-    source.Fail(section, "the module " + Quoted(type) + " is not taken", "fascicle has solids only");
+    source.Fail(section, "the module " + Quoted(type) + " is not supported", "fascicle supports solids only");
   }
   const pugi::xml_node units = section.child("units");
   if (!units) return;
   const std::string name = source.Text(units);
-  if (!model.units.name.empty()) return;  // already said by the user
+  if (!model.units.name.empty()) return;  // already given by the user
   if (const auto system = UnitSystemNamed(name)) {
     model.units = *system;
   } else {
@@ -37,7 +37,7 @@ void ReadControl(pugi::xml_node section, XmlSource& source, Model& model) {
     for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     control.dynamic = text == "dynamic" || text == "1";
     if (!control.dynamic && text != "static" && text != "0") {
-      source.Fail(analysis, "the analysis " + Quoted(text) + " is not taken", "static and dynamic are");
+      source.Fail(analysis, "the analysis " + Quoted(text) + " is not supported", "static and dynamic are supported");
     }
   }
   for (const auto& [name, value] :
@@ -65,7 +65,7 @@ void ReadControl(pugi::xml_node section, XmlSource& source, Model& model) {
   }
   if (any_setting) {
     source.notices.push_back({Notice::Kind::kSetting, source.LineOf(section), source.Where(section),
-                              "solver, time stepper and output levels are left to fascicle"});
+                              "solver, time stepper and output levels are replaced by fascicle's own"});
   }
 }
 

@@ -33,7 +33,7 @@ void ReadInterpolation(pugi::xml_node node, XmlSource& source, LoadCurve& curve)
   } else if (text == "smooth step") {
     curve.interpolation = kSmoothStep;
   } else {
-    curve.refused = "its interpolation " + Quoted(text) + " is not taken; linear, step, smooth and smooth step are";
+    curve.refused = "its interpolation " + Quoted(text) + " is not supported; linear, step, smooth and smooth step are";
   }
 }
 
@@ -87,11 +87,10 @@ void ReadLoadData(pugi::xml_node section, XmlSource& source, Model& model) {
         source.Fail(node, "the load curve has no points", "write <points><pt>time,value</pt>...</points>");
       }
     } else {
-      curve.refused = "it is a " + Quoted(type) + "; only load curves are taken";
+      curve.refused = "it is a " + Quoted(type) + "; only load curves are supported";
     }
     if (!model.curves.try_emplace(*id, std::move(curve)).second) {
-      source.Fail(node, "there is a load controller " + std::to_string(*id) + " before this one",
-                  "number them uniquely");
+      source.Fail(node, "there is a load controller " + std::to_string(*id) + " already", "number them uniquely");
     }
   }
 }

@@ -13,7 +13,7 @@ class LoadReader {
 
   void Read(pugi::xml_node node) {
     const std::string_view element = node.name();
-    // Version 3 need not say the type of a nodal load.
+    // Version 3 need not give the type of a nodal load.
     const bool needs_type = element == "surface_load" || element == "body_load";
     const std::string type =
         needs_type ? source_.Required(node, "type") : node.attribute("type").as_string("nodal_load");
@@ -31,7 +31,7 @@ class LoadReader {
     } else if (element == "body_load" && type == "body force") {
       ReadBodyForce(node);
     } else {
-      source_.Tell(Notice::Kind::kNotTaken, node, "loads of type " + Quoted(type) + " are not taken");
+      source_.Tell(Notice::Kind::kNotTaken, node, "loads of type " + Quoted(type) + " are not supported");
     }
   }
 
@@ -45,7 +45,7 @@ class LoadReader {
     const std::string name = dof ? source_.Text(dof) : std::string();
     const std::size_t axis = std::string_view("xyz").find(name.size() == 1 ? name[0] : '?');
     if (axis == std::string_view::npos) {
-      return source_.Fail(dof ? dof : node, Quoted(name) + " is no direction", "<dof> must be x, y or z");
+      return source_.Fail(dof ? dof : node, Quoted(name) + " is not a direction", "<dof> must be x, y or z");
     }
     pugi::xml_node scale = node.child("scale");
     if (!scale) scale = node.child("value");
@@ -56,7 +56,7 @@ class LoadReader {
     if (!forces.set.empty()) model_.nodal_forces.push_back(std::move(forces));
   }
 
-  // A vector that a load controller may scale.
+  // A vector with an optional load controller.
   std::optional<Vec3> DrivenVector(pugi::xml_node node, std::optional<std::int64_t>& controller) {
     if (!source_.IsConstant(node)) return std::nullopt;
     if (node.attribute("lc")) {
@@ -93,7 +93,7 @@ class LoadReader {
     std::optional<std::int64_t> ignored;
     const auto vector = DrivenVector(traction, ignored);
     if (ignored) {
-      source_.Tell(Notice::Kind::kChanged, traction, "its lc is left out, as it is by FEBio: that of <scale> counts");
+      source_.Tell(Notice::Kind::kChanged, traction, "its lc is ignored, as in FEBio: that of <scale> applies");
     }
     if (!IsLinear(node) && vector) {
       source_.Tell(Notice::Kind::kChanged, traction,
@@ -104,7 +104,7 @@ class LoadReader {
     model_.surface_loads.push_back(std::move(load));
   }
 
-  // Whether a surface load keeps to the rest shape.
+  // Whether a surface load refers to the rest shape.
   bool IsLinear(pugi::xml_node node) {
     const pugi::xml_node linear = node.child("linear");
     return linear && source_.Flag(linear);
@@ -125,9 +125,9 @@ class LoadReader {
       if (other && std::string_view(name) == "symmetric_stiffness") source_.TakeAll(other);
     }
     if (!IsLinear(node)) {
-      source_.Tell(
-          Notice::Kind::kChanged, child,
-          "keeps the direction and area of the rest surface; FEBio's follows the surface, unless <linear> is 1");
+      source_.Tell(Notice::Kind::kChanged, child,
+                   "keeps the direction and area of the rest surface; FEBio's follows the deformed surface, unless "
+                   "<linear> is 1");
     }
     if (!load.surface.empty()) model_.surface_loads.push_back(std::move(load));
   }

@@ -1,4 +1,4 @@
-// <Material>: laws that fascicle has too, parameter by parameter [FEBio Feature Manual, materials].
+// <Material>: laws that fascicle has, too, parameter by parameter [FEBio Feature Manual, materials].
 //
 //   FEBio                                                      scene
 //   neo-Hookean                                                neo_hookean
@@ -12,7 +12,8 @@
 //   ... and of these with a fibre of Mooney-Rivlin type and
 //     uncoupled prescribed uniaxial active contraction         trans_iso_mooney_rivlin with active_stress
 //
-// Muscle and tendon material by themselves shear by the invariants B1 and B2 [Blemker 2005], which no law here does.
+// Muscle and tendon material by themselves have a shear energy in the invariants B1 and B2 [Blemker 2005], for which
+// there is no law here.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -26,11 +27,11 @@ namespace fascicle::client {
 namespace {
 
 constexpr const char* kKnown =
-    "taken are neo-Hookean, isotropic elastic, St.Venant-Kirchhoff, Mooney-Rivlin, incomp neo-Hookean, trans iso "
+    "supported are neo-Hookean, isotropic elastic, St.Venant-Kirchhoff, Mooney-Rivlin, incomp neo-Hookean, trans iso "
     "Mooney-Rivlin, and uncoupled solid mixtures of Mooney-Rivlin with muscle material, tendon material, uncoupled "
     "fiber-exp-linear or uncoupled prescribed uniaxial active contraction";
 
-// The parameters of one material or solid, each taken once.
+// The parameters of a material or solid, each marked when it is read.
 class Parameters {
  public:
   Parameters(pugi::xml_node node, XmlSource& source) : node_(node), source_(source) { source.Take(node); }
@@ -53,7 +54,7 @@ class Parameters {
     const pugi::xml_node child = node_.child(name);
     return child ? std::optional(source_.DrivenNumber(child)) : std::nullopt;
   }
-  // The first of two names that is there, as a parameter was named differently in different versions.
+  // The first of two names that exists; names differ between versions.
   const char* Either(const char* first, const char* second) const { return node_.child(first) ? first : second; }
 
  private:
@@ -103,7 +104,7 @@ class MaterialReader {
  private:
   double Stress(double value) const { return value * units_.pascal; }
 
-  // What any material may have.
+  // Parameters common to all materials.
   void ReadCommon(pugi::xml_node node) {
     if (const pugi::xml_node density = node.child("density")) {
       const Driven driven = source_.DrivenNumber(density);
@@ -115,13 +116,13 @@ class MaterialReader {
     }
     for (const char* name : {"laugon", "atol", "minaug", "maxaug"}) {
       if (const pugi::xml_node child = node.child(name)) {
-        source_.Tell(Notice::Kind::kSetting, child, "volumes are kept by K alone, without augmentation");
+        source_.Tell(Notice::Kind::kSetting, child, "volumes are preserved by K only, without augmentation");
       }
     }
     if (const pugi::xml_node model = node.child("pressure_model")) {
       const std::string text = source_.Text(model);
       if (text != "0" && text != "default") {
-        source_.Fail(model, "the volume energy " + Quoted(text) + " is not taken",
+        source_.Fail(model, "the volume energy " + Quoted(text) + " is not supported",
                      "fascicle has K/2 (ln J)^2, model 0");
       }
     }
@@ -146,7 +147,7 @@ class MaterialReader {
     return {parameters.Get("c1"), parameters.GetOr("c2", 0)};
   }
 
-  // Of solids in a mixture only some have one.
+  // In a mixture, only some of the solids have one.
   static double BulkModulus(Parameters& parameters) { return parameters.Get("k"); }
 
   void SetMooneyRivlin(const MooneyRivlinPart& matrix, double bulk) {
@@ -156,13 +157,13 @@ class MaterialReader {
     law.set_bulk_modulus(Stress(bulk));
   }
 
-  // Fibres of `fibre`; where it has none, the law is that of the matrix alone.
+  // Fibres of `fibre`; if it has none, the law is that of the matrix.
   void SetTransIso(const MooneyRivlinPart& matrix, double bulk, Parameters& fibre, const char* lam_max) {
     const double c5 = fibre.GetOr("c5", 0), c4 = fibre.GetOr("c4", 0);
     double c3 = fibre.GetOr("c3", 0);
     if (c3 == 0 && c5 == 0) return SetMooneyRivlin(matrix, bulk);
     const double transition = fibre.Get(lam_max);
-    // FEBio's rule where the scale is not given: no kink at lam_max.
+    // FEBio's rule if the scale is absent: no kink at lam_max.
     if (c3 == 0 && c4 > 0) c3 = c5 / c4 * std::exp(-c4 * (transition - 1));
     v1::TransIsoMooneyRivlin& law = *material_.law.mutable_trans_iso_mooney_rivlin();
     law.set_c1(Stress(matrix.c1));
@@ -182,12 +183,12 @@ class MaterialReader {
     if (const pugi::xml_node fibre = node_.child("fiber")) source_.TakeAll(fibre);
     if (const pugi::xml_node active = node_.child("active_contraction")) {
       source_.Tell(Notice::Kind::kNotTaken, active,
-                   "its stress depends on the length of sarcomeres, which no law here does; the nearest is the "
+                   "its stress depends on the length of sarcomeres, for which there is no law here; the nearest is the "
                    "active_stress of trans_iso_mooney_rivlin");
     }
   }
 
-  // A mixture: a matrix, and perhaps one fibre and one active contraction.
+  // A mixture: a matrix, optionally a fibre and an active contraction.
   void ReadMixture() {
     source_.Take(node_);
     std::map<std::string, pugi::xml_node> solids;
@@ -211,13 +212,12 @@ class MaterialReader {
     Parameters mixture(node_, source_);
     const double own = mixture.GetOr("k", 0);
     if (own > 0 && bulk_of_solids > 0) {
-      source_.Tell(Notice::Kind::kChanged, node_.child("k"),
-                   "the bulk modulus is this one, without those of the solids");
+      source_.Tell(Notice::Kind::kChanged, node_.child("k"), "this bulk modulus replaces those of the solids");
     }
     MixSolids(solids, own > 0 ? own : bulk_of_solids);
   }
 
-  // What a solid is in a mixture; empty when it has no place in one.
+  // The role of a solid in a mixture; empty if it has none.
   static std::string Role(const std::string& type) {
     static const std::map<std::string, std::string> roles = {
         {"Mooney-Rivlin", "matrix"},
@@ -270,11 +270,11 @@ class MaterialReader {
     }
   }
 
-  // True when the shear moduli of a solid are all zero: its fibre is all that it adds.
+  // Whether the shear moduli of a solid are all zero, so that it contributes its fibre only.
   bool IsFibreAlone(Parameters& parameters, const char* law) {
     for (const char* name : {"g1", "g2", "g3"}) {
       if (parameters.GetOr(name, 0) == 0) continue;
-      source_.Fail(parameters.node().child(name), "the shear energy of Blemker's invariants is not taken",
+      source_.Fail(parameters.node().child(name), "the shear energy of Blemker's invariants is not supported",
                    "set it to 0 and let Mooney-Rivlin resist shear, as the law " + std::string(law) + " does");
       return false;
     }
@@ -292,7 +292,7 @@ class MaterialReader {
     const double optimal = parameters.Get("Lofl");
     law.set_optimal_stretch(optimal);
     law.set_passive_scale(parameters.GetOr("p1", 0));
-    // Without a scale the exponent means nothing, and some files give none.
+    // Without a scale the exponent has no effect, and some files omit it.
     const double exponent = parameters.GetOr("p2", 0);
     if (law.passive_scale() != 0 || exponent != 0) law.set_passive_exponent(exponent);
     const double transition = parameters.Get(parameters.Either("lam_max", "lambda"));
@@ -316,7 +316,7 @@ class MaterialReader {
     ReadAxesOf(node);
   }
 
-  // T0 along the first material axis, which must be the fibre's; the law's is T0 alpha.
+  // T0 along the first material axis, which must be the fibre direction; the law has T0 alpha.
   void MixActive(pugi::xml_node node) {
     Parameters parameters(node, source_);
     std::optional<Driven> stress = parameters.GetDriven("T0");
@@ -324,17 +324,17 @@ class MaterialReader {
     if (const pugi::xml_node axes = node.child("mat_axis")) {
       source_.Fail(axes, "contracts along axes of its own", "only contraction along the fibres is taken: give none");
     }
-    // Axes of the fibre alone are the ones inside of those of the mixture.
+    // Axes of the fibre itself are within those of the mixture.
     const std::size_t of_mixture = node_.child("mat_axis") ? 1 : 0;
     if (material_.fibre.kind != FibreSource::Kind::kVector || material_.fibre.vector != Vec3::UnitX() ||
         material_.axes.size() > of_mixture) {
-      source_.Fail(node, "contracts along the first material axis, where the fibres are not",
-                   "point the fibres along 1,0,0 and turn the mixture's mat_axis");
+      source_.Fail(node, "contracts along the first material axis, which is not the fibre direction",
+                   "set the fibres to 1,0,0 and rotate the mixture's mat_axis");
     }
     if (!material_.law.has_trans_iso_mooney_rivlin()) {
       return source_.Fail(node, "contracts a solid whose fibres have no stiffness", "give c3, c4 and c5 of the fibres");
     }
-    if (stress->value < 0) return source_.Fail(stress->node, "pushes", "give a T0 that is not negative");
+    if (stress->value < 0) return source_.Fail(stress->node, "is negative", "give a non-negative T0");
     material_.law.mutable_trans_iso_mooney_rivlin()->set_active_stress(Stress(stress->value));
     stress->value = 1;
     material_.activation = stress;
@@ -345,11 +345,13 @@ class MaterialReader {
     if (type == "muscle material" || type == "tendon material") {
       const std::string law = type.substr(0, 6);
       return source_.Fail(
-          node_, Quoted(type) + " shears by the invariants B1 and B2, which no law here does; the nearest is " + law,
+          node_,
+          Quoted(type) +
+              " has a shear energy in the invariants B1 and B2, for which there is no law here; the nearest is " + law,
           "write an uncoupled solid mixture of Mooney-Rivlin and " + type + " with g1 and g2 of 0: that is the law " +
               law);
     }
-    source_.Fail(node_, "the material " + Quoted(type) + " is not taken", kKnown);
+    source_.Fail(node_, "the material " + Quoted(type) + " is not supported", kKnown);
   }
 
   pugi::xml_node node_;
@@ -370,7 +372,7 @@ void ReadMaterials(pugi::xml_node section, XmlSource& source, Model& model) {
     material.id = source.IntegerAttribute(node, "id").value_or(0);
     material.name = node.attribute("name").as_string(node.attribute("id").value());
     if (!names.insert(material.name).second) {
-      source.Fail(node, "there is a material " + Quoted(material.name) + " before this one", "name them uniquely");
+      source.Fail(node, "there is a material " + Quoted(material.name) + " already", "name them uniquely");
     }
     const std::string type = source.Required(node, "type");
     if (!type.empty()) MaterialReader(node, source, model.units, material).Read(type);

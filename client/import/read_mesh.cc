@@ -22,7 +22,7 @@ constexpr ShapeName kShapes[] = {{"tet4", Shape::kTet4},
                                  {"penta6", Shape::kPenta6},
                                  {"pyra5", Shape::kPyra5}};
 
-// Solid elements that would leave a hole in the body, and elements without volume.
+// Solid elements whose omission would leave a hole in the body, and elements without volume.
 bool IsOtherSolid(std::string_view type) {
   return type.starts_with("tet") || type.starts_with("hex") || type.starts_with("penta") || type.starts_with("pyra");
 }
@@ -34,7 +34,7 @@ class MeshReader {
 
   void Read(pugi::xml_node section) {
     source_.Take(section);
-    // Whatever the order in the file, nodes come before what names them.
+    // Nodes are read before everything that refers to them, whatever the order in the file.
     for (const pugi::xml_node node : section.children("Nodes")) ReadNodes(node);
     for (const pugi::xml_node node : section.children("Elements")) ReadElements(node);
     for (const pugi::xml_node node : section.children()) {
@@ -43,7 +43,7 @@ class MeshReader {
       if (name == "Surface") ReadSurface(node);
       if (name == "ElementSet") ReadElementSet(node);
       if (name == "Edge" || name == "SurfacePair" || name == "DiscreteSet" || name == "PartList") {
-        source_.TakeAll(node);  // names only: what uses them is told of
+        source_.TakeAll(node);  // names only; their users are reported
       }
     }
     if (mesh_.nodes.empty()) source_.Fail(section, "has no nodes", "is the file complete?");
@@ -58,13 +58,13 @@ class MeshReader {
     for (const pugi::xml_node node : section.children()) {
       if (node.type() != pugi::node_element) continue;
       if (std::string_view(node.name()) != "node") {
-        source_.Fail(node, "is no node", "write <node id=\"...\">x,y,z</node>");
+        source_.Fail(node, "is not a node", "write <node id=\"...\">x,y,z</node>");
         continue;
       }
       const auto id = source_.IntegerAttribute(node, "id");
       const auto position = source_.Vector(node);
       if (!id) any_unnumbered_ = true;
-      if (id && !position) mesh_.index_of.try_emplace(*id, -1);  // told of once: what names it is not
+      if (id && !position) mesh_.index_of.try_emplace(*id, -1);  // reported once, here and not where it is used
       if (!id || !position) continue;
       if (mesh_.nodes.size() == kMaxNodes) return source_.Fail(node, "is one node too many", "use a coarser mesh");
       const auto index = static_cast<std::int32_t>(mesh_.nodes.size());
@@ -79,12 +79,12 @@ class MeshReader {
     if (section.attribute("name")) mesh_.node_sets.try_emplace(section.attribute("name").value(), std::move(set));
   }
 
-  // The index of a node, or -1 after a problem with it.
+  // The index of a node; -1, with a problem, if it does not exist.
   std::int32_t Find(std::int64_t id, pugi::xml_node node) {
     const auto found = mesh_.index_of.find(id);
     if (found != mesh_.index_of.end()) return found->second;
     if (any_unnumbered_) return -1;
-    source_.Fail(node, "names node " + std::to_string(id) + ", which does not exist", "is the file complete?");
+    source_.Fail(node, "refers to node " + std::to_string(id) + ", which does not exist", "is the file complete?");
     return -1;
   }
 
@@ -95,15 +95,15 @@ class MeshReader {
     for (const auto& [name, shape] : kShapes) {
       if (name != type) continue;
       if (split_hexahedra_ || shape == Shape::kTet4 || shape == Shape::kTet10) return shape;
-      source_.Fail(section, "is made of " + Quoted(type) + " elements; fascicle has tetrahedra only",
+      source_.Fail(section, "consists of " + Quoted(type) + " elements; fascicle has tetrahedra only",
                    "--split-hexahedra splits them, or mesh the body with tet4 or tet10");
       return std::nullopt;
     }
     if (IsOtherSolid(type)) {
-      source_.Fail(section, "is made of " + Quoted(type) + " elements, which are not taken",
+      source_.Fail(section, "consists of " + Quoted(type) + " elements, which are not supported",
                    "mesh the body with tet4 or tet10");
     } else {
-      source_.Tell(Notice::Kind::kNotTaken, section, "elements of type " + Quoted(type) + " are no volume");
+      source_.Tell(Notice::Kind::kNotTaken, section, "elements of type " + Quoted(type) + " have no volume");
     }
     return std::nullopt;
   }
@@ -113,7 +113,7 @@ class MeshReader {
     const std::string name = source_.Required(section, "name");
     const std::optional<Shape> shape = ShapeOf(section);
     if (!name.empty() && !mesh_.part_names.insert(name).second) {
-      source_.Fail(section, "there is a part " + Quoted(name) + " before this one", "name the parts uniquely");
+      source_.Fail(section, "there is a part " + Quoted(name) + " already", "name the parts uniquely");
     }
     if (!shape) return;
     Part part;
@@ -133,7 +133,8 @@ class MeshReader {
 
   void ReadElement(pugi::xml_node node, Part& part) {
     const std::string_view name = node.name();
-    if (name != "elem" && name != "e") return source_.Fail(node, "is no element", "write <elem id=\"...\">n1,n2,...");
+    if (name != "elem" && name != "e")
+      return source_.Fail(node, "is not an element", "write <elem id=\"...\">n1,n2,...");
     const auto count = static_cast<std::size_t>(NodesOf(part.shape));
     const auto id = source_.IntegerAttribute(node, "id");
     const auto numbers = source_.Integers(node, count);
@@ -145,7 +146,7 @@ class MeshReader {
     auto sorted = *numbers;
     std::sort(sorted.begin(), sorted.end());
     if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
-      return source_.Fail(node, "names a node twice", "mesh the body again");
+      return source_.Fail(node, "has a node twice", "mesh the body again");
     }
     std::array<std::int32_t, 10> indices;
     for (std::size_t n = 0; n < count; ++n) {
@@ -188,11 +189,11 @@ class MeshReader {
     if (name.empty()) return;
     const auto [place, is_new] = mesh_.node_sets.try_emplace(name, set);
     if (is_new) return;
-    // The nodes of a <Nodes> section make a set of its name, which a set proper replaces.
+    // The nodes of a <Nodes> section form a set of its name, which a proper set replaces.
     if (std::string_view(place->second.node.name()) == "Nodes") {
       place->second = std::move(set);
     } else {
-      source_.Fail(node, "there is a node set " + Quoted(name) + " before this one", "name the sets uniquely");
+      source_.Fail(node, "there is a node set " + Quoted(name) + " already", "name the sets uniquely");
     }
   }
 
@@ -209,7 +210,7 @@ class MeshReader {
     }
     if (empty) source_.Fail(section, "has no facets", "is the file complete?");
     if (!name.empty() && !mesh_.surfaces.try_emplace(name, std::move(surface)).second) {
-      source_.Fail(section, "there is a surface " + Quoted(name) + " before this one", "name the surfaces uniquely");
+      source_.Fail(section, "there is a surface " + Quoted(name) + " already", "name the surfaces uniquely");
     }
   }
 
@@ -217,7 +218,7 @@ class MeshReader {
     const std::string_view kind = node.name();
     const bool is_triangle = kind == "tri3" || kind == "tri6" || kind == "tri7";
     if (!is_triangle && kind != "quad4" && kind != "quad8" && kind != "quad9") {
-      return source_.Fail(node, "is no facet", "write tri3, tri6 or quad4");
+      return source_.Fail(node, "is not a facet", "write tri3, tri6 or quad4");
     }
     const auto count = static_cast<std::size_t>(kind.back() - '0');
     const auto numbers = source_.Integers(node, count);
@@ -243,11 +244,11 @@ class MeshReader {
     if (name.empty() || !numbers) return;
     for (const std::int64_t id : *numbers) {
       if (mesh_.element_index.contains(id)) continue;
-      source_.Fail(node, "names element " + std::to_string(id) + ", which does not exist", "is the file complete?");
+      source_.Fail(node, "refers to element " + std::to_string(id) + ", which does not exist", "is the file complete?");
       break;
     }
     if (!mesh_.element_sets.try_emplace(name, std::move(*numbers)).second) {
-      source_.Fail(node, "there is an element set " + Quoted(name) + " before this one", "name the sets uniquely");
+      source_.Fail(node, "there is an element set " + Quoted(name) + " already", "name the sets uniquely");
     }
   }
 
@@ -258,7 +259,7 @@ class MeshReader {
   bool any_unnumbered_ = false;  // nodes without a number
 };
 
-// Gives parts their materials, or leaves them out of the model where those are rigid.
+// Assigns materials to parts, and drops rigid parts.
 class MaterialAssignment {
  public:
   MaterialAssignment(const Model& model, XmlSource& source) : model_(model), source_(source) {
@@ -269,7 +270,7 @@ class MaterialAssignment {
     }
   }
 
-  // `part` is null where the part is not taken.
+  // `part` is null if the part is not supported.
   void Assign(const std::string& name, pugi::xml_node node, Part* part) const {
     const auto found = index_of_.find(name);
     if (found == index_of_.end()) {
@@ -278,7 +279,7 @@ class MaterialAssignment {
       return;
     } else if (model_.materials[found->second].rigid) {
       source_.Tell(Notice::Kind::kNotTaken, node,
-                   "a rigid body: nodes that it shares with other parts are free, unless a node set holds them");
+                   "a rigid body: nodes that it shares with other parts are free, unless a node set constrains them");
     } else {
       part->material = static_cast<std::int32_t>(found->second);
     }
@@ -344,7 +345,7 @@ void ReadMeshDomains(pugi::xml_node section, XmlSource& source, Model& model) {
     if (!material.empty()) materials.Assign(material, node, part == parts.end() ? nullptr : part->second);
     const std::string_view kind = node.attribute("type").value();
     if (!kind.empty() && kind != "elastic-solid") {
-      source.Tell(Notice::Kind::kSetting, node, "the elements are fascicle's own, not " + Quoted(kind));
+      source.Tell(Notice::Kind::kSetting, node, "fascicle's own elements replace " + Quoted(kind));
     }
   }
   for (Part& part : model.mesh.parts) {
@@ -353,7 +354,7 @@ void ReadMeshDomains(pugi::xml_node section, XmlSource& source, Model& model) {
     if (!material.empty()) {
       materials.Assign(material, part.node, &part);
     } else {
-      source.Fail(part.node, "no SolidDomain gives this part a material", "add one of its name to MeshDomains");
+      source.Fail(part.node, "no SolidDomain gives this part a material", "add one with its name to MeshDomains");
     }
   }
 }

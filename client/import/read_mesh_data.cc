@@ -18,14 +18,15 @@ class ElementDataReader {
     if (kind.empty()) kind = section.attribute("type").value();
     const std::string name = section.attribute("name").value();
     const bool is_map = kind.empty() && !name.empty();
-    if (is_map && std::string_view(section.attribute("data_type").value()) != "vec3") return;  // told of as not taken
+    if (is_map && std::string_view(section.attribute("data_type").value()) != "vec3")
+      return;  // reported as not supported
     if (!is_map && kind != "fiber" && kind != "mat_axis") return;
     source_.TakeAll(section);
     const std::string set = source_.Required(section, "elem_set");
     if (set.empty()) return;
     const std::vector<std::int64_t>* ids = FindElements(model_.mesh, set);
     if (ids == nullptr) {
-      // The set may be a part that is not taken.
+      // The set may be a part that is not supported.
       if (model_.mesh.part_names.contains(set)) return;
       return source_.Fail(section, "there is no element set or part " + Quoted(set));
     }

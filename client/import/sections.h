@@ -8,8 +8,8 @@
 
 namespace fascicle::client {
 
-// The sections of a model, one file for each. They may stand in any order in the file; these are called in the order in
-// which they are declared. Each marks what it takes and goes on past every problem.
+// The sections of a model, one file each. They may occur in any order in the file; these functions are called in the
+// order of declaration. Each marks what it reads and continues after problems.
 
 void ReadModule(pugi::xml_node section, XmlSource& source, Model& model);
 void ReadControl(pugi::xml_node section, XmlSource& source, Model& model);
@@ -28,7 +28,7 @@ std::optional<Mat3> ReadFrame(pugi::xml_node node, XmlSource& source);
 std::optional<Axes> ReadAxes(pugi::xml_node node, XmlSource& source);
 std::optional<FibreSource> ReadFibre(pugi::xml_node node, XmlSource& source);
 
-// The ids of the elements of a part or element set; null when there is none of that name.
+// The ids of the elements of a part or element set; null if it does not exist.
 const std::vector<std::int64_t>* FindElements(const Mesh& mesh, const std::string& name);
 
 }  // namespace fascicle::client

@@ -11,9 +11,9 @@
 namespace fascicle::client {
 namespace {
 
-constexpr double kMaxFactor = 1000, kMaxDisplacement = 10;  // of a scene's curves
+constexpr double kMaxFactor = 1000, kMaxDisplacement = 10;  // limits of a scene's curves
 
-// What may be looked up in all: keeps a file with thousands of loads on a large set from taking hours.
+// Limits the total number of look-ups, so that thousands of loads on a large set do not take hours.
 class Budget {
  public:
   explicit Budget(XmlSource& source) : source_(source) {}
@@ -33,7 +33,7 @@ class Budget {
   double left_ = 5e8;
 };
 
-// What the supports of one node set ask for.
+// The supports of one node set.
 struct SetSupport {
   std::string set;
   std::array<const Support*, 3> axes = {};
@@ -46,7 +46,7 @@ bool SameMotion(const Support& a, const Support& b) {
 
 const char* AxisName(int axis) { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
 
-// Supports of the same set together, in the order in which sets come first.
+// Groups supports by set, in the order in which sets first occur.
 std::vector<SetSupport> BySet(const std::vector<Support>& supports, XmlSource& source) {
   std::vector<SetSupport> sets;
   std::map<std::string, std::size_t> index_of;
@@ -56,7 +56,7 @@ std::vector<SetSupport> BySet(const std::vector<Support>& supports, XmlSource& s
     const Support*& place = sets[found->second].axes[static_cast<std::size_t>(support.axis)];
     if (place != nullptr && !SameMotion(*place, support)) {
       source.Fail(support.node,
-                  std::string("moves the set along ") + AxisName(support.axis) + " otherwise than line " +
+                  std::string("moves the set along ") + AxisName(support.axis) + " differently from line " +
                       std::to_string(source.LineOf(place->node)) + " does",
                   "keep one of them");
       continue;
@@ -66,7 +66,7 @@ std::vector<SetSupport> BySet(const std::vector<Support>& supports, XmlSource& s
   return sets;
 }
 
-// Tells of nodes that two sets move in different ways.
+// Reports nodes that two sets move differently.
 class Conflicts {
  public:
   Conflicts(const Model& model, XmlSource& source) : model_(model), source_(source) {}
@@ -80,7 +80,7 @@ class Conflicts {
         if (is_new || SameMotion(*found->second, *support)) continue;
         source_.Fail(support->node,
                      "moves node " + std::to_string(model_.mesh.ids[static_cast<std::size_t>(n)]) + " along " +
-                         AxisName(static_cast<int>(axis)) + " otherwise than line " +
+                         AxisName(static_cast<int>(axis)) + " differently from line " +
                          std::to_string(source_.LineOf(found->second->node)) + " does",
                      "take the node out of one of the sets");
         break;
@@ -124,8 +124,9 @@ void AddConstraint(const SetSupport& set, const std::vector<std::int32_t>& nodes
   }
 }
 
-// The nodes of quadratic elements that belong to a set, as the tet method has it: its corners, and the middles of edges
-// both of whose ends belong to it and that lie in the surface or in an element of which all corners do.
+// The nodes of quadratic elements that belong to a set, by the rule of the tet method: its corners, and the mid-edge
+// nodes both of whose ends belong to it and that lie on the boundary or in an element all of whose corners belong to
+// it.
 std::set<std::int32_t> MembersOf(const std::vector<std::int32_t>& nodes, const Tetrahedra& all, const MeshBody& body) {
   const std::unordered_set<std::int32_t> chosen(nodes.begin(), nodes.end());
   std::set<std::array<std::int32_t, 2>> surface_edges;
@@ -173,24 +174,25 @@ class LoadMaker {
       const Vec3 total = count * model_.units.newton * forces.each;
       for (const double component : total) load->mutable_nodal_force()->add_total(component);
     }
-    if (!any) source_.Tell(Notice::Kind::kNotTaken, forces.node, "none of its nodes is a corner of an element taken");
+    if (!any)
+      source_.Tell(Notice::Kind::kNotTaken, forces.node, "none of its nodes is a corner of a supported element");
   }
 
   void AddSurfaceLoad(const SurfaceLoad& load, const Surface& surface) {
     std::size_t taken = 0;
     for (BodyDraft& draft : drafts_) taken += AddSurfaceLoad(load, surface, draft);
     if (taken == 0) {
-      source_.Tell(Notice::Kind::kNotTaken, load.node, "none of its facets is on the surface of a body that is taken");
+      source_.Tell(Notice::Kind::kNotTaken, load.node, "none of its facets is on the surface of a supported body");
     } else if (taken < surface.facets.size()) {
       source_.notices.push_back({Notice::Kind::kChanged, source_.LineOf(load.node), source_.Where(load.node),
                                  std::to_string(surface.facets.size() - taken) + " of " +
                                      std::to_string(surface.facets.size()) +
-                                     " facets are not on the surface of a body that is taken"});
+                                     " facets are not on the surface of a supported body"});
     }
   }
 
  private:
-  // A load with its factor over time; null after a problem.
+  // A new load with its scale over time; null after a problem.
   v1::Load* NewLoad(BodyDraft& draft, const std::optional<std::int64_t>& controller, pugi::xml_node node) {
     std::optional<v1::Curve> scale;
     if (controller) {
@@ -203,7 +205,7 @@ class LoadMaker {
     return load;
   }
 
-  // The total is kept in any case; whether each node has its part depends on the elements.
+  // The total is preserved in any case; the force on each node depends on the elements.
   void TellOfSharing(const NodalForces& forces, const std::vector<std::int32_t>& nodes, const BodyDraft& draft) {
     const Shape shape = model_.mesh.parts[static_cast<std::size_t>(draft.mesh.parts[0])].shape;
     bool same = shape == Shape::kTet4;
@@ -215,10 +217,9 @@ class LoadMaker {
       same = own == MembersOf(nodes, all_, draft.mesh);
     }
     if (same) return;
-    source_.notices.push_back(
-        {Notice::Kind::kChanged, source_.LineOf(forces.node), source_.Where(forces.node),
-         "the total is shared in equal parts by the set's corners and the middles of edges between "
-         "them, which are other nodes than the set's"});
+    source_.notices.push_back({Notice::Kind::kChanged, source_.LineOf(forces.node), source_.Where(forces.node),
+                               "the total is shared equally by the set's corners and the mid-edge nodes between "
+                               "them, which differ from the nodes of the set"});
   }
 
   std::size_t AddSurfaceLoad(const SurfaceLoad& load, const Surface& surface, BodyDraft& draft) {
@@ -247,7 +248,7 @@ class LoadMaker {
     for (const double component : traction) load->mutable_traction()->add_vector(model_.units.pascal * component);
   }
 
-  // A traction for each direction that triangles face.
+  // Adds a traction for each normal direction of the triangles.
   void AddPressure(const SurfaceLoad& load, const std::vector<Triangle>& triangles, BodyDraft& draft) {
     constexpr std::size_t kMaxDirections = 500;
     constexpr double kSame = 1e6;
@@ -260,7 +261,7 @@ class LoadMaker {
       groups.try_emplace(key, normal, std::vector<Triangle>()).first->second.second.push_back(triangle);
       if (groups.size() <= kMaxDirections) continue;
       source_.Tell(Notice::Kind::kNotTaken, load.node,
-                   "a pressure on a surface that faces more than 500 directions; a load here has one direction");
+                   "a pressure on a surface with more than 500 normal directions; a load here has one direction");
       return;
     }
     for (const auto& [key, group] : groups) {
@@ -299,7 +300,7 @@ void SetSupports(const Model& model, XmlSource& source, CurveMaker& curves, Orig
       any = true;
       AddConstraint(set, *nodes, model, curves, origins, draft);
     }
-    if (!any) source.Tell(Notice::Kind::kNotTaken, first.node, "none of its nodes is a corner of an element taken");
+    if (!any) source.Tell(Notice::Kind::kNotTaken, first.node, "none of its nodes is a corner of a supported element");
   }
 }
 

@@ -14,12 +14,12 @@ const ImportedMaterial& MaterialOf(const Model& model, std::int32_t part) {
   return model.materials[static_cast<std::size_t>(model.mesh.parts[static_cast<std::size_t>(part)].material)];
 }
 
-// Inertia and weight need the density, equilibrium does not.
+// Inertia and weight need the density; equilibrium does not.
 void SetDensity(const Model& model, XmlSource& source, BodyDraft& draft) {
   constexpr double kMaxDensity = 30000;  // of a scene [kg/m^3]
   const bool counts = model.control.dynamic || !model.body_forces.empty();
   const ImportedMaterial& first = MaterialOf(model, draft.mesh.parts[0]);
-  if (!counts && first.density > kMaxDensity) return;  // a number that was never meant to be looked at
+  if (!counts && first.density > kMaxDensity) return;  // the density is not used
   if (first.density > 0) draft.body.set_density(first.density);
   if (!counts) return;
   if (first.density == 0) {
@@ -68,7 +68,7 @@ Mat3 FrameOf(const Axes& axes, const Mesh& mesh, const Part& part, std::size_t e
   for (int k = 0; k < 3; ++k) {
     const auto n = static_cast<std::size_t>((*axes.local)[k]);
     if (n >= count) {
-      if (good) source.Fail(axes.node, "names more nodes than the elements of " + Quoted(part.name) + " have");
+      if (good) source.Fail(axes.node, "refers to more nodes than the elements of " + Quoted(part.name) + " have");
       good = false;
       return Mat3::Identity();
     }
@@ -92,11 +92,11 @@ class FibreMaker {
     if (!material.needs_fibres) return Vec3::UnitX();
     const std::int64_t id = part.ids[e];
     if (const auto own = model_.data.fibres.find(id); own != model_.data.fibres.end()) {
-      // Such data turn the first material axis along the fibre.
+      // Such data rotate the first material axis to the fibre.
       if (material.fibre.kind == FibreSource::Kind::kVector && material.fibre.vector == Vec3::UnitX()) {
         return own->second;
       }
-      return Refuse(material.fibre.node, "has fibres of its own and fibres in element data", "keep one of them");
+      return Refuse(material.fibre.node, "has both its own fibres and fibres in element data", "keep one of them");
     }
     Mat3 frame = Mat3::Identity();
     if (const auto own = model_.data.axes.find(id); own != model_.data.axes.end()) frame = own->second;
@@ -127,7 +127,7 @@ class FibreMaker {
     const auto count = static_cast<std::size_t>(NodesOf(part.shape));
     const auto a = static_cast<std::size_t>(fibre.local[0]), b = static_cast<std::size_t>(fibre.local[1]);
     if (a >= count || b >= count) {
-      return Refuse(fibre.node, "names more nodes than the elements of " + Quoted(part.name) + " have", "");
+      return Refuse(fibre.node, "refers to more nodes than the elements of " + Quoted(part.name) + " have", "");
     }
     return (model_.mesh.nodes[static_cast<std::size_t>(part.nodes[e * count + b])] -
             model_.mesh.nodes[static_cast<std::size_t>(part.nodes[e * count + a])])

@@ -19,7 +19,7 @@ std::span<const Side> SidesOf(Shape shape) {
   return kPyraSides;
 }
 
-// A tetrahedron from the first node to each triangle of the sides that do not hold it.
+// Splits an element: a tetrahedron from the first node to each triangle of the sides that do not contain it.
 void Split(Shape shape, std::span<const std::int32_t> nodes, std::vector<Tetrahedron>& tetrahedra) {
   const std::int32_t apex = *std::min_element(nodes.begin(), nodes.end());
   for (const Side& side : SidesOf(shape)) {

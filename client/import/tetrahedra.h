@@ -17,9 +17,9 @@ struct Tetrahedra {
   std::vector<std::int32_t> element;                 // index in the part
 };
 
-// Hexahedra, wedges and pyramids are split from their node that comes first in the model, and their sides along the
-// diagonal from the node that comes first in the side: neighbours agree, and the boxes of MakeBox come out as they are
-// [Dompierre et al. 1999].
+// Hexahedra, wedges and pyramids are split from their node with the lowest index, and their sides along the diagonal
+// from the side's node with the lowest index. So neighbours match, and boxes are split as in MakeBox [Dompierre et al.
+// 1999].
 Tetrahedra MakeTetrahedra(const Mesh& mesh);
 
 // The triangles of a facet, split in the same way.

@@ -9,19 +9,19 @@
 
 namespace fascicle::client {
 
-// What one unit of a model's system is in SI. Time is in seconds in all of them.
+// A model's units in SI. Time is in seconds in all systems.
 struct UnitSystem {
   std::string name;
   double metre = 1;    // [m]
   double newton = 1;   // [N]
   double pascal = 1;   // [Pa]
   double density = 1;  // [kg/m^3]
-  // The unit in which a scene's coordinates are written, and what the model's are to be multiplied by for that.
+  // The unit of the scene's coordinates, and the factor that converts the model's coordinates to it.
   v1::LengthUnit scene_unit = v1::LENGTH_UNIT_M;
   double to_scene_unit = 1;
 };
 
-// A system by one of FEBio's names or their aliases; nothing for another name.
+// The system with one of FEBio's names or aliases; nothing for an unknown name.
 std::optional<UnitSystem> UnitSystemNamed(std::string_view name);
 
 // All names, for messages.

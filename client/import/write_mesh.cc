@@ -9,7 +9,7 @@
 namespace fascicle::client {
 namespace {
 
-// The element that a tetrahedron came from, to be told of: found by its number, which is slow.
+// The element of a tetrahedron, for messages. Found by its number, which is slow.
 pugi::xml_node ElementNode(const Model& model, const Tetrahedra& all, std::size_t t) {
   const Part& part = model.mesh.parts[static_cast<std::size_t>(all.part[t])];
   const std::string id = std::to_string(part.ids[static_cast<std::size_t>(all.element[t])]);
@@ -23,7 +23,7 @@ pugi::xml_node FirstPart(const Model& model, const BodyDraft& draft) {
   return model.mesh.parts[static_cast<std::size_t>(draft.mesh.parts[0])].node;
 }
 
-// Names the elements that are turned inside out among others that are not. Returns whether there are any.
+// Reports inverted elements among others that are not. Returns whether there are any.
 bool TellOfInverted(const Model& model, const Tetrahedra& all, const TetMesh& mesh, XmlSource& source,
                     const BodyDraft& draft) {
   constexpr int kExamples = 5;
@@ -45,7 +45,7 @@ bool TellOfInverted(const Model& model, const Tetrahedra& all, const TetMesh& me
   return found > 0;
 }
 
-// Reads the file as a server would.
+// Reads and checks the file as a server would.
 void Check(const Model& model, const Tetrahedra& all, const std::string& text, XmlSource& source,
            const BodyDraft& draft) {
   const pugi::xml_node part = FirstPart(model, draft);
@@ -105,7 +105,7 @@ void DraftMesh(const Model& model, const Tetrahedra& all, XmlSource& source, Bod
       if (!draft.mesh.is_corner[static_cast<std::size_t>(n)]) continue;
       const std::int64_t id = model.mesh.ids[static_cast<std::size_t>(draft.mesh.nodes[static_cast<std::size_t>(n)])];
       source.Fail(FirstPart(model, draft),
-                  "node " + std::to_string(id) + " is a corner of one element and in the middle of another's edge",
+                  "node " + std::to_string(id) + " is a corner of one element and a mid-edge node of another",
                   "mesh the body again, with one element order");
       return;
     }

@@ -13,7 +13,7 @@ namespace {
 
 bool IsSeparator(char c) { return c == ',' || c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-// Calls `use` for each token between commas and white space until it says no.
+// Calls `use` for each token between commas and white space until it returns false.
 template <class Use>
 bool ForEachToken(std::string_view text, const Use& use) {
   std::size_t at = 0;
@@ -44,7 +44,7 @@ XmlSource::XmlSource(std::string name, std::string_view bytes, Problems& problem
     problems_.Add(name_, "the file is written in UTF-16", "write it in UTF-8");
     return;
   }
-  // Names and numbers are ASCII whatever the encoding, and lines stay where they are.
+  // Names and numbers are ASCII in every encoding, and line numbers are unaffected.
   const pugi::xml_parse_result result =
       document_.load_buffer_inplace(buffer_.data(), buffer_.size(), pugi::parse_default, pugi::encoding_utf8);
   if (!result) {
@@ -84,7 +84,7 @@ std::string XmlSource::Where(pugi::xml_node node) const {
 
 void XmlSource::Fail(pugi::xml_node node, const std::string& message, const std::string& hint) {
   Take(node);
-  // Beyond what is kept only the number counts.
+  // Beyond the problems that are kept, only the count matters.
   problems_.Add(problems_.count() < Problems::kMaxKept ? Where(node) : std::string(), message, hint);
 }
 
@@ -166,7 +166,7 @@ Driven XmlSource::DrivenNumber(pugi::xml_node node) {
   driven.value = Number(node);
   if (node.attribute("lc")) {
     const std::optional<std::int64_t> controller = IntegerAttribute(node, "lc");
-    if (controller && *controller > 0) driven.controller = controller;  // 0 stands for none
+    if (controller && *controller > 0) driven.controller = controller;  // 0 means none
   }
   return driven;
 }

@@ -23,55 +23,56 @@ struct Driven {
   pugi::xml_node node;
 };
 
-// A model file as a tree of elements that know their line, with what is wrong in them and what nobody took.
+// A model file as a tree of elements that know their line, with the problems found in them and a record of the elements
+// that were read.
 //
-// Elements are marked as they are taken; what is left without a mark in the end is told as not taken. Entities and
-// other files are never followed. Not thread-safe.
+// Elements are marked when they are read; unmarked ones are finally reported as not supported. Entities and other files
+// are never followed. Not thread-safe.
 class XmlSource {
  public:
-  // `name` is told in front of line numbers. Adds a problem when the bytes are not XML.
+  // `name` precedes line numbers in messages. Adds a problem if the bytes are not XML.
   XmlSource(std::string name, std::string_view bytes, Problems& problems);
 
-  // The element that holds all others; empty after a problem.
+  // The root element; empty after a problem.
   pugi::xml_node root() const { return document_.document_element(); }
 
   // "model.feb:12: Mesh/NodeSet \"fixed\"".
   std::string Where(pugi::xml_node node) const;
   int LineOf(pugi::xml_node node) const;
 
-  // Something wrong; `node` is marked.
+  // Reports a problem and marks `node`.
   void Fail(pugi::xml_node node, const std::string& message, const std::string& hint = {});
-  // Something that is left out or not what it was; `node` and all below it are marked. Keeps the first thousand.
+  // Reports something that is missing or changed; marks `node` and its descendants. Keeps the first thousand.
   void Tell(Notice::Kind kind, pugi::xml_node node, std::string message);
   std::size_t failures() const { return problems_.count() - count_before_; }
 
-  // Marks one element, or all below it too.
+  // Marks one element, or all of its descendants, too.
   void Take(pugi::xml_node node) {
     if (!taken_whole_.contains(node.parent().hash_value())) taken_.insert(node.hash_value());
   }
   void TakeAll(pugi::xml_node node) { taken_whole_.insert(node.hash_value()); }
-  // Tells of every element of the model that has no mark.
+  // Reports every unmarked element of the model.
   void TellOfTheRest();
   std::vector<Notice> notices;
 
   // The text of an element without comments; marks it.
   std::string Text(pugi::xml_node node);
-  // An attribute that must be there and not empty; empty, with a problem, when it is not.
+  // A required, non-empty attribute; empty, with a problem, if it is missing.
   std::string Required(pugi::xml_node node, const char* attribute);
-  // A finite number; 0, with a problem, when it is none.
+  // A finite number; 0, with a problem, otherwise.
   double Number(pugi::xml_node node);
   Driven DrivenNumber(pugi::xml_node node);
-  // Whether 1 or true; false when the element is not there.
+  // Whether the text is 1 or true; false if the element does not exist.
   bool Flag(pugi::xml_node node);
-  // N finite numbers parted by commas or white space; nothing, with a problem, when they are not.
+  // N finite numbers separated by commas or white space; nothing, with a problem, otherwise.
   std::optional<Vec3> Vector(pugi::xml_node node);
   std::optional<std::array<double, 2>> Pair(pugi::xml_node node);
-  // Whole numbers, as many as there are; the number of them is checked when `count` is positive.
+  // Integers, any number of them; checked against `count` if it is positive.
   std::optional<std::vector<std::int64_t>> Integers(pugi::xml_node node, std::size_t count = 0);
-  // A whole number in an attribute.
+  // An integer attribute.
   std::optional<std::int64_t> IntegerAttribute(pugi::xml_node node, const char* attribute);
 
-  // A value that is the same everywhere: refuses those that a map or an expression gives.
+  // Whether a value is constant; refuses maps and expressions.
   bool IsConstant(pugi::xml_node node);
 
  private:

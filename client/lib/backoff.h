@@ -10,14 +10,14 @@
 
 namespace fascicle::client {
 
-// Waits between attempts: from 50 ms doubling to 1 s, each shortened by up to a half at random so that many clients
-// of one server don't come back all at once. One thread.
+// Delays between attempts: from 50 ms, doubling up to 1 s, each shortened at random by up to a half, so that many
+// clients do not reconnect simultaneously. Not thread-safe.
 class Backoff {
  public:
-  // After a success.
+  // Call after a success.
   void Reset() { delay_ = kShortest; }
 
-  // Waits, at least `at_least`; a stop request ends it early.
+  // Waits, at least for `at_least`; a stop request ends the delay.
   void Wait(std::chrono::milliseconds at_least = {}, const std::stop_token& stop = {}) {
     std::uniform_real_distribution<double> part(0.5, 1);
     const auto delay = std::chrono::duration_cast<std::chrono::milliseconds>(delay_ * part(random_));

@@ -15,10 +15,10 @@ namespace fascicle::client {
 namespace {
 
 constexpr std::chrono::seconds kTimeout(30);
-// The server reads and checks all meshes of the scene, and solves for fibres, before it answers.
+// Before it answers, the server reads and checks all meshes of the scene and solves for fibres.
 constexpr std::chrono::seconds kCreateTimeout(900);
 
-// 128 random bits: no two requests of the world share one.
+// 128 random bits, unique for all practical purposes.
 std::string RandomRequestId() {
   std::random_device random;
   std::string id;
@@ -35,7 +35,7 @@ std::string RandomRequestId() {
 struct Client::Impl {
   explicit Impl(const std::string& address) : connection(address) {}
 
-  // A unary call with its error.
+  // A unary call; returns its response or error.
   template <class Response, class Call>
   Result<Response> Ask(std::chrono::seconds timeout, const Call& call) {
     Response response;
@@ -45,7 +45,7 @@ struct Client::Impl {
     return response;
   }
 
-  // Uploads what is missing, then asks for the job; again when an asset went missing in between.
+  // Uploads missing files, then creates the job; repeats both if an asset disappeared in between.
   Result<v1::Job> Create(const ScenePackage& package, const v1::CreateJobRequest& request) {
     constexpr int kAttempts = 3;
     for (int attempt = 1;; ++attempt) {

@@ -18,13 +18,13 @@
 
 namespace fascicle::client {
 
-// What a call can end in beside its result. `kind` decides the exit code of the command line.
+// An unsuccessful outcome of a call. `kind` determines the exit code of the command line.
 struct Error {
   enum class Kind { kInvalid, kNoServer, kNotFound, kRefused, kInternal, kStopped };
   Kind kind = Kind::kInternal;
-  std::string message;  // for people
-  std::string reason;   // ErrorInfo.reason, may be empty
-  Problems problems;    // kInvalid: each with its field path
+  std::string message;  // for users
+  std::string reason;   // ErrorInfo.reason; may be empty
+  Problems problems;    // for kInvalid: each with its field path
 };
 
 // A result or an error.
@@ -43,14 +43,14 @@ class Result {
   Error error_;
 };
 
-// A file that a scene names, read into memory.
+// A file of a scene, read into memory.
 struct AssetFile {
   std::string sha256_hex;
-  std::string path;  // where it came from, for messages
+  std::string path;  // its origin, for messages
   std::string bytes;
 };
 
-// A scene with every FileRef.asset set, and the files.
+// A scene whose FileRef.asset are all set, with the files.
 struct ScenePackage {
   v1::Scene scene;
   std::vector<AssetFile> assets;
@@ -60,39 +60,39 @@ struct WatchOptions {
   std::int64_t start_index = 0;
   bool follow = true;
   v1::StreamFramesRequest::Mode mode = v1::StreamFramesRequest::MODE_ALL;
-  // How long to try again after a lost connection before giving up; fresh after every frame.
+  // How long to retry after a lost connection; restarts after every frame.
   std::chrono::seconds patience = std::chrono::seconds(30);
 };
 
-// What Watch tells; all called on the thread that called Watch. Any may be empty.
+// Callbacks of Watch, all on the thread that called Watch. Any may be empty.
 struct WatchEvents {
-  std::function<void(const v1::Frame& frame)> frame;  // complete, checksums right
+  std::function<void(const v1::Frame& frame)> frame;  // complete, with correct checksums
   std::function<void(v1::Job::State state, const v1::Progress& progress)> progress;
   std::function<void(const std::string& message)> reconnecting;
 };
 
-// A connection to a server ("HOST:PORT"). Thread-safe. The first call fails with kNoServer after some seconds when
-// nothing answers there. Calls are repeated on UNAVAILABLE with backoff; CreateJob only with its request id, so that a
-// job is never created twice.
+// A connection to a server ("HOST:PORT"). Thread-safe. The first call fails with kNoServer after some seconds without a
+// response. Calls are repeated on UNAVAILABLE with backoff; CreateJob only with its request id, so that a job is never
+// created twice.
 class Client {
  public:
   explicit Client(const std::string& address);
   ~Client();
 
   Result<v1::ServerInfo> GetServerInfo();
-  // Uploads what the server lacks and creates the job.
+  // Uploads the files that the server lacks and creates the job.
   Result<v1::Job> Submit(const ScenePackage& package, int threads);
-  // Checks without creating.
+  // Checks a scene without creating a job.
   std::optional<Error> Validate(const ScenePackage& package, int threads);
   Result<v1::Job> GetJob(const std::string& name);
   Result<std::vector<v1::Job>> ListJobs(int limit, const std::vector<v1::Job::State>& states);
   Result<v1::Job> CancelJob(const std::string& name);
   std::optional<Error> DeleteJob(const std::string& name);
-  // Waits until the job was started; kStopped after a stop request.
+  // Waits until the job has been started; kStopped after a stop request.
   Result<v1::Geometry> GetGeometry(const std::string& name, std::stop_token stop = {});
   Result<std::vector<v1::FrameInfo>> ListFrames(const std::string& name, std::int64_t start_index);
-  // Delivers frames from start_index, each once and in order, reconnecting and resuming by itself; returns the job
-  // when the stream is complete. kStopped after a stop request.
+  // Delivers frames from start_index on, each once and in order, and resumes after lost connections. Returns the job
+  // when the stream is complete; kStopped after a stop request.
   Result<v1::Job> Watch(const std::string& name, const WatchOptions& options, const WatchEvents& events,
                         std::stop_token stop = {});
 

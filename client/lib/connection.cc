@@ -10,19 +10,19 @@
 namespace fascicle::client {
 namespace {
 
-using Clock = std::chrono::system_clock;  // what gRPC's deadlines are given in
+using Clock = std::chrono::system_clock;  // the clock of gRPC's deadlines
 
 constexpr int kDetailsLimit = 256 << 10;  // [byte]
 
 std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address) {
-  // gRPC 1.51 takes its threads down with its last object, and sometimes waits ten seconds for one that polls. Holding
-  // on to the library until the process ends avoids it.
+  // gRPC 1.51 stops its threads with its last object, and sometimes waits ten seconds for one that polls. Keeping the
+  // library initialized until the process ends avoids that.
   [[maybe_unused]] static const bool kept = (grpc_init(), true);
   grpc::ChannelArguments arguments;
-  arguments.SetMaxReceiveMessageSize(16 << 20);  // a job with its scene is the largest answer
+  arguments.SetMaxReceiveMessageSize(16 << 20);  // a job with its scene is the largest response
   arguments.SetInt(GRPC_ARG_MAX_METADATA_SIZE, 2 * kDetailsLimit);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
-  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 5000);  // how long connecting may take
+  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 5000);  // limit for connecting
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, 30'000);
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 20'000);

@@ -14,18 +14,18 @@
 
 namespace fascicle::client {
 
-// A channel with the stubs of all services, and when to try again. Thread-safe.
+// A channel with the stubs of all services and a policy for retries. Thread-safe.
 class Connection {
  public:
   explicit Connection(const std::string& address);
 
   const std::string& address() const { return address_; }
 
-  // OK once there is a connection. Gives up after two seconds of refusals or five of silence, when there never was
-  // one before; later calls return at once, as each call finds out by itself.
+  // OK once there is a connection. If there never was one before, gives up after two seconds of refused connections or
+  // five seconds without a response. Later calls return at once, because each call detects a lost connection itself.
   grpc::Status Connect();
 
-  // Makes `call` with a deadline, and again with backoff while it says UNAVAILABLE, for a quarter of a minute.
+  // Makes `call` with a deadline, and repeats it with backoff on UNAVAILABLE for up to 15 s.
   grpc::Status Repeat(std::chrono::seconds timeout, const std::function<grpc::Status(grpc::ClientContext&)>& call);
 
   v1::JobService::Stub& jobs() { return *jobs_; }
@@ -36,14 +36,14 @@ class Connection {
  private:
   const std::string address_;
   const std::shared_ptr<grpc::Channel> channel_;
-  std::atomic<bool> connected_ = false;  // once
+  std::atomic<bool> connected_ = false;  // whether there has been a connection
   const std::unique_ptr<v1::JobService::Stub> jobs_;
   const std::unique_ptr<v1::AssetService::Stub> assets_;
   const std::unique_ptr<v1::FrameService::Stub> frames_;
   const std::unique_ptr<v1::ServerService::Stub> server_;
 };
 
-// Lets the server send long lists of problems.
+// Allows the server to send long lists of problems.
 void PrepareCall(grpc::ClientContext& context);
 
 }  // namespace fascicle::client

@@ -11,15 +11,15 @@
 
 namespace fascicle::client {
 
-// The bytes of frames and geometry as arrays. All functions throw std::runtime_error, with a message for people, when
-// the bytes don't fit what they should be: sizes, indices out of range, values that are missing.
+// Decodes the bytes of frames and geometry to arrays. All functions throw std::runtime_error, with a message for users,
+// if sizes are wrong, indices out of range or values missing.
 
 // Rest geometry of one body.
 struct BodyShape {
   std::string name;
   std::vector<Vec3> positions;                           // [m]
   std::vector<std::array<std::uint32_t, 4>> tetrahedra;  // node indices, all in range
-  std::vector<std::array<std::uint32_t, 8>> bricks;      // in place of tetrahedra: voxels, as BodyGeometry has them
+  std::vector<std::array<std::uint32_t, 8>> bricks;      // in place of tetrahedra: voxels, as in BodyGeometry
   std::vector<std::array<std::uint32_t, 3>> triangles;   // in place of tetrahedra: a closed surface
   std::vector<Vec3> fibres;                              // unit, one for each tetrahedron, or empty
   struct Region {
@@ -31,15 +31,15 @@ struct BodyShape {
   std::size_t elements() const { return tetrahedra.size() + bricks.size() + triangles.size(); }
 };
 
-// The corners of a brick in the order of a hexahedron: around the lower side, then around the upper.
+// The corners of a brick in hexahedron order: around the lower side, then around the upper one.
 inline constexpr std::array<std::size_t, 8> kHexahedronCorners = {0, 1, 3, 2, 4, 5, 7, 6};
 
-// VTK's number of the kind of cells that a body is made of: tetrahedra (10), voxels as hexahedra (12) or triangles (5).
+// VTK's cell type for the elements of a body: tetrahedra (10), voxels as hexahedra (12) or triangles (5).
 inline int CellTypeOf(const BodyShape& shape) { return !shape.bricks.empty() ? 12 : !shape.triangles.empty() ? 5 : 10; }
 
 std::vector<BodyShape> DecodeGeometry(const v1::Geometry& geometry);
 
-// Positions [m] of a body that has `nodes` nodes.
+// Positions [m] of a body with `nodes` nodes.
 std::vector<Vec3> DecodePositions(const v1::BodyFrame& frame, std::size_t nodes);
 
 // Values of a field, component fastest: `components` for each node or element of `shape`.

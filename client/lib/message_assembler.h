@@ -8,16 +8,16 @@
 
 namespace fascicle::client {
 
-// Joins the chunks of a message that was sent in parts.
+// Reassembles a message from its chunks.
 class MessageAssembler {
  public:
   enum class State { kMore, kComplete, kBroken };
 
-  // kBroken when the chunk does not follow the ones before or its checksum is wrong. Takes its data.
+  // kBroken if the chunk does not follow the previous ones or its checksum is wrong. Consumes its data.
   State Add(v1::Chunk& chunk);
-  // The index that the chunks of the message carry.
+  // The frame index given by the chunks of the message.
   std::int64_t frame_index() const { return frame_index_; }
-  // After kComplete: the bytes; ready for the next message.
+  // After kComplete: returns the bytes and gets ready for the next message.
   std::string Take();
 
  private:

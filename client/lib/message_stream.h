@@ -16,25 +16,26 @@
 
 namespace fascicle::client {
 
-// The messages of one call of a server-streaming method. gRPC's own threads receive them, so the connection answers
-// the server's keepalive however long the reader takes over a message; a few are kept ahead, then the server waits.
+// The messages of one call of a server-streaming method. gRPC's threads receive them, so that the connection responds
+// to the server's keepalive however long the reader takes for a message. A few messages are buffered; then the server
+// waits.
 template <class Response>
 class MessageStream : private grpc::ClientReadReactor<Response> {
  public:
   enum class Outcome { kMessage, kEnd, kSilence, kStopped };
 
-  // `begin(context, reactor)` makes the call, such as stub.async()->GetGeometry(context, &request, reactor). What it
-  // refers to must live as long as the stream.
+  // `begin(context, reactor)` makes the call, such as stub.async()->GetGeometry(context, &request, reactor). Its
+  // references must stay valid as long as the stream.
   using Begin = std::function<void(grpc::ClientContext*, grpc::ClientReadReactor<Response>*)>;
 
   explicit MessageStream(const Begin& begin) {
     begin(&call_, this);
-    this->AddHold();  // reads are started from the reader's thread as well
+    this->AddHold();  // the reader's thread starts reads, too
     this->StartRead(&incoming_);
     this->StartCall();
   }
 
-  // Cancels the call if it goes on.
+  // Cancels the call if it is still active.
   ~MessageStream() {
     call_.TryCancel();
     std::unique_lock lock(mutex_);
@@ -47,7 +48,7 @@ class MessageStream : private grpc::ClientReadReactor<Response> {
     changed_.wait(lock, [this] { return done_; });
   }
 
-  // Waits for the next message, for the end of the call, for `silence` without a message, or for a stop request.
+  // Waits for the next message, the end of the call, `silence` without a message, or a stop request.
   Outcome Next(Response& message, std::chrono::milliseconds silence, const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, stop, silence, [this] { return !ready_.empty() || done_; });
@@ -62,7 +63,7 @@ class MessageStream : private grpc::ClientReadReactor<Response> {
     return Outcome::kMessage;
   }
 
-  // After kEnd.
+  // Valid after kEnd.
   grpc::Status status() {
     std::lock_guard lock(mutex_);
     return status_;
@@ -88,7 +89,7 @@ class MessageStream : private grpc::ClientReadReactor<Response> {
   }
 
   void OnDone(const grpc::Status& status) override {
-    std::lock_guard lock(mutex_);  // held while notifying: the reader may destroy this as soon as it is released
+    std::lock_guard lock(mutex_);  // held while notifying: the reader may destroy this object as soon as it wakes
     status_ = status;
     done_ = true;
     changed_.notify_all();
@@ -100,8 +101,8 @@ class MessageStream : private grpc::ClientReadReactor<Response> {
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::deque<Response> ready_;
-  bool paused_ = false;           // no read is started until there is room
-  bool reading_is_over_ = false;  // the reader is gone
+  bool paused_ = false;           // no read is started until there is space
+  bool reading_is_over_ = false;  // the reader has been destroyed
   bool done_ = false;
   grpc::Status status_;
 };

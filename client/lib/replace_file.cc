@@ -19,7 +19,7 @@ void ReplaceFile(const fs::path& path, const std::function<void(const fs::path&)
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
   if (error) fail(error.message());
   if (fs::is_directory(path, error)) fail("it is a folder");
-  // The extension stays, since some writers look at it; the process id keeps two programs apart.
+  // The extension is kept, since some writers depend on it; the process id distinguishes two programs.
   const fs::path beside =
       path.parent_path() / ("." + path.stem().string() + "." + std::to_string(getpid()) + path.extension().string());
   try {

@@ -7,13 +7,13 @@
 
 namespace fascicle::client {
 
-// Makes or replaces a file so that nobody ever sees half of it: `write` fills a new file beside it, which then takes
-// its name. Folders are made as needed. Throws std::runtime_error with a message for people; then the old file, if
-// there was one, is untouched and nothing is left beside it.
+// Creates or replaces a file atomically: `write` fills a new file beside it, which is then renamed. Creates folders as
+// needed. Throws std::runtime_error with a message for users; the old file, if any, is then unchanged and nothing is
+// left beside it.
 void ReplaceFile(const std::filesystem::path& path,
                  const std::function<void(const std::filesystem::path& beside)>& write);
 
-// The same with the content at hand.
+// The same with given content.
 void ReplaceFile(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace fascicle::client

@@ -29,7 +29,7 @@ bool IsInside(const fs::path& folder, const fs::path& path) {
   return end == folder.end();
 }
 
-// Where a name in the scene points to; nothing, with a problem, when that is not a file in the scene's folder.
+// The file that a name in the scene refers to; nothing, with a problem, if it is not a file in the scene's folder.
 std::optional<fs::path> Resolve(const fs::path& folder, const std::string& name, const std::string& field,
                                 Problems& problems) {
   const auto refuse = [&](const std::string& message, const std::string& hint) {
@@ -49,7 +49,7 @@ std::optional<fs::path> Resolve(const fs::path& folder, const std::string& name,
   if (error) return refuse("\"" + name + "\" can't be resolved: " + error.message(), "");
   if (!IsInside(folder, resolved)) {
     return refuse("\"" + name + "\" is a link that leads out of the scene's folder",
-                  "copy the file into the scene's folder");
+                  "copy the file to the scene's folder");
   }
   const fs::file_status status = fs::status(resolved, error);
   if (!fs::exists(status)) {
@@ -81,7 +81,7 @@ bool HasExtension(const std::string& path, std::string_view extension) {
   return own == extension;
 }
 
-// A TetGen mesh is two files; the second is found beside the first.
+// A TetGen mesh has two files; the second is found beside the first.
 void NameElementFiles(v1::Scene& scene) {
   for (v1::Body& body : *scene.mutable_bodies()) {
     if (!body.has_mesh() || !body.mesh().has_file() || body.mesh().has_elements()) continue;
@@ -93,7 +93,7 @@ void NameElementFiles(v1::Scene& scene) {
   }
 }
 
-// Reads each file once, however often it is named.
+// Reads each file once, however often it is used.
 class AssetReader {
  public:
   AssetReader(fs::path folder, ScenePackage& package, Problems& problems)
@@ -101,7 +101,7 @@ class AssetReader {
 
   // Packs the file that `ref`, at `ref_path` in the scene, names, and sets the asset there.
   void Read(v1::FileRef& ref, const std::string& ref_path) {
-    // A reference by digest alone names something that the server already has.
+    // A reference by digest only refers to an asset that the server already has.
     if (ref.path().empty() && !ref.asset().empty()) return;
     const std::string field = JoinPath(ref_path, "path");
     const std::optional<fs::path> path = Resolve(folder_, ref.path(), field, problems_);
@@ -138,8 +138,8 @@ std::optional<v1::Scene> ReadScene(const std::string& text, const std::vector<st
   return scene;
 }
 
-// A scene that can't be read in full never reaches the server, which checks everything. What can be told of the rest
-// without it is told here, so that a user does not mend a file mistake by mistake.
+// A scene that can't be read completely never reaches the server, which checks everything. Reports what can be checked
+// of the rest without the server, so that a user sees all mistakes together.
 void CheckRest(const v1::Scene& scene, Problems& problems) {
   Problems rest;
   CheckRules(scene, rest);
@@ -180,7 +180,7 @@ std::optional<ScenePackage> LoadScene(const std::string& path, Problems& problem
     problems.Add("", "the scene file can't be read", "check its permissions");
     return std::nullopt;
   }
-  // Problems of the scene and of its files are told together.
+  // Problems of the scene and of its files are reported together.
   Problems own;
   ScenePackage package;
   if (std::optional<v1::Scene> scene = ReadScene(*text, settings, own)) {

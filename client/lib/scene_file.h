@@ -16,9 +16,9 @@ namespace fascicle::client {
 // of a oneof.
 std::optional<v1::Scene> ParseScene(const std::string& json, Problems& problems);
 
-// Reads the scene file, changed by `settings` (see ApplySettings), and the files that it names (paths relative to its
-// folder and inside it, links followed), and sets their digests. Finds the .ele beside a .node. Limits: scene 16 MiB,
-// each file 4 GiB.
+// Reads the scene file, modified by `settings` (see ApplySettings), and the files that it refers to (paths relative to
+// its folder and inside of it, links followed), and sets their digests. Finds the .ele beside a .node. Limits: scene 16
+// MiB, each file 4 GiB.
 std::optional<ScenePackage> LoadScene(const std::string& path, Problems& problems,
                                       const std::vector<std::string>& settings = {});
 

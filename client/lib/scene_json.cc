@@ -28,7 +28,7 @@ constexpr int kMaxDepth = 64;
 
 struct TooDeep {};
 
-// Follows the parser through the document to know the path of every key and to see keys that come twice.
+// Tracks the parser's position in the document, to know the path of every key and to detect duplicate keys.
 class DuplicateKeys {
  public:
   explicit DuplicateKeys(Problems& problems) : problems_(problems) {}
@@ -90,7 +90,7 @@ std::string PlaceOf(std::string_view text, std::size_t byte) {
   return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
 }
 
-// The library's message without its own tag and place: "syntax error while parsing value - unexpected ..." ->
+// The library's message without its tag and position: "syntax error while parsing value - unexpected ..." ->
 // "unexpected ...".
 std::string SyntaxMessage(const std::string& what) {
   const std::size_t dash = what.find(" - ");
@@ -105,7 +105,7 @@ std::string Join(const std::vector<std::string>& names) {
   return joined;
 }
 
-// "did you mean x?" when a name is near, otherwise the list of them.
+// "did you mean x?" if a known name is similar, otherwise the list of known names.
 std::string NameHint(std::string_view wrong, const std::vector<std::string>& names) {
   const std::string shortened(wrong.substr(0, 64));
   std::size_t best = std::max<std::size_t>(2, shortened.size() / 3) + 1;
@@ -148,7 +148,7 @@ std::optional<int> ReadEnum(const std::string& text, const EnumDescriptor& type,
   std::vector<std::string> names;
   for (int i = 0; i < type.value_count(); ++i) {
     const EnumValueDescriptor& value = *type.value(i);
-    if (value.number() == 0) continue;  // "not given" is said by leaving the field out
+    if (value.number() == 0) continue;  // a missing value is expressed by omitting the field
     names.push_back(NameOf(value));
     if (text == names.back() || text == value.name()) return value.number();
   }
@@ -173,7 +173,7 @@ class FieldReader {
  private:
   void ReadOne(const json& value, const std::string& path) {
     if (value.is_null()) {
-      problems_.Add(path, "is null", "leave the field out to take its default");
+      problems_.Add(path, "is null", "omit the field to use its default");
       return;
     }
     switch (field_.cpp_type()) {
@@ -210,11 +210,11 @@ class FieldReader {
         }
         return;
       default:
-        problems_.Add(path, "can't be set in a scene file");
+        problems_.Add(path, "cannot be set in a scene file");
     }
   }
 
-  // Integers that a double holds exactly: JSON has no others.
+  // Integers that a double represents exactly; JSON has no others.
   static constexpr std::int64_t kExact = std::int64_t{1} << 53;
 
   std::optional<std::int64_t> ReadInteger(const json& value, const std::string& path, std::int64_t lowest,
@@ -254,7 +254,7 @@ class FieldReader {
 
 using OrderedJson = nlohmann::ordered_json;
 
-// One value of a field; `index` is negative where the field is not repeated.
+// One value of a field; `index` is negative for a field that is not repeated.
 OrderedJson ValueOf(const Message& message, const FieldDescriptor& field, int index);
 
 OrderedJson ObjectOf(const Message& message) {
@@ -297,7 +297,7 @@ OrderedJson ValueOf(const Message& message, const FieldDescriptor& field, int in
   }
 }
 
-// Indented, but values without parts of their own side by side.
+// Prints indented, with values without parts on one line.
 void Print(const OrderedJson& value, std::size_t indent, std::string& text) {
   const auto is_flat = [](const OrderedJson& item) { return !item.is_structured(); };
   if (!value.is_structured() || std::all_of(value.begin(), value.end(), is_flat)) {
@@ -334,7 +334,7 @@ std::vector<std::string> MemberNames(const OneofDescriptor& oneof) {
 
 json ParseJson(std::string_view text, Problems& problems) {
   if (text.size() > kMaxSceneBytes) {
-    problems.Add("", "the scene is larger than 16 MiB", "put meshes and fibres into files of their own");
+    problems.Add("", "the scene is larger than 16 MiB", "move meshes and fibres to separate files");
     return json(json::value_t::discarded);
   }
   DuplicateKeys duplicates(problems);
@@ -370,7 +370,7 @@ void ReadMessage(const json& value, Message& message, const std::string& path, P
       problems.Add(member_path, "unknown field", NameHint(key, FieldNames(type)));
       continue;
     }
-    // `optional` fields are oneofs of one member to Protobuf; those are not meant.
+    // Protobuf treats `optional` fields as oneofs with one member; these are skipped.
     const OneofDescriptor* oneof = field->real_containing_oneof();
     if (oneof != nullptr && !given.insert(oneof).second) {
       problems.Add(member_path, "only one of " + Join(MemberNames(*oneof)) + " may be given", "keep one of them");

@@ -11,13 +11,13 @@ using nlohmann::json;
 
 constexpr const char* kHint = "such as --set 'bodies[0].activation.values[1]=0.5'";
 
-// One step of a path: the name of a field, or the number of a list's entry.
+// One step of a path: the name of a field, or an index in a list.
 struct Step {
   std::string_view name;
   std::optional<std::size_t> index;
 };
 
-// "bodies[0].name" as bodies, 0, name; nothing when it is malformed.
+// Parses "bodies[0].name" to bodies, 0, name; nothing if it is malformed.
 std::optional<std::vector<Step>> ParsePath(std::string_view path) {
   std::vector<Step> steps;
   while (!path.empty()) {
@@ -42,7 +42,7 @@ std::optional<std::vector<Step>> ParsePath(std::string_view path) {
   return steps;
 }
 
-// The value at the end of a path; nullptr where a step does not fit what is there.
+// The value at the end of a path; null if a step does not exist.
 json* Find(const std::vector<Step>& steps, json& scene) {
   json* at = &scene;
   for (const Step& step : steps) {
@@ -67,7 +67,7 @@ void Apply(const std::string& setting, json& scene, Problems& problems) {
   }
   json* const place = Find(*steps, scene);
   if (place == nullptr) {
-    problems.Add(path, "can't be set: the scene has no such place", kHint);
+    problems.Add(path, "cannot be set: the scene has no such element", kHint);
     return;
   }
   const std::string text = setting.substr(equals + 1);

@@ -10,9 +10,9 @@
 
 namespace fascicle::client {
 
-// Changes a scene before it is read: each setting is PATH=VALUE with a field path as problems have it, such as
-// `bodies[0].activation.values[1]=0.5`, and a value in JSON (or plain text, for names). Fields that are not there are
-// added, list entries must be there. Adds what can't be set to `problems`.
+// Modifies a scene before it is read. Each setting is PATH=VALUE with a field path as in problems, such as
+// `bodies[0].activation.values[1]=0.5`, and a value in JSON (or plain text, for names). Missing fields are added; list
+// entries must exist. Adds settings that cannot be applied to `problems`.
 void ApplySettings(const std::vector<std::string>& settings, nlohmann::json& scene, Problems& problems);
 
 }  // namespace fascicle::client

@@ -12,7 +12,7 @@ SeriesTable::SeriesTable(const v1::Geometry& geometry) {
 
 void SeriesTable::Add(const v1::Frame& frame) {
   if (static_cast<std::size_t>(frame.series_size()) != columns_.size()) {
-    throw std::runtime_error("the server sent a frame with another number of series");
+    throw std::runtime_error("the server sent a frame with a different number of series");
   }
   frames_.push_back(frame.index());
   times_.push_back(frame.time());
@@ -21,7 +21,7 @@ void SeriesTable::Add(const v1::Frame& frame) {
 }
 
 bool MatchesGlob(std::string_view pattern, std::string_view name) {
-  // Where the last `*` stands, and how much of the name it has taken so far: enough to go back to.
+  // Position of the last `*`, and how much of the name it has matched so far, for backtracking.
   std::size_t p = 0, n = 0, star = std::string_view::npos, taken = 0;
   while (n < name.size()) {
     if (p < pattern.size() && pattern[p] == '*') {

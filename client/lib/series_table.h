@@ -11,7 +11,7 @@
 
 namespace fascicle::client {
 
-// The series of a job as columns: what tables, CSV files and plots are made of. Not thread-safe.
+// The series of a job as columns, for tables, CSV files and plots. Not thread-safe.
 class SeriesTable {
  public:
   struct Column {
@@ -23,7 +23,7 @@ class SeriesTable {
 
   explicit SeriesTable(const v1::Geometry& geometry);
 
-  // Throws std::runtime_error when the frame has another number of values.
+  // Throws std::runtime_error if the frame has a different number of values.
   void Add(const v1::Frame& frame);
 
   std::size_t size() const { return times_.size(); }

@@ -45,7 +45,7 @@ Error::Kind KindOf(grpc::StatusCode code) {
   }
 }
 
-// The server names fields of the request; users know those of their scene.
+// The server refers to fields of the request; users know those of their scene.
 std::string ScenePath(std::string_view field) {
   constexpr std::string_view kScene = "job.scene";
   if (field == kScene) return "";
@@ -91,7 +91,7 @@ bool IsLostStream(const grpc::Status& status) {
       return true;
     case grpc::StatusCode::INTERNAL:
     case grpc::StatusCode::UNKNOWN:
-      return status.error_details().empty();  // of the transport; the service says what went wrong
+      return status.error_details().empty();  // an error of the transport; the service's own errors have details
     default:
       return false;
   }

@@ -10,16 +10,16 @@
 
 namespace fascicle::client {
 
-// What a failed call means to a user: the status with the google.rpc details that the server packed into it.
-// `address` is named where no server answered.
+// Converts a failed call to an Error, with the google.rpc details sent by the server. `address` is mentioned if no
+// server responded.
 Error ErrorOf(const grpc::Status& status, const std::string& address);
 
 // Whether the same call may succeed later: the connection was lost, or the server is starting, stopping or overloaded.
 bool IsTransient(const grpc::Status& status);
-// As IsTransient for streams, which break in more ways.
+// Like IsTransient, for streams, which have more ways to break.
 bool IsLostStream(const grpc::Status& status);
 
-// What RetryInfo asks to wait at least; zero without one.
+// The least delay requested by RetryInfo; zero without one.
 std::chrono::milliseconds RetryDelayOf(const grpc::Status& status);
 
 }  // namespace fascicle::client

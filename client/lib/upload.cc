@@ -30,7 +30,8 @@ grpc::Status FindMissing(Connection& connection, const std::vector<AssetFile>& a
   return grpc::Status::OK;
 }
 
-// The server may answer before it has read everything: when it refuses the asset, or got it from another client.
+// The server may respond before it has read everything: if it refuses the asset, or has received it from another
+// client.
 grpc::Status UploadOnce(Connection& connection, const AssetFile& asset, grpc::ClientContext& context) {
   v1::UploadAssetResponse response;
   const auto writer = connection.assets().UploadAsset(&context, &response);

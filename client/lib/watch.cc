@@ -17,12 +17,12 @@ using Clock = std::chrono::steady_clock;
 using Response = v1::StreamFramesResponse;
 using Outcome = MessageStream<Response>::Outcome;
 
-// A live stream sends something every ten seconds.
+// A live stream has a message at least every ten seconds.
 constexpr std::chrono::seconds kLongestSilence(30);
 
 const Error kStoppedError = {.kind = Error::Kind::kStopped, .message = "stopped", .reason = "", .problems = {}};
 
-// When to give up after a connection was lost: `patience` after the first loss, fresh after every success.
+// When to give up after a lost connection: `patience` after the first loss since the last success.
 class Patience {
  public:
   explicit Patience(std::chrono::seconds patience) : patience_(patience) {}
@@ -32,7 +32,7 @@ class Patience {
     backoff_.Reset();
   }
 
-  // True when it is the first loss since the last success.
+  // Returns true for the first loss since the last success.
   bool Lost() {
     if (lost_since_) return false;
     lost_since_ = Clock::now();
@@ -51,7 +51,7 @@ class Patience {
 
 grpc::Status Damaged(const std::string& what) { return grpc::Status(grpc::StatusCode::UNAVAILABLE, what); }
 
-// One watch: a series of streams, each of which goes on where the one before was cut.
+// One watch: a sequence of streams, each of which continues where the previous one broke.
 class Watcher {
  public:
   Watcher(Connection& connection, const std::string& name, const WatchOptions& options, const WatchEvents& events,
@@ -71,9 +71,9 @@ class Watcher {
       if (job_) return std::move(*job_);
       if (stop_.stop_requested()) return kStoppedError;
       if (!IsLostStream(status)) return ErrorOf(status, connection_.address());
-      if (Clock::now() - begin > kHealthy) patience_.Succeeded();  // it had lasted: this is a new loss
+      if (Clock::now() - begin > kHealthy) patience_.Succeeded();  // it was healthy for a while: this is a new loss
       if (patience_.Lost() && events_.reconnecting) {
-        events_.reconnecting(status.error_message().empty() ? "the stream was cut" : status.error_message());
+        events_.reconnecting(status.error_message().empty() ? "the stream was interrupted" : status.error_message());
       }
       if (patience_.exhausted()) return GivenUp(status);
       patience_.Wait(status, stop_);
@@ -89,7 +89,7 @@ class Watcher {
     return error;
   }
 
-  // Reads one stream to its end. Sets `job_` when it was complete.
+  // Reads one stream to its end. Sets `job_` if it was complete.
   grpc::Status ReadStream() {
     assembler_ = {};
     MessageStream<Response> stream([this](grpc::ClientContext* call, grpc::ClientReadReactor<Response>* reactor) {
@@ -105,7 +105,7 @@ class Watcher {
         case Outcome::kEnd:
           return stream.status();
         case Outcome::kSilence:
-          return Damaged("the server has gone silent");
+          return Damaged("the server does not respond");
         case Outcome::kStopped:
           return grpc::Status::CANCELLED;
       }
@@ -128,7 +128,7 @@ class Watcher {
         job_ = std::move(*message.mutable_end()->mutable_job());
         return grpc::Status::OK;
       case Response::PART_NOT_SET:
-        break;  // of a newer server
+        break;  // from a newer server
     }
     return grpc::Status::OK;
   }
@@ -137,12 +137,12 @@ class Watcher {
     const bool all = options_.mode != v1::StreamFramesRequest::MODE_LATEST;
     const std::int64_t wanted = request_.start_index();
     const std::int64_t index = chunk.frame_index();
-    if (all ? index != wanted : index < wanted) return Damaged("a frame came out of order");
+    if (all ? index != wanted : index < wanted) return Damaged("a frame is out of order");
     switch (assembler_.Add(chunk)) {
       case MessageAssembler::State::kMore:
         return grpc::Status::OK;
       case MessageAssembler::State::kBroken:
-        return Damaged("frame " + std::to_string(index) + " was damaged on its way");
+        return Damaged("frame " + std::to_string(index) + " was damaged in transit");
       case MessageAssembler::State::kComplete:
         break;
     }
@@ -160,7 +160,7 @@ class Watcher {
   const WatchEvents& events_;
   const std::stop_token stop_;
   Patience patience_;
-  v1::StreamFramesRequest request_;  // start_index is the next frame wanted
+  v1::StreamFramesRequest request_;  // start_index is the next frame to read
   MessageAssembler assembler_;
   v1::Frame frame_;
   std::optional<v1::Job> job_;
@@ -190,7 +190,7 @@ Result<v1::Geometry> FetchGeometry(Connection& connection, const std::string& na
     auto state = MessageAssembler::State::kMore;
     Stream::Outcome outcome = Stream::Outcome::kMessage;
     while (state == MessageAssembler::State::kMore && outcome == Stream::Outcome::kMessage) {
-      do {  // a job may wait in the queue for long; the channel's keepalive finds a dead server
+      do {  // a job may wait in the queue for long; the channel's keepalive detects a dead server
         outcome = stream.Next(message, kLongestSilence, stop);
       } while (outcome == Stream::Outcome::kSilence);
       if (outcome == Stream::Outcome::kMessage) state = assembler.Add(*message.mutable_chunk());
@@ -199,7 +199,7 @@ Result<v1::Geometry> FetchGeometry(Connection& connection, const std::string& na
     v1::Geometry geometry;
     if (state == MessageAssembler::State::kComplete && geometry.ParseFromString(assembler.Take())) return geometry;
     const grpc::Status status =
-        outcome == Stream::Outcome::kEnd ? stream.status() : Damaged("the geometry was damaged on its way");
+        outcome == Stream::Outcome::kEnd ? stream.status() : Damaged("the geometry was damaged in transit");
     if (!IsLostStream(status)) return ErrorOf(status, connection.address());
     if (Clock::now() - begin > kLongestSilence) patience.Succeeded();
     patience.Lost();

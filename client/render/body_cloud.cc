@@ -25,15 +25,15 @@ namespace fascicle::client {
 namespace {
 
 constexpr int kSamples = 200;         // along the longest side
-constexpr double kFull = 65535;       // of the numbers that rays gather
-constexpr double kDepthOfHaze = 0.4;  // of the body's shortest side: where 63 % of the light is taken
+constexpr double kFull = 65535;       // maximum of the numbers that rays accumulate
+constexpr double kDepthOfHaze = 0.4;  // of the shortest side: where 63 % of the light is absorbed
 
 struct Samples {
   vtkSmartPointer<vtkImageData> image;  // of two components: value on the colour scale, and density
-  double step = 0;                      // [m]
+  double step = 0;                      // spacing [m]
 };
 
-// One more sample than the body needs on each side, so that its surface is closed.
+// One extra sample on each side of the body, so that its surface is closed.
 Samples Resample(vtkUnstructuredGrid& grid, const ColourScale& scale) {
   std::array<double, 6> bounds;
   grid.GetBounds(bounds.data());
@@ -104,7 +104,7 @@ void AddHaze(const Samples& samples, const ColourScale& scale, vtkRenderer& rend
   mapper->SetInputData(samples.image);
   mapper->AutoAdjustSampleDistancesOff();
   mapper->SetSampleDistance(static_cast<float>(samples.step));
-  mapper->SetImageSampleDistance(2);  // of the pixels that are averaged down
+  mapper->SetImageSampleDistance(2);  // in pixels before downsampling
   mapper->SetNumberOfThreads(1);
   vtkNew<vtkVolume> volume;
   volume->SetMapper(mapper);
@@ -120,7 +120,7 @@ void AddVeil(const Samples& samples, vtkRenderer& renderer) {
   for (vtkIdType i = 0; i < from.GetNumberOfTuples(); ++i) {
     density->GetPointData()->GetScalars()->SetTuple1(i, from.GetComponent(i, 1) / kFull);
   }
-  vtkNew<vtkImageGaussianSmooth> blur;  // the steps between samples away
+  vtkNew<vtkImageGaussianSmooth> blur;  // smooths the steps between samples
   blur->SetInputData(density);
   blur->SetStandardDeviations(1, 1, 1);
   vtkNew<vtkFlyingEdges3D> surface;

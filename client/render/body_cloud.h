@@ -8,9 +8,9 @@
 
 namespace fascicle::client {
 
-// Draws a deformed body as a volume [Zhu, Chen & Kaufman 1998, 5]: its elements resampled to a regular grid, rays cast
-// through it that gather density and colour, and a transparent surface of equal density around it. `grid` has one value
-// for each node (`colour`) where the scale has colours.
+// Draws a deformed body as a volume [Zhu, Chen & Kaufman 1998, 6]: resamples its elements to a regular grid, casts rays
+// through it that accumulate density and colour, and adds a transparent isosurface of the density. `grid` has one value
+// for each node (`colour`) if the scale has colours.
 void AddCloud(vtkUnstructuredGrid& grid, const ColourScale& scale, vtkRenderer& renderer);
 
 }  // namespace fascicle::client

@@ -15,7 +15,7 @@ namespace fascicle::client {
 
 void AddLabels(const BodyShape& shape, const std::vector<Vec3>& positions, const ImagePlace& place, std::uint8_t label,
                std::vector<std::uint8_t>& labels) {
-  // In voxels, so that the samples are those of the image; only the box that the body fills.
+  // In voxel units, so that the samples are those of the image; only within the body's bounding box.
   std::vector<Vec3> in_voxels;
   Vec3 low = Vec3::Constant(INFINITY), high = -low;
   for (const Vec3& x : positions) {
@@ -32,7 +32,7 @@ void AddLabels(const BodyShape& shape, const std::vector<Vec3>& positions, const
     dimensions[d] = last - first[d] + 1;
     if (dimensions[d] < 1) return;
     bounds[2 * d] = first[d];
-    // One sample alone needs a width all the same.
+    // A single sample still needs a width.
     bounds[2 * d + 1] = std::max(last, first[d] + 1);
     dimensions[d] = std::max(2, dimensions[d]);
   }

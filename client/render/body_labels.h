@@ -10,7 +10,7 @@
 
 namespace fascicle::client {
 
-// Where the voxels of an image are: the centre of voxel (i, j, k) is at origin + direction * (spacing times (i, j, k)).
+// The position of an image: the centre of voxel (i, j, k) is at origin + direction * (spacing times (i, j, k)).
 struct ImagePlace {
   std::array<int, 3> size = {0, 0, 0};
   Vec3 spacing = Vec3::Ones();  // [m]
@@ -18,8 +18,8 @@ struct ImagePlace {
   Mat3 direction = Mat3::Identity();
 };
 
-// Puts `label` to the voxels of an image whose centres a body at given positions [m] holds. `labels`: one for each
-// voxel, i fastest.
+// Assigns `label` to the voxels of an image whose centres are inside of a body with the given positions [m]. `labels`:
+// one for each voxel, i fastest.
 void AddLabels(const BodyShape& shape, const std::vector<Vec3>& positions, const ImagePlace& place, std::uint8_t label,
                std::vector<std::uint8_t>& labels);
 

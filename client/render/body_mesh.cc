@@ -27,7 +27,7 @@ vtkSmartPointer<vtkPoints> MakePoints(const std::vector<Vec3>& positions) {
   return points;
 }
 
-// Every n-th centroid, the same ones in every frame.
+// Every n-th centroid; the same ones in every frame.
 vtkSmartPointer<vtkPolyData> MakeSeeds(const BodyShape& shape, const std::vector<Vec3>& positions, int seeds) {
   const std::size_t count = shape.tetrahedra.size();
   const std::size_t stride = std::max<std::size_t>(1, count / static_cast<std::size_t>(seeds));
@@ -71,7 +71,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std:
 vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid, bool smooth) {
   vtkNew<vtkDataSetSurfaceFilter> surface;
   surface->SetInputData(&grid);
-  // Taubin's filter without shrinking.
+  // Taubin's filter, which does not shrink.
   vtkNew<vtkWindowedSincPolyDataFilter> sinc;
   sinc->SetInputConnection(surface->GetOutputPort());
   sinc->SetNumberOfIterations(20);

@@ -15,8 +15,8 @@ namespace fascicle::client {
 vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std::vector<Vec3>& positions,
                                               const std::vector<double>& values);
 
-// Outer faces with normals for smooth shading; edges sharper than 40 degrees stay sharp. `smooth`: with
-// corners moved, by less than a voxel, so that steps between voxels are not seen.
+// Boundary faces with normals for smooth shading; edges sharper than 40 degrees stay sharp. `smooth`: moves corners, by
+// less than a voxel, to hide the steps between voxels.
 vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid, bool smooth = false);
 
 // Lines along the fibres in the deformed body, through about `seeds` points; empty without fibres.

@@ -18,7 +18,7 @@ namespace {
 PictureSize Checked(PictureSize size) {
   constexpr int kSmallest = 16, kLargest = 8192;
   if (size.width < kSmallest || size.height < kSmallest || size.width > kLargest || size.height > kLargest) {
-    throw std::runtime_error("pictures are 16 to 8192 pixels a side");
+    throw std::runtime_error("a picture has 16 to 8192 pixels per side");
   }
   return size;
 }
@@ -29,7 +29,7 @@ Canvas::Canvas(PictureSize size) : size_(Checked(size)), display_(Display::Open(
   window_->SetDisplayId(display_->native());
   window_->SetShowWindow(false);
   window_->UseOffScreenBuffersOn();
-  window_->SetMultiSamples(0);  // averaging down does it, and transparency needs it off
+  window_->SetMultiSamples(0);  // downsampling replaces it, and transparency requires it off
   window_->SetAlphaBitPlanes(1);
   window_->SetDPI(72 * kSampling);
   window_->SetSize(width(), height());

@@ -19,25 +19,25 @@ struct PictureSize {
   int height = 900;
 };
 
-// A drawing surface that no one sees, saved as PNG. Drawn at twice the size and averaged down, so that edges and thin
-// lines are smooth; line widths and positions in pixels must be multiplied by kSampling, text scales by itself.
-// One at a time in a process, from one thread.
+// An off-screen drawing surface that is saved as PNG. It is drawn at twice the size and downsampled, so that edges and
+// thin lines are smooth. Multiply line widths and positions in pixels by kSampling; text scales automatically. One
+// object at a time in a process, from one thread.
 class Canvas {
  public:
   static constexpr int kSampling = 2;
 
-  // 16 to 8,192 pixels a side. Throws std::runtime_error when there is no display to draw on.
+  // 16 to 8,192 pixels per side. Throws std::runtime_error if there is no display to draw on.
   explicit Canvas(PictureSize size);
 
   vtkRenderWindow& window() { return *window_; }
   int width() const { return size_.width * kSampling; }    // [pixel drawn]
   int height() const { return size_.height * kSampling; }  // [pixel drawn]
 
-  // Draws and writes the file, whole or not at all. Throws std::runtime_error with a message for people.
+  // Draws and writes the file atomically. Throws std::runtime_error with a message for users.
   void Save(const std::filesystem::path& path);
-  // Draws, and gives the picture: red, green and blue of each pixel, the lowest row first.
+  // Draws and returns the picture: red, green and blue of each pixel, lowest row first.
   vtkSmartPointer<vtkImageData> Grab();
-  // Takes everything off, for the next picture.
+  // Removes everything, for the next picture.
   void Clear();
 
  private:

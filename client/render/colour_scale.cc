@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kColours = 256;
 
-// Nearly uniform in perceived lightness, so that equal differences look equal, also in grey and to the colour-blind.
+// Nearly uniform in perceived lightness, so that equal differences look equal, also in grey and for colour-blind
+// readers.
 constexpr std::array<std::array<double, 3>, 9> kSequential = {{{0.267, 0.005, 0.329},
                                                                {0.279, 0.175, 0.483},
                                                                {0.230, 0.322, 0.546},
@@ -57,14 +58,14 @@ ReadableUnit MakeReadable(double largest, const std::string& unit) {
   };
   constexpr std::array<Prefix, 5> kPrefixes = {{{1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "µ"}}};
   for (const Prefix& prefix : kPrefixes) {
-    if (prefix.size > 1 && unit[0] == 'm') continue;  // kilometres help nobody
+    if (prefix.size > 1 && unit[0] == 'm') continue;  // kilometres are never useful here
     if (largest >= prefix.size) return {1 / prefix.size, prefix.name + unit};
   }
   return {1e6, "µ" + unit};
 }
 
 ColourScale MakeColourScale(double lowest, double highest, bool keep_ends) {
-  // A uniform field still needs a scale to stand on.
+  // A uniform field still needs a non-empty range.
   const double size = std::max(std::abs(lowest), std::abs(highest));
   if (!(highest - lowest > 1e-9 * size)) {
     const double half = size > 0 ? 0.01 * size : 1e-6;

@@ -8,15 +8,15 @@
 
 namespace fascicle::client {
 
-// A unit with a factor that makes values of a given size easy to read: 0.012 m -> 12 mm.
+// A unit and a factor that make values of a given magnitude easy to read: 0.012 m -> 12 mm.
 struct ReadableUnit {
   double factor = 1;  // shown value = factor * value
   std::string name;   // "mm", "kPa"; empty for pure numbers
 };
 ReadableUnit MakeReadable(double largest, const std::string& unit);
 
-// Colours over [lowest, highest]: dark blue over green to yellow, or blue over white to red around zero where the
-// values clearly lie on both sides of it.
+// Colours over [lowest, highest]: dark blue, green, yellow; or blue, white, red around zero if the values clearly have
+// both signs.
 struct ColourScale {
   double lowest = 0;
   double highest = 1;

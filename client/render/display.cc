@@ -52,12 +52,12 @@ class Xvfb {
   // Only calls that are safe between fork and exec.
   [[noreturn]] static void Exec(int number_end, pid_t parent) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(127);  // the parent died before the line above
-    setsid();                             // Ctrl-C is for the parent
+    if (getppid() != parent) _exit(127);  // the parent ended before the previous line
+    setsid();                             // Ctrl-C is for the parent only
     sigset_t none;
     sigemptyset(&none);
     sigprocmask(SIG_SETMASK, &none, nullptr);
-    dup2(number_end, 3);  // also clears close-on-exec, but for a pipe that is 3 already
+    dup2(number_end, 3);  // also clears close-on-exec, except for a pipe that already is 3
     fcntl(3, F_SETFD, 0);
     const int nowhere = open("/dev/null", O_RDWR);
     for (int stream = 0; stream < 3; ++stream) dup2(nowhere, stream);
@@ -65,7 +65,7 @@ class Xvfb {
     _exit(127);
   }
 
-  // The digits up to the line's end; empty when the program ended or took too long.
+  // The digits up to the end of the line; empty if the program ended or took too long.
   static std::string ReadNumber(int end) {
     const auto deadline = std::chrono::steady_clock::now() + kPatience;
     std::string number;
@@ -95,7 +95,7 @@ class Xvfb {
 
 class OpenDisplay final : public Display {
  public:
-  // Before the connection, so that it ends after it.
+  // Declared before the connection, so that it is destroyed after it.
   std::unique_ptr<Xvfb> xvfb;
   XDisplay* connection = nullptr;
 

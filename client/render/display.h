@@ -5,11 +5,11 @@
 
 namespace fascicle::client {
 
-// A connection to an X display to draw on without a window being shown: the one that $DISPLAY names when it answers,
-// otherwise a virtual one (Xvfb) that this process starts, that listens on no network and that ends with it.
+// A connection to an X display for off-screen drawing: the one given by $DISPLAY if it responds, otherwise a virtual
+// one (Xvfb) that this process starts. Xvfb does not listen on any network and ends with this process.
 class Display {
  public:
-  // Throws std::runtime_error with a message for people, such as that Xvfb is missing.
+  // Throws std::runtime_error with a message for users, such as that Xvfb is missing.
   static std::unique_ptr<Display> Open();
   virtual ~Display() = default;
   // Xlib's `Display*`.

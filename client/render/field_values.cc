@@ -13,7 +13,7 @@ Mat3 Edges(const std::vector<Vec3>& x, const std::array<std::uint32_t, 4>& t) {
   return edges;
 }
 
-// Mean of the values of the elements around each node, weighted by rest volume, which all voxels share.
+// Averages the values of the elements around each node, weighted by rest volume (which is the same for all voxels).
 std::vector<double> AverageAtNodes(const BodyShape& shape, const std::vector<double>& values) {
   std::vector<double> sums(shape.positions.size(), 0.0), weights(shape.positions.size(), 0.0);
   for (std::size_t e = 0; e < shape.tetrahedra.size(); ++e) {
@@ -58,8 +58,8 @@ Tuples FindField(const BodyShape& shape, const v1::BodyFrame& frame, const std::
     }
     known += ", " + field.name();
   }
-  throw std::runtime_error("there is no field `" + name + "` in the frame; there are: " + known +
-                           " (the scene's output.fields says which are kept)");
+  throw std::runtime_error("there is no field `" + name + "` in the frame; existing fields: " + known +
+                           " (see the scene's output.fields)");
 }
 
 std::vector<std::string> ComponentNames(std::size_t components) {
@@ -68,7 +68,7 @@ std::vector<std::string> ComponentNames(std::size_t components) {
   return {};
 }
 
-// One value a tuple: a component or, of vectors, the magnitude.
+// One value per tuple: a component or, for vectors, the magnitude.
 std::vector<double> Reduce(const Tuples& tuples, const std::string& field, const std::string& component) {
   const std::size_t n = tuples.components;
   std::size_t chosen = 0;

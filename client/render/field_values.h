@@ -9,7 +9,7 @@
 
 namespace fascicle::client {
 
-// What a body is coloured by: one value for each node.
+// The values that colour a body, one for each node.
 struct NodeValues {
   std::vector<double> values;
   std::string title;  // `von_mises_stress`, `displacement z`
@@ -17,8 +17,8 @@ struct NodeValues {
 };
 
 // Values of `field` for colouring: `displacement`, the name of a field of the frame, or NAME/COMPONENT such as
-// `displacement/z`, `cauchy_stress/xx`. A vector without component gives its magnitude; values of elements are
-// averaged to nodes by rest volume. Throws std::runtime_error that lists what there is.
+// `displacement/z`, `cauchy_stress/xx`. A vector without a component gives its magnitude; values of elements are
+// averaged to nodes by rest volume. Throws std::runtime_error that lists the existing fields.
 NodeValues ValuesAtNodes(const BodyShape& shape, const v1::BodyFrame& frame, const std::string& field);
 
 // Unit fibre directions in the deformed body at the nodes, averaged as lines (a and -a are the same); zero where there

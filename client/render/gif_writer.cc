@@ -37,7 +37,7 @@ GifWriter::GifWriter(PictureSize size, double frames_per_second)
   if (file_ == nullptr) throw std::runtime_error("the GIF could not be made");
   EGifSetGifVersion(file_, true);
   Check(EGifPutScreenDesc(file_, size.width, size.height, 8, 0, nullptr));
-  // Repeats for ever.
+  // Repeats indefinitely.
   const std::array<GifByteType, 3> forever = {1, 0, 0};
   Check(EGifPutExtensionLeader(file_, APPLICATION_EXT_FUNC_CODE));
   Check(EGifPutExtensionBlock(file_, 11, "NETSCAPE2.0"));

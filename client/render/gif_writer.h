@@ -12,18 +12,18 @@ struct GifFileType;
 
 namespace fascicle::client {
 
-// Collects pictures of one size as an animated GIF that repeats, each with 256 colours of its own.
+// Collects pictures of one size to an animated GIF that repeats, each with its own 256 colours.
 class GifWriter {
  public:
-  // Throws std::runtime_error with a message for people, as do the others.
+  // Throws std::runtime_error with a message for users, like the other functions.
   GifWriter(PictureSize size, double frames_per_second);
   ~GifWriter();
   GifWriter(const GifWriter&) = delete;
   GifWriter& operator=(const GifWriter&) = delete;
 
-  // Red, green and blue of each pixel, the lowest row first, as Canvas gives it.
+  // Red, green and blue of each pixel, lowest row first, as returned by Canvas.
   void Add(vtkImageData& picture);
-  // Writes the file, whole or not at all. Nothing may be added after.
+  // Writes the file atomically. Nothing may be added afterwards.
   void Save(const std::filesystem::path& path);
 
  private:

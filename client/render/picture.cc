@@ -36,12 +36,12 @@ constexpr int kFibreSeeds = 70;
 constexpr int kScaleWidth = 230;  // [pixel]
 
 struct Colouring {
-  std::vector<std::vector<double>> values;  // for each body: one for each node; empty without colour
+  std::vector<std::vector<double>> values;  // for each body: one for each node; empty without a colour
   std::string title;
   ColourScale scale;
 };
 
-// The colours of each frame, on one scale.
+// The colours of each frame, on a common scale.
 std::vector<Colouring> ColourFrames(const std::vector<BodyShape>& shapes, std::span<const v1::Frame> frames,
                                     const PictureOptions& options) {
   std::vector<Colouring> colourings(frames.size());
@@ -118,7 +118,7 @@ void AddBody(const BodyShape& shape, const v1::BodyFrame& frame, const Colouring
     renderer.AddActor(actor);
   }
   if (options.wireframe) {
-    // Over a surface the edges are ink; alone they carry the colours.
+    // On a surface, edges are dark; without a surface, they have the colours.
     const auto edges = MakeActor(surface, options.surface ? Colouring{} : colouring);
     edges->GetProperty()->SetRepresentationToWireframe();
     edges->GetProperty()->SetLineWidth(Canvas::kSampling * (options.surface ? 0.8F : 1.2F));
@@ -137,11 +137,11 @@ void AddBody(const BodyShape& shape, const v1::BodyFrame& frame, const Colouring
   }
 }
 
-// The outline of the rest shape as the camera sees it, over everything else.
+// The outline of the rest shape as seen by the camera, in front of everything else.
 void AddRestOutlines(const std::vector<BodyShape>& shapes, vtkRenderer& renderer, vtkRenderer& overlay) {
   for (const BodyShape& shape : shapes) {
     vtkNew<vtkPolyDataSilhouette> silhouette;
-    // Of voxels the contour alone: their edges are everywhere.
+    // For voxels only the silhouette, because their edges are everywhere.
     const bool voxels = !shape.bricks.empty();
     silhouette->SetInputData(MakeSurface(*MakeGrid(shape, shape.positions, {}), voxels));
     silhouette->SetCamera(renderer.GetActiveCamera());
@@ -163,14 +163,14 @@ void AddText(const std::string& text, double x, double y, int size, bool bold, v
   renderer.AddActor2D(actor);
 }
 
-// `width` is that of the renderer [pixel drawn].
+// `width` is that of the renderer, before downsampling [pixel].
 void AddScale(const Colouring& colouring, double width, vtkRenderer& renderer) {
   if (colouring.scale.table == nullptr) return;
   vtkNew<vtkScalarBarActor> bar;
   bar->SetLookupTable(colouring.scale.table);
   bar->SetNumberOfLabels(6);
   bar->SetMaximumNumberOfColors(256);
-  bar->SetLabelFormat("  %.4g");  // the spaces keep the numbers off the bar
+  bar->SetLabelFormat("  %.4g");  // the spaces separate the numbers from the bar
   bar->UnconstrainedFontSizeOn();
   bar->GetLabelTextProperty()->SetFontSize(16);
   bar->GetLabelTextProperty()->SetColor(kInk);
@@ -202,11 +202,11 @@ std::string TimeText(const v1::Frame& frame) {
   return text;
 }
 
-// What all panels of a picture share.
+// Data shared by all panels of a picture.
 struct Setting {
   std::vector<BodyShape> shapes;
-  std::vector<Colouring> colourings;  // of each frame
-  std::array<double, 6> bounds;       // of all bodies in all frames, as VTK has them [m]
+  std::vector<Colouring> colourings;  // for each frame
+  std::array<double, 6> bounds;       // of all bodies in all frames, in VTK's order [m]
 };
 
 Setting MakeSetting(const v1::Geometry& geometry, std::span<const v1::Frame> frames, const PictureOptions& options) {
@@ -225,13 +225,13 @@ Setting MakeSetting(const v1::Geometry& geometry, std::span<const v1::Frame> fra
   return setting;
 }
 
-// A part of a picture: [left, right] x [bottom, top] of it, each from 0 to 1.
+// A part of a picture: [left, right] x [bottom, top], as fractions of it.
 struct Part {
   double left = 0, bottom = 0, right = 1, top = 1;
 };
 
 void AddLights(vtkRenderer& renderer) {
-  // From above the eye, so that faces that look up are not black.
+  // From above the camera, so that faces turned upwards are not black.
   vtkNew<vtkLight> above;
   above->SetLightTypeToCameraLight();
   above->SetPosition(0.3, 1, 0.4);
@@ -253,12 +253,12 @@ vtkSmartPointer<vtkRenderer> AddBackground(const Part& part, Canvas& canvas) {
   return renderer;
 }
 
-// Draws one frame into a part of the canvas. The length bar is in the last.
+// Draws one frame into a part of the canvas. The last panel has the length bar.
 vtkSmartPointer<vtkRenderer> AddPanel(const Setting& setting, const v1::Frame& frame, std::size_t index,
                                       const PictureOptions& options, const Part& part, bool last, Canvas& canvas) {
   const double width = canvas.width() * (part.right - part.left), height = canvas.height() * (part.top - part.bottom);
   const auto renderer = AddBackground(part, canvas);
-  renderer->SetUseDepthPeeling(!options.volume);  // rays are cast over what is drawn before
+  renderer->SetUseDepthPeeling(!options.volume);  // rays are blended with everything drawn before
   renderer->SetMaximumNumberOfPeels(12);
   renderer->SetOcclusionRatio(0);
   for (std::size_t i = 0; i < setting.shapes.size(); ++i) {
@@ -277,7 +277,7 @@ vtkSmartPointer<vtkRenderer> AddPanel(const Setting& setting, const v1::Frame& f
   return renderer;
 }
 
-// Rows and columns for so many panels of a picture of that shape, all as near to square as can be.
+// Rows and columns for the given number of panels, such that panels are as square as possible.
 std::pair<int, int> LayOut(std::size_t count, const PictureSize& size) {
   int columns = 1;
   const auto shape = [&](int c) {
@@ -293,7 +293,7 @@ std::pair<int, int> LayOut(std::size_t count, const PictureSize& size) {
 void AddPanels(const Setting& setting, std::span<const v1::Frame> frames, std::size_t first_index,
                const PictureOptions& options, Canvas& canvas) {
   canvas.window().SetNumberOfLayers(3);
-  // The scale stands beside panels; a single frame keeps clear of it.
+  // The scale is beside several panels; a single panel leaves space for it.
   const Colouring& colouring = setting.colourings[first_index];
   const bool beside = frames.size() > 1 && colouring.scale.table != nullptr;
   const double right = beside ? 1 - static_cast<double>(kScaleWidth) / options.size.width : 1;

@@ -13,46 +13,46 @@
 
 namespace fascicle::client {
 
-// How a frame is drawn.
+// How to draw a frame.
 struct PictureOptions {
   PictureSize size;
-  // What the surface is coloured by, see ValuesAtNodes; empty: a plain colour.
+  // The quantity that colours the surface, see ValuesAtNodes; empty: a plain colour.
   std::string colour = "displacement";
-  // Values at the ends of the colour scale, in the field's unit; those of the frame when absent.
+  // Range of the colour scale, in the field's unit; by default that of the frame.
   std::optional<std::pair<double, double>> range;
   bool surface = true;
-  bool smooth = false;  // the surface's steps between voxels away
+  bool smooth = false;  // smooths the steps between voxels
   bool wireframe = false;
-  // The body as a cloud, resampled to a regular grid and cast through by rays: the longer its way, the denser, coloured
-  // by the mean of what it meets, in a veil of the body's surface.
+  // Draws the body as a cloud, resampled to a regular grid and cast by rays: the opacity grows with the length of a ray
+  // in the body, the colour is the mean along it; with a veil of the body's surface.
   bool volume = false;
-  bool rest_outline = true;  // the outline of the rest shape, over the body
+  bool rest_outline = true;  // the outline of the rest shape, in front of the body
   bool fibres = false;       // as lines through a transparent surface
-  // Where the eye stands [degree]: azimuth from +x to +y, elevation from the xy plane to +z. When both are absent, a
-  // body much longer than wide lies across the picture, others are seen from a corner.
+  // Viewpoint [degree]: azimuth from +x to +y, elevation from the xy plane to +z. If both are absent, a body much
+  // longer than wide lies across the picture; others are seen from a corner.
   std::optional<double> azimuth;
   std::optional<double> elevation;
   double zoom = 1;
   std::string title;
-  bool time = true;  // below the title
+  bool time = true;  // shown below the title
 };
 
-// Draws a frame of all bodies and writes a PNG. Throws std::runtime_error with a message for people.
+// Draws a frame of all bodies and writes a PNG. Throws std::runtime_error with a message for users.
 void DrawPicture(const v1::Geometry& geometry, const v1::Frame& frame, const PictureOptions& options,
                  const std::filesystem::path& path);
 
-// The same of several frames in panels side by side, with the same eye, scale and colours: at least one, at most 24.
+// The same for several frames in panels side by side, with the same viewpoint, scale and colours: 1 to 24 frames.
 void DrawPanels(const v1::Geometry& geometry, std::span<const v1::Frame> frames, const PictureOptions& options,
                 const std::filesystem::path& path);
 
 struct AnimationOptions {
   double frames_per_second = 12;  // (0, 50]
-  // One frame, the eye going round it in so many pictures; 0: the frames one after the other.
+  // 0: one picture per frame; otherwise this number of pictures of the last frame, with a rotating viewpoint.
   int turntable = 0;
 };
 
-// Draws the frames one after the other, or goes round the last of them, with the same scale and colours, and writes an
-// animated GIF that repeats. `progress` gets the part that is done.
+// Draws the frames in sequence, or the last one with a rotating viewpoint, with the same scale and colours, and writes
+// an animated GIF that repeats. `progress` receives the completed fraction.
 void DrawAnimation(const v1::Geometry& geometry, std::span<const v1::Frame> frames, const PictureOptions& options,
                    const AnimationOptions& animation, const std::filesystem::path& path,
                    const std::function<void(double)>& progress = {});

@@ -21,7 +21,7 @@
 namespace fascicle::client {
 namespace {
 
-// Told apart also by the colour-blind [Okabe and Ito].
+// Distinguishable by colour-blind readers, too [Okabe and Ito].
 constexpr std::array<std::array<unsigned char, 3>, 8> kColours = {{{0, 114, 178},
                                                                    {213, 94, 0},
                                                                    {0, 158, 115},
@@ -70,7 +70,7 @@ void StyleAxis(vtkAxis& axis, const std::string& label) {
   axis.GetGridPen()->SetColor(232, 232, 232);
 }
 
-// Leaves a margin, and room around a line that is level up to round-off.
+// Adds a margin, and a range around a line that is constant up to round-off.
 void SetRange(const Extent& extent, double margin, vtkAxis& axis) {
   const double size = std::max(std::abs(extent.lowest), std::abs(extent.highest));
   double half = margin * (extent.highest - extent.lowest);
@@ -97,7 +97,7 @@ vtkSmartPointer<vtkChartXY> MakeChart(const PlotPanel& panel) {
     plot.GetPen()->SetLineType(kStyles[i / kColours.size() % kStyles.size()]);
   }
   StyleAxis(*chart->GetAxis(vtkAxis::BOTTOM), panel.x_label);
-  // The simple one lets long labels run into each other; upright there is room, and its ranges are the tighter ones.
+  // The simple algorithm lets long labels overlap. On the vertical axis there is space, and its ranges are tighter.
   chart->GetAxis(vtkAxis::BOTTOM)->SetTickLabelAlgorithm(vtkAxis::TICK_WILKINSON_EXTENDED);
   StyleAxis(*chart->GetAxis(vtkAxis::LEFT), panel.y_label);
   if (x_extent.lowest <= x_extent.highest) {
@@ -137,8 +137,8 @@ void DrawPlot(const std::vector<PlotPanel>& panels, PictureSize size, const std:
     scene.AddItem(chart);
     charts.push_back(chart);
   }
-  // The first drawing finds the shift by which charts keep precision where values differ little from each other; only
-  // the second puts the lines there.
+  // The first drawing finds the shift that preserves precision where values differ little; the second one applies it to
+  // the lines.
   canvas.window().Render();
   for (const auto& chart : charts) chart->RecalculateBounds();
   canvas.Save(path);

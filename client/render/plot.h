@@ -9,14 +9,14 @@
 
 namespace fascicle::client {
 
-// One line of a plot; points with a value that is not a number are left out.
+// One line of a plot; points with NaN are omitted.
 struct PlotLine {
   std::string name;
   std::vector<double> x;
   std::vector<double> y;
 };
 
-// Lines that share their axes.
+// Lines with common axes.
 struct PlotPanel {
   std::string title;
   std::string x_label;
@@ -24,7 +24,7 @@ struct PlotPanel {
   std::vector<PlotLine> lines;
 };
 
-// Draws the panels below each other and writes a PNG. Throws std::runtime_error with a message for people.
+// Draws the panels below each other and writes a PNG. Throws std::runtime_error with a message for users.
 void DrawPlot(const std::vector<PlotPanel>& panels, PictureSize size, const std::filesystem::path& path);
 
 }  // namespace fascicle::client

@@ -19,7 +19,7 @@ namespace {
 
 using Colour = std::array<unsigned char, 3>;
 
-// Of outlines: bright on grey, and told apart also by the colour-blind.
+// Colours of outlines: bright on grey, and distinguishable by colour-blind readers.
 constexpr std::array<Colour, 6> kColours = {
     {{255, 176, 0}, {86, 180, 233}, {255, 80, 120}, {0, 210, 150}, {220, 130, 255}, {240, 228, 66}}};
 constexpr int kColumns = 3, kRows = 2;
@@ -28,7 +28,7 @@ constexpr int kMargin = 10 * Canvas::kSampling, kCaption = 22 * Canvas::kSamplin
 
 const Colour& ColourOf(int label) { return kColours[static_cast<std::size_t>(label - 1) % kColours.size()]; }
 
-// A slice across one axis.
+// A slice normal to one axis.
 struct Panel {
   int across = 2;          // axis
   int right = 0, up = 1;   // axes of the picture

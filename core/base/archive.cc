@@ -10,7 +10,7 @@
 namespace fascicle {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the archive is written as the memory stands");
+static_assert(std::endian::native == std::endian::little, "archives store values in little-endian memory order");
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
 constexpr std::string_view kMagic = "FSCA";

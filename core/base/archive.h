@@ -11,15 +11,16 @@
 
 namespace fascicle {
 
-// Writes named values into bytes that an ArchiveReader restores bit for bit: what a checkpoint is made of.
-// Little-endian: "FSCA", kind, version, fields, CRC-32C of all before. A field is its type, name and value.
+// Writes named values to bytes from which an ArchiveReader restores the same bits. Checkpoints are archives.
+// Layout, little-endian: "FSCA", kind, version, fields, CRC-32C of everything before it. A field is its type, name and
+// value.
 // Not thread-safe.
 class ArchiveWriter {
  public:
-  // `kind` says what the archive holds (at most 255 bytes), `version` the layout of its fields.
+  // `kind` names the contents (at most 255 bytes); `version` numbers the layout of the fields.
   ArchiveWriter(std::string_view kind, std::uint32_t version);
 
-  // Names of at most 255 bytes.
+  // Names have at most 255 bytes.
   void PutInt(std::string_view name, std::int64_t value);
   void PutDouble(std::string_view name, double value);
   void PutString(std::string_view name, std::string_view value);
@@ -27,7 +28,7 @@ class ArchiveWriter {
   void PutDoubles(std::string_view name, std::span<const double> values);
   void PutVectors(std::string_view name, std::span<const Vec3> values);
 
-  // Ends the archive; nothing may be put after.
+  // Ends the archive. Nothing may be put after it.
   std::string Finish();
 
  private:
@@ -37,9 +38,9 @@ class ArchiveWriter {
   std::string bytes_;
 };
 
-// Reads an archive in the order in which it was written. Any difference (damaged or cut bytes, another kind or version,
-// another name, type or length) turns it into failed() for good: from then on values read are zero or unchanged.
-// Never reads beyond the bytes nor allocates more than they hold. Not thread-safe.
+// Reads an archive in the order in which it was written. Any mismatch (damaged or missing bytes, another kind, version,
+// name, type or length) sets failed() for good; later reads give zero or leave the value unchanged.
+// Never reads beyond the bytes and never allocates more than they hold. Not thread-safe.
 class ArchiveReader {
  public:
   // `bytes` must outlive the reader.
@@ -48,25 +49,25 @@ class ArchiveReader {
   std::int64_t GetInt(std::string_view name);
   double GetDouble(std::string_view name);
   std::string GetString(std::string_view name);
-  // Of any length.
+  // Any length.
   void GetInts(std::string_view name, std::vector<std::int32_t>& values);
   void GetDoubles(std::string_view name, std::vector<double>& values);
   void GetVectors(std::string_view name, std::vector<Vec3>& values);
-  // Of exactly values.size().
+  // Exactly values.size() numbers.
   void GetInts(std::string_view name, std::span<std::int32_t> values);
   void GetDoubles(std::string_view name, std::span<double> values);
   void GetVectors(std::string_view name, std::span<Vec3> values);
 
-  // Marks what was read as unfit, for reasons the archive cannot see.
+  // Marks the archive as failed for a reason that the reader cannot detect by itself.
   void Fail() { failed_ = true; }
   bool failed() const { return failed_; }
-  // Whether all went well and nothing is left.
+  // Whether every read succeeded and no bytes are left.
   bool AtEnd() const { return !failed_ && rest_.empty(); }
 
  private:
   bool TakeHead(char type, std::string_view name);
   bool TakeRaw(void* data, std::size_t size);
-  // Head and length of an array; its bytes, or nothing on failure.
+  // Reads the head and length of an array. Returns its bytes, or nothing on failure.
   std::string_view TakeArray(char type, std::string_view name, std::size_t item_size);
   template <class Item>
   void GetVector(char type, std::string_view name, std::vector<Item>& values);

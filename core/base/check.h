@@ -5,13 +5,13 @@
 
 namespace fascicle {
 
-// Prints where and what, then aborts.
+// Prints the place and the message, then aborts.
 [[noreturn]] void CheckFailed(const char* file, int line, const char* condition, std::string_view message);
 
 }  // namespace fascicle
 
-// Ends the program when `condition` is false: a mistake of ours, never of a user's input. On in every build; the
-// message is evaluated only then.
+// Aborts the program when `condition` is false: an error in fascicle itself, never in a user's input. Active in every
+// build; the message is evaluated only on failure.
 #define FASCICLE_CHECK(condition, message)                                \
   do {                                                                    \
     if (!(condition)) [[unlikely]]                                        \

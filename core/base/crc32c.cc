@@ -33,12 +33,13 @@ std::uint32_t ExtendByTable(const char* data, std::size_t size, std::uint32_t cr
 
 #if defined(__x86_64__)
 
-// The instruction takes one word a cycle but answers after three: three stretches of the input are summed side by side.
+// The CRC instruction accepts one word per cycle and has a latency of three cycles, so three stretches of the input are
+// processed side by side.
 constexpr std::size_t kStretch = 1024;
 static_assert(kStretch % 8 == 0);
 
-// kAppendZeros[k][b]: the CRC of byte b at position k, after kStretch zero bytes. A CRC is linear in its bits, so that
-// the four bytes' parts add up.
+// kAppendZeros[k][b]: the CRC of byte b at position k followed by kStretch zero bytes. A CRC is linear in its bits, so
+// the contributions of the four bytes add up.
 constexpr std::array<std::array<std::uint32_t, 256>, 4> kAppendZeros = [] {
   std::array<std::uint32_t, 32> of_bit{};
   for (int bit = 0; bit < 32; ++bit) {

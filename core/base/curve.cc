@@ -6,7 +6,7 @@
 namespace fascicle {
 namespace {
 
-// Index of the last point at or before `time`; the caller has made sure that there is one and another after it.
+// Index of the last point at or before `time`. Requires such a point with another one after it.
 std::size_t IntervalOf(const Curve& curve, double time) {
   return static_cast<std::size_t>(std::upper_bound(curve.times.begin(), curve.times.end(), time) -
                                   curve.times.begin()) -

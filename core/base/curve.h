@@ -5,20 +5,20 @@
 
 namespace fascicle {
 
-// A function of time through given points, constant before the first and after the last.
+// A function of time that interpolates points; constant before the first and after the last.
 struct Curve {
   enum class Interpolation { kLinear, kSmooth };
 
   std::vector<double> times;   // [s] strictly increasing, at least one
-  std::vector<double> values;  // as many
+  std::vector<double> values;  // one value for each time
   Interpolation interpolation = Interpolation::kLinear;
 
   static Curve Constant(double value) { return {{0.0}, {value}, Interpolation::kLinear}; }
 
   double At(double time) const;
-  // Derivative [1/s]; at a point of a linear curve, the one after it.
+  // Derivative [1/s]. At a point of a linear curve: the slope after the point.
   double RateAt(double time) const;
-  // The last time at which it changes.
+  // Time of the last point; the curve is constant from there on [s].
   double end() const { return times.back(); }
 };
 

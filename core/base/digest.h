@@ -14,7 +14,7 @@ namespace fascicle {
 // A SHA-256 digest.
 using Digest = std::array<std::uint8_t, 32>;
 
-// Computes SHA-256 over what is given to Update, in pieces of any size. Not thread-safe.
+// Computes the SHA-256 digest of all bytes passed to Update, in pieces of any size. Not thread-safe.
 class Sha256 {
  public:
   Sha256();
@@ -24,7 +24,7 @@ class Sha256 {
 
   void Update(std::span<const std::byte> bytes);
   void Update(std::string_view bytes) { Update(std::as_bytes(std::span(bytes))); }
-  // Ends the computation; Update must not follow.
+  // Ends the computation. Update must not follow.
   Digest Finish();
 
  private:
@@ -33,12 +33,12 @@ class Sha256 {
 };
 
 Digest Sha256Of(std::string_view bytes);
-// 64 lower-case hexadecimal digits.
+// The digest as 64 lower-case hexadecimal digits.
 std::string Hex(const Digest& digest);
 
-// CRC-32C (Castagnoli) of `bytes`; `crc` is the result for the bytes before, 0 at the start.
+// CRC-32C (Castagnoli) of `bytes`. `crc` is the CRC of the bytes before them, 0 at the start.
 std::uint32_t Crc32c(std::string_view bytes, std::uint32_t crc = 0);
-// The same on machines without the CRC instruction, byte by byte.
+// The same by table, byte by byte, for machines without the CRC instruction.
 std::uint32_t Crc32cByTable(std::string_view bytes, std::uint32_t crc = 0);
 
 }  // namespace fascicle

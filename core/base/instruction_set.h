@@ -3,15 +3,15 @@
 
 namespace fascicle {
 
-// What kernels are compiled for; see lanes.h.
+// Instruction sets that kernels are compiled for (see lanes.h).
 enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
 inline constexpr InstructionSet kInstructionSets[] = {InstructionSet::kBaseline, InstructionSet::kAvx2,
                                                       InstructionSet::kAvx512};
 
-// Whether this build and this machine have it.
+// Whether both this build and this machine support the set.
 bool IsAvailable(InstructionSet set);
-// The widest one there is, or what the environment variable FASCICLE_INSTRUCTION_SET says (baseline, avx2, avx512) if
-// that is available. Results are the same bits with each.
+// The widest available set. The environment variable FASCICLE_INSTRUCTION_SET (baseline, avx2, avx512) overrides it
+// with another available one. Results have the same bits with every set.
 InstructionSet PreferredInstructionSet();
 
 }  // namespace fascicle

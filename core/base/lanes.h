@@ -9,18 +9,18 @@
 
 #include "core/base/numbers.h"
 
-// Several numbers side by side, one for each of several elements, in a vector register.
+// Several numbers side by side in a vector register, one for each of several elements.
 //
-// Every operation, logarithm and exponential too, does the same to each lane whatever the number of lanes: formulas
-// give the same bits for any width, as long as the compiler fuses no multiplication with an addition
+// Every operation, logarithm and exponential included, treats each lane alike, whatever the number of lanes. Formulas
+// therefore give the same bits for any width, provided that the compiler fuses no multiplication with an addition
 // (-ffp-contract=off).
 //
-// A file that is compiled for an instruction set must instantiate what it includes with that set's tag alone: functions
-// of the same name that were compiled for another set are the same to the linker.
+// A file that is compiled for an instruction set must instantiate the templates it includes with the tag of that set
+// only: to the linker, a function of the same name compiled for another set is the same function.
 namespace fascicle {
 
-// The instruction sets that kernels are compiled for; as tags.
-struct BaselineSet {  // SSE2 on x86-64, whatever there is elsewhere
+// Tags of the instruction sets that kernels are compiled for.
+struct BaselineSet {  // SSE2 on x86-64, the compiler's default elsewhere
   static constexpr int kBytes = 16;
 };
 struct Avx2Set {
@@ -54,12 +54,12 @@ struct BitsOf<double> {
   static constexpr Unsigned kOne = 0x3ff0000000000000u;       // 1
   static constexpr Unsigned kRootHalf = 0x3fe6a09e667f3bcdu;  // sqrt(1/2)
   static constexpr double kBias = 1023;
-  // ln 2 in two parts; the first has zeros behind, so that whole multiples of it are exact.
+  // ln 2 in two parts. The first ends in zero bits, so that its integer multiples are exact.
   static constexpr double kLn2High = 0x1.62e42feep-1, kLn2Low = 0x1.a39ef35793c76p-33;
   static constexpr double kLeastNormal = 0x1p-1022;
   static constexpr double kExpOverflow = 709.782712893384, kExpUnderflow = -708;
   static constexpr int kLogTerms = 9, kExpTerms = 13;
-  static constexpr int kRootBits = 20;  // of the first guess of a cube root
+  static constexpr int kRootBits = 20;  // of the initial guess of a cube root
 };
 template <>
 struct BitsOf<float> {
@@ -76,7 +76,7 @@ struct BitsOf<float> {
   static constexpr int kRootBits = 10;
 };
 
-// Which lanes: all bits of a true one set, as comparisons of vectors say it.
+// A mask in a vector register: all bits of a true lane are set, as vector comparisons return it.
 template <class Integer, class Set, int kWidth, int kBytes>
 struct LaneMask {
   typedef Integer Integers __attribute__((vector_size(kBytes)));
@@ -92,7 +92,7 @@ struct LaneMask {
   }
 };
 #if defined(__AVX512F__)
-// In a mask register: what these vectors are compared to.
+// A mask in a mask register, as AVX-512 comparisons return it.
 template <class Integer, class Set, int kWidth>
 struct LaneMask<Integer, Set, kWidth, 64> {
   static constexpr unsigned kAll = (1u << kWidth) - 1;
@@ -119,8 +119,8 @@ struct Lanes {
   using Mask = LaneMask<typename Bits::Signed, Set, kWidth, kBytes>;
 
   Lanes() = default;
-  // x - 0 is x for every x, and takes no operation; 0 + x is not for x = -0.
-  Lanes(double x) : v(static_cast<S>(x) - Vector{}) {}  // NOLINT: numbers in formulas are numbers in every lane
+  // x - 0 is x for every x and costs no operation. 0 + x is not x when x = -0.
+  Lanes(double x) : v(static_cast<S>(x) - Vector{}) {}  // NOLINT: numbers in formulas convert implicitly
   static Lanes Of(Vector v) {
     Lanes x;
     x.v = v;
@@ -194,7 +194,7 @@ struct Lanes {
     return Select(x >= Bits::kLeastNormal, of_positive, Select(x >= 0, -infinity, not_a_number));
   }
 
-  // exp x and exp x - 1 to about an ulp, the latter also for small x.
+  // exp x and exp x - 1 to about an ulp; exp x - 1 is accurate for small x, too.
   friend Lanes Exp(Lanes x) {
     const PowerOfE e(x);
     return e.Clipped(e.scale * e.rest + e.scale, x, 0);
@@ -204,13 +204,14 @@ struct Lanes {
     return e.Clipped(e.scale * e.rest + (e.scale - 0.5), x, -1);
   }
 
-  // x^(-1/3) to about an ulp; not a number where x is not positive or below the normal numbers. In a fraction of the
-  // time of a logarithm and an exponential.
+  // x^(-1/3) to about an ulp; NaN where x is not positive or is subnormal. Takes a fraction of the time of a logarithm
+  // and an exponential.
   //
-  // The first guess is 2^t with t = -(ln x / ln 2)/3, both the logarithm and the power by straight lines.
+  // The initial guess is 2^t with t = -(ln x / ln 2)/3, where both the logarithm and the power are replaced by straight
+  // lines.
   friend Lanes InverseCubeRoot(Lanes x) {
     const BinaryParts parts(x);
-    // Adding a large number leaves t as a multiple of a power of two in the lowest bits.
+    // Adding a large number leaves t in the lowest bits, as a multiple of a power of two.
     constexpr int kShift = Bits::kMantissa - Bits::kRootBits;
     const Lanes magic = 1.5 * static_cast<double>(std::uint64_t{1} << kShift);
     const Lanes t = (parts.k + parts.f * 1.4) * (-1.0 / 3.0) + (magic - 0.04);
@@ -234,7 +235,7 @@ struct Lanes {
   Vector v;
 
  private:
-  enum Comparison { kLess, kLessOrEqual, kEqual };  // false where one is not a number
+  enum Comparison { kLess, kLessOrEqual, kEqual };  // false where either is NaN
   template <Comparison kComparison>
   static Mask Compared(Lanes a, Lanes b) {
 #if defined(__AVX512F__)
@@ -257,7 +258,7 @@ struct Lanes {
       const Naturals shifted = bits + (Bits::kOne - Bits::kRootHalf);
       const Naturals exponent = shifted >> Bits::kMantissa;
       const Naturals m = bits - (exponent << Bits::kMantissa) + Bits::kOne;
-      // The exponent as a number: in the lowest bits of one whose last bit counts 1.
+      // The exponent as a number: placed in the lowest bits of a number whose last bit has weight 1.
       const Lanes big = static_cast<double>(std::uint64_t{1} << Bits::kMantissa);
       k = Of((Vector)(exponent | (Naturals)big.v)) - big - Bits::kBias;
       f = Of((Vector)m) - 1;
@@ -269,8 +270,8 @@ struct Lanes {
     explicit Powers(Lanes x) : first(x), square(x * x), fourth(square * square), eighth(fourth * fourth) {}
     Lanes first, square, fourth, eighth;
   };
-  // c[kFirst] + c[kFirst + 1] x + c[kFirst + 2] x^2 + ..., kCount terms, two halves at a time [Estrin]: a few more
-  // operations than Horner's, but they need not wait for each other.
+  // c[kFirst] + c[kFirst + 1] x + c[kFirst + 2] x^2 + ..., kCount terms, by Estrin's scheme: a few more operations than
+  // Horner's, but most of them are independent of each other.
   template <int kFirst, int kCount>
   static Lanes Polynomial(const double* c, const Powers& x) {
     if constexpr (kCount == 1) {
@@ -284,11 +285,11 @@ struct Lanes {
     }
   }
 
-  // exp x = 2 scale (1 + rest), 2 scale = 2^k, rest = exp r - 1 with |r| <= ln 2 / 2. (Half of 2^k can be written also
-  // where the result is nearly too large.)
+  // exp x = 2 scale (1 + rest), 2 scale = 2^k, rest = exp r - 1 with |r| <= ln 2 / 2. Half of 2^k is representable even
+  // where 2^k itself overflows.
   struct PowerOfE {
     explicit PowerOfE(Lanes x) {
-      // Adding 1.5 2^mantissa rounds to a whole number, and leaves it in the lowest bits.
+      // Adding 1.5 2^mantissa rounds to an integer and leaves it in the lowest bits.
       const Lanes magic = 1.5 * static_cast<double>(std::uint64_t{1} << Bits::kMantissa);
       const Lanes shifted = x * 0x1.71547652b82fep0 + magic;
       const Lanes k = shifted - magic;

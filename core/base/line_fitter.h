@@ -9,13 +9,13 @@
 
 namespace fascicle {
 
-// A curve of straight lines through some of the points that it is given, with all others within a tolerance: a line
-// grows until no slope from its start passes all points closely enough.
+// Simplifies a sequence of points to a polyline through some of them, with all others within a tolerance. A line is
+// extended as long as some slope from its start passes every point closely enough.
 class LineFitter {
  public:
   explicit LineFitter(double tolerance) : tolerance_(tolerance) {}
 
-  // Times must not decrease; a point that was added already counts once.
+  // Times must not decrease. A point that equals the last one is ignored.
   void Add(double time, double value) {
     if (curve_.times.empty()) {
       Push(time, value);
@@ -50,7 +50,7 @@ class LineFitter {
   double tolerance_;
   Curve curve_;
   double time_ = 0, value_ = 0;  // the last point
-  double low_ = 0, high_ = 0;    // slopes that pass all points since the last one of the curve
+  double low_ = 0, high_ = 0;    // range of slopes that pass all points since the last one of the curve
 };
 
 }  // namespace fascicle

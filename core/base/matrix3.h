@@ -3,7 +3,8 @@
 
 #include <type_traits>
 
-// Vectors and matrices of three, of numbers or Lanes of them: no more than the formulas of laws and elements need.
+// Vectors and matrices of size three, of numbers or of Lanes: only the operations that constitutive laws and elements
+// need.
 namespace fascicle {
 
 template <class T>
@@ -13,7 +14,7 @@ struct Vector3 {
   const T& operator[](int i) const { return v[i]; }
 };
 
-// Column-major, as Mat3.
+// Column-major, like Mat3.
 template <class T>
 struct Matrix3 {
   T m[9];
@@ -126,7 +127,7 @@ Matrix3<T> Cofactor(const Matrix3<T>& F) {
   }
   return h;
 }
-// det F from F and its cofactor.
+// det F from F and its cofactor matrix.
 template <class T>
 T DeterminantOf(const Matrix3<T>& F, const Matrix3<T>& cofactor) {
   return F(0, 0) * cofactor(0, 0) + F(1, 0) * cofactor(1, 0) + F(2, 0) * cofactor(2, 0);

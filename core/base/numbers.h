@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <limits>
 
-// What formulas that are written once for one number and for many side by side (Lanes) do with their numbers. Here for
-// double; in lanes.h for Lanes. A branch is a Select, and both its sides are evaluated.
+// Functions for formulas that are written once and evaluated for one number or for many side by side (Lanes): here for
+// double, in lanes.h for Lanes. A branch is a Select; both of its sides are evaluated.
 namespace fascicle {
 
 inline double Select(bool condition, double yes, double no) { return condition ? yes : no; }
@@ -16,8 +16,8 @@ inline double Log(double x) { return std::log(x); }
 inline double Exp(double x) { return std::exp(x); }
 inline double Expm1(double x) { return std::expm1(x); }
 
-// x^(-1/3) from a y that is right to 10 %: with r = 1 - x y^3 the result is y (1 - r)^(-1/3), of whose series the first
-// terms are taken, twice.
+// x^(-1/3) from an approximation y with a relative error of at most 10 %. With r = 1 - x y^3 the result is y (1 -
+// r)^(-1/3); the first terms of its series are applied, twice.
 template <class T>
 T RefinedInverseCubeRoot(const T& x, const T& guess) {
   const T r = 1 - x * guess * guess * guess;
@@ -27,8 +27,8 @@ T RefinedInverseCubeRoot(const T& x, const T& guess) {
   const T left = 1 - x * y * y * y;
   return y + y * (left * (1.0 / 3.0 + 2.0 / 9.0 * left));
 }
-// x^(-1/3), not a number where x is not positive or below the normal numbers: step by step what Lanes do, so that both
-// give the same bits. An ulp of it is many where an exponential curve of the fibre's stretch follows.
+// x^(-1/3); NaN where x is not positive or is subnormal. Follows the Lanes version step by step, so that both give the
+// same bits: exponential curves of the fibre stretch amplify an error of one ulp.
 inline double InverseCubeRoot(double x) {
   if (!(x >= std::numeric_limits<double>::min())) return std::nan("");
   constexpr std::uint64_t kOne = 0x3ff0000000000000u, kRootHalf = 0x3fe6a09e667f3bcdu;  // 1 and sqrt(1/2)
@@ -41,7 +41,7 @@ inline double InverseCubeRoot(double x) {
   return RefinedInverseCubeRoot(x, std::bit_cast<double>(power + kOne));
 }
 
-// f of each number by itself, for what has no formula without branches.
+// f applied to each number by itself, for functions without a branch-free formula.
 template <class Function>
 double Map(const Function& f, double x) {
   return f(x);

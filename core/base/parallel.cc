@@ -16,11 +16,12 @@
 namespace fascicle {
 namespace {
 
-// Indices of one term of a sum. A constant, so that the order of the additions never depends on the team.
+// Indices in one term of a sum. A constant, so that the order of additions never depends on the team.
 constexpr std::size_t kSumBlock = 1024;
-// Parts of a loop for each thread: enough to even out a thread that was held up.
+// Parts of a loop per thread: enough to balance the load when a thread is delayed.
 constexpr std::size_t kPartsPerThread = 8;
-// Looks at a flag before going to sleep: some tens of microseconds, longer than the serial stretch between two loops.
+// Polls of a flag before a thread goes to sleep: some tens of microseconds, longer than the serial code between two
+// loops.
 constexpr int kSpins = 2000;
 
 void Pause() {
@@ -31,8 +32,8 @@ void Pause() {
 
 }  // namespace
 
-// Threads enter a loop while it is open and leave when no part is left; the caller closes the loop and waits for those
-// inside only. A thread that wakes late (a busy machine) finds it closed: nobody waits for it.
+// Threads enter a loop while it is open and leave when no part is left. The caller closes the loop and waits only for
+// threads inside. A thread that wakes late (on a busy machine) finds the loop closed; nobody waits for it.
 struct ThreadTeam::Impl {
   // state = loop number * kLoop + (kOpen) + threads inside.
   static constexpr std::uint64_t kOpen = 1u << 16;
@@ -43,7 +44,7 @@ struct ThreadTeam::Impl {
   std::vector<std::thread> threads;
   std::vector<double> terms;  // of RunSum
 
-  // The loop. Written by the caller while nobody is inside.
+  // The current loop. The caller writes it while no thread is inside.
   LoopBody call = nullptr;
   const void* body = nullptr;
   std::size_t count = 0;
@@ -110,8 +111,8 @@ struct ThreadTeam::Impl {
     next.store(0, std::memory_order_relaxed);
     const std::uint64_t loop = state.load() / kLoop + 1;
     state.store(loop * kLoop + kOpen);
-    // A thread counts itself among the sleepers before it looks at the state for the last time, under the mutex: it
-    // sees this loop, or we see it.
+    // A thread counts itself as a sleeper before it reads the state for the last time, under the mutex. So either the
+    // thread sees this loop, or this code sees the thread.
     if (sleepers.load() > 0) {
       { const std::lock_guard lock(mutex); }
       loop_opened.notify_all();

@@ -7,8 +7,8 @@
 
 namespace fascicle {
 
-// A fixed set of threads that run loops together. The calling thread takes part.
-// One loop at a time: the member functions must not be called from two threads at once, nor from inside a loop.
+// A fixed set of threads that run loops together with the calling thread.
+// One loop at a time: member functions must not be called from two threads at once, nor from inside a loop.
 class ThreadTeam {
  public:
   // threads >= 1.
@@ -18,11 +18,11 @@ class ThreadTeam {
   ThreadTeam& operator=(const ThreadTeam&) = delete;
 
   int size() const;
-  // Processor time of all threads but the calling one, since they were started [s].
+  // Processor time of all threads but the calling one since the team was created [s].
   double others_cpu_seconds() const;
 
-  // Calls body(begin, end) on ranges that together cover [0, count) once, each at least `grain` long where possible.
-  // `body` may write only what belongs to its own indices; then the result does not depend on the number of threads.
+  // Calls body(begin, end) on disjoint ranges that cover [0, count), each at least `grain` long where possible.
+  // `body` may write only what belongs to its own indices; the result then does not depend on the number of threads.
   // `body` must not throw. Allocates nothing.
   template <class Body>
   void For(std::size_t count, std::size_t grain, const Body& body) {

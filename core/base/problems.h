@@ -8,29 +8,29 @@
 
 namespace fascicle {
 
-// Something wrong with what a user gave us.
+// An error in a user's input.
 struct Problem {
   std::string path;     // field, such as `bodies[0].mesh`; empty for the whole input
   std::string message;  // what is wrong, in plain words
-  std::string hint;     // what to do about it; may be empty
+  std::string hint;     // how to mend it; may be empty
 
   bool operator==(const Problem&) const = default;
 };
 
-// Collects every problem of an input, so that a user sees all of them at once. Functions that read user input take
-// one, add to it and go on as far as they sensibly can; the caller asks `empty()` in the end.
+// Collects all errors of an input, so that a user sees them together. A function that reads user input takes a
+// Problems, adds to it and continues as far as is sensible; the caller checks `empty()` at the end.
 // Keeps the first kMaxKept and counts the rest. Not thread-safe.
 class Problems {
  public:
   static constexpr std::size_t kMaxKept = 200;
 
   void Add(std::string path, std::string message, std::string hint = {});
-  // Adds all of `other` with `prefix` before their paths: prefix "bodies[0]" and path "mesh" give "bodies[0].mesh".
+  // Adds all problems of `other` with `prefix` before their paths: "bodies[0]" and "mesh" give "bodies[0].mesh".
   void Append(std::string_view prefix, const Problems& other);
 
   bool empty() const { return kept_.empty(); }
   const std::vector<Problem>& kept() const { return kept_; }
-  // All that were added, also those that were not kept.
+  // Number of problems added, including those not kept.
   std::size_t count() const { return count_; }
   // One line each: `path: message (hint)`.
   std::string ToString() const;

@@ -33,7 +33,7 @@ double Profile::wall_seconds() const { return 1e-9 * static_cast<double>(Now() -
 
 void Profile::NoteCpu(double others) { cpu_seconds_.store(CpuOfThisThread() - cpu_before_ + others, kRelaxed); }
 
-// The part `name` of the stage that is at work, or else kRoot.
+// The child `name` of the current stage, or kRoot where there is none.
 int Profile::Find(const char* name) {
   const int count = count_.load(kRelaxed);
   for (int i = current_ + 1; i < count; ++i) {
@@ -61,7 +61,7 @@ bool Profile::Enter(const char* name) {
 void Profile::Leave() {
   Stage& stage = stages_[static_cast<std::size_t>(current_)];
   const std::int64_t elapsed = Now() - stage.since.load(kRelaxed);
-  // A reader asks in the other order: it may miss this call, but never counts it twice.
+  // Readers load in the opposite order: they may miss this call but never count it twice.
   stage.since.store(0, kRelaxed);
   Add(stage.nanoseconds, elapsed, std::memory_order_release);
   current_ = stage.parent;

@@ -11,38 +11,39 @@ namespace fascicle {
 
 // One stage of a Profile.
 struct ProfileStage {
-  std::string name;        // after those of the stages that it is part of: "step/elastic force"
-  std::int64_t calls = 0;  // times it was entered
-  double seconds = 0;      // wall time, with that of its parts [s]
+  std::string name;        // path of names from the outermost stage: "step/elastic force"
+  std::int64_t calls = 0;  // how often it was entered
+  double seconds = 0;      // wall time, nested stages included [s]
 };
 
-// Where the time of one thread goes: a tree of stages, each entered and left by a StageTimer. A stage costs less than
-// 0.2 us and never allocates, so a profile is always on. One thread enters stages; any thread may read at any time, and
-// what it reads is at most one call of a stage behind.
+// Measures where the time of one thread goes: a tree of stages, each entered and left by a StageTimer. A stage costs
+// less than 0.2 us and never allocates, so profiles are always on. One thread enters stages. Any thread may read at any
+// time; what it reads lags by at most one call of a stage.
 class Profile {
  public:
-  // In the thread whose stages are timed: its processor time counts from now.
+  // Construct in the thread whose stages are timed; its processor time counts from now on.
   Profile();
-  // For a thread that has used `cpu_before` [s] of processor time: 0 for one that is yet to be started.
+  // For a thread that has already used `cpu_before` [s] of processor time (0 for one that has not started).
   explicit Profile(double cpu_before);
   Profile(const Profile&) = delete;
   Profile& operator=(const Profile&) = delete;
 
-  // Each stage before its parts, otherwise in the order in which they were first entered. A stage that is at work
-  // counts up to now.
+  // Each stage before its children, otherwise in the order in which they were first entered. An active stage counts up
+  // to now.
   std::vector<ProfileStage> Stages() const;
   // Since construction [s].
   double wall_seconds() const;
 
-  // Notes the processor time of the calling thread, whose stages are timed, with that of `others` [s] who helped it.
+  // Records the processor time of the calling thread, which must be the timed one, plus `others` [s] of its helper
+  // threads.
   void NoteCpu(double others = 0);
-  // As noted last [s].
+  // The value last recorded [s].
   double cpu_seconds() const { return cpu_seconds_.load(std::memory_order_relaxed); }
 
  private:
   friend class StageTimer;
 
-  // More than that are not told apart from what they are part of.
+  // Stages beyond this number are counted within their parent.
   static constexpr int kMaxStages = 64;
   static constexpr int kRoot = -1;
 
@@ -50,8 +51,8 @@ class Profile {
     const char* name = nullptr;
     int parent = kRoot;  // less than its own index
     std::atomic<std::int64_t> calls = 0;
-    std::atomic<std::int64_t> nanoseconds = 0;  // of the calls that have ended
-    std::atomic<std::int64_t> since = 0;        // [ns] when it was entered; 0: not at work
+    std::atomic<std::int64_t> nanoseconds = 0;  // total of the completed calls
+    std::atomic<std::int64_t> since = 0;        // [ns] when the current call began; 0: not active
   };
 
   int Find(const char* name);
@@ -67,8 +68,8 @@ class Profile {
   int current_ = kRoot;
 };
 
-// The calling thread is in a stage of `profile` as long as this lives: part of the stage it was in before. `name` must
-// outlive the profile (a literal) and hold no slash. Without a profile nothing happens.
+// Times a stage of `profile` for as long as this object lives; the stage is nested in the thread's current one. `name`
+// must outlive the profile (use a literal) and contain no slash. Does nothing if `profile` is null.
 class StageTimer {
  public:
   StageTimer(Profile* profile, const char* name)

@@ -7,8 +7,8 @@
 
 namespace fascicle {
 
-// What can go wrong with a step of any method. An element counts as inverted also when it loses much of its volume in a
-// single step.
+// Reasons why a step of any method fails. An element that loses much of its volume within a single step counts as
+// inverted.
 enum class StepProblem {
   kNone,
   kInvertedElement,
@@ -18,15 +18,15 @@ enum class StepProblem {
   kStepTooSmall,
   kNoEquilibrium,       // Newton's method of implicit and quasi-static steps
   kNotSolved,           // the linear solve of voxels
-  kLeftGrid,            // a body has come to the side of its grid
-  kVelocitiesNotFound,  // the linear solve of volumes, supports and implicit elasticity on grids
-  kStopped              // as asked
+  kLeftGrid,            // a body has reached the boundary of its grid
+  kVelocitiesNotFound,  // the linear solve for volumes, supports and implicit elasticity on grids
+  kStopped              // a stop was requested
 };
 
-// Elements that a step failed at.
+// Elements at which a step failed.
 struct BadElements {
   std::size_t body = 0;
-  std::vector<std::int64_t> elements;  // numbers in its mesh; at most 16
+  std::vector<std::int64_t> elements;  // element numbers in the body's mesh; at most 16
   bool inverted = false;               // whether J <= 0 in any of them
 };
 

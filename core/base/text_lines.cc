@@ -14,7 +14,7 @@ std::string_view Trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-// Takes the first word off `line`, which begins with none of the blanks.
+// Removes the first word from `line`, which must not start with a blank.
 std::string_view TakeWord(std::string_view& line) {
   const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
   line = Trimmed(line.substr(word.size()));

@@ -8,17 +8,16 @@
 
 namespace fascicle {
 
-// Goes through the lines of a text that hold something, without the comments that `#` starts and the blanks around
-// them.
+// Iterates over the non-empty lines of a text, without `#` comments and surrounding blanks.
 class TextLines {
  public:
   // `text` must outlive this.
   explicit TextLines(std::string_view text) : rest_(text) {}
 
-  // To the next one; false when there is none.
+  // Advances to the next line; false at the end.
   bool Next();
   std::string_view line() const { return line_; }
-  // As an editor counts, from 1.
+  // Line number, counted from 1.
   std::size_t number() const { return number_; }
 
  private:
@@ -27,10 +26,10 @@ class TextLines {
   std::size_t number_ = 0;
 };
 
-// The words of a line, with blanks between them.
+// The words of a line, separated by blanks.
 std::vector<std::string_view> Words(std::string_view line);
 
-// Exactly as many finite numbers as `values` has, with blanks between them; false for anything else.
+// Parses exactly values.size() finite numbers, separated by blanks; false for anything else.
 bool ParseNumbers(std::string_view line, std::span<double> values);
 
 }  // namespace fascicle

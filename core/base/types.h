@@ -7,7 +7,7 @@ namespace fascicle {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
-// Tangent dP/dF: row and column 3 * j + i stand for component (i, j), that is, Eigen's column-major order of Mat3.
+// Tangent dP/dF: row and column 3 * j + i belong to component (i, j), Eigen's column-major order of Mat3.
 using Mat9 = Eigen::Matrix<double, 9, 9>;
 
 }  // namespace fascicle

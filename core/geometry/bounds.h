@@ -7,14 +7,14 @@
 
 namespace fascicle {
 
-// A box along the axes.
+// An axis-aligned box.
 struct Bounds {
   Vec3 lowest = Vec3::Zero(), highest = Vec3::Zero();
 
   Vec3 extent() const { return highest - lowest; }
 };
 
-// The smallest one that holds all points; at the origin where there are none.
+// The bounding box of the points; at the origin if there are none.
 inline Bounds BoundsOf(const std::vector<Vec3>& points) {
   if (points.empty()) return {};
   Bounds bounds = {points.front(), points.front()};

@@ -16,18 +16,18 @@ using Quad = std::array<std::int32_t, 4>;   // node indices; counter-clockwise s
 inline constexpr std::array<std::array<int, 4>, 6> kBrickSides = {
     {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
 
-// The solid voxels of a grid and their corners, one by one, numbered as VoxelMesh numbers them. Plain data.
+// The solid voxels of a grid and their corners as explicit lists, numbered like those of VoxelMesh. Plain data.
 struct BrickMesh {
   VoxelGrid grid;
   std::vector<Vec3> nodes;  // [m]
   std::vector<Brick> bricks;
-  std::vector<std::int32_t> labels;  // the grid's material of each brick
+  std::vector<std::int32_t> labels;  // material of each brick in the grid
 };
 
 // `grid` has at most 2^31 - 1 solid voxels.
 BrickMesh MakeBrickMesh(VoxelGrid grid);
 
-// Sides that belong to one brick only, in the order of bricks, then of sides.
+// Sides that belong to one brick only, ordered by brick, then by side.
 std::vector<Quad> BoundaryQuads(const BrickMesh& mesh);
 
 }  // namespace fascicle

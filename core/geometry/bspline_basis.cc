@@ -52,7 +52,8 @@ void BsplineBasis::CheckKnots(int degree, const std::vector<double>& knots, Prob
   } else {
     for (auto knot = knots.begin() + 1; knot + degree < knots.end() - 1; ++knot) {
       if (!AllEqual(knot, degree + 1)) continue;
-      problems.Add({}, "more than " + std::to_string(degree) + " knots inside are equal: the solid would fall apart");
+      problems.Add(
+          {}, "more than " + std::to_string(degree) + " interior knots are equal: the solid would be discontinuous");
       return;
     }
   }
@@ -61,7 +62,7 @@ void BsplineBasis::CheckKnots(int degree, const std::vector<double>& knots, Prob
 BsplineBasis::Local BsplineBasis::At(double parameter) const {
   const auto last = knots_.end() - degree_ - 1;
   const double u = std::clamp(parameter, front(), back());
-  // The span [knot, next knot) that holds u; the last one holds its end, too.
+  // The span [knot, next knot) that contains u. The last span contains its end, too.
   const auto next = std::upper_bound(knots_.begin() + degree_ + 1, last, u);
   Local local;
   local.first = static_cast<int>(next - knots_.begin()) - 1 - degree_;

@@ -14,21 +14,21 @@ class BsplineBasis {
  public:
   static constexpr int kMaxDegree = 5;
 
-  // The degree + 1 functions that don't vanish at a parameter: the first one's index, values and slopes.
+  // The degree + 1 functions that don't vanish at a parameter: index of the first one, values and derivatives.
   struct Local {
     int first = 0;
     std::array<double, kMaxDegree + 1> value{}, slope{};
   };
 
-  // Clamped on [0, 1] with knots at equal distances inside. 1 <= degree <= kMaxDegree < size as CheckSize says.
+  // A clamped basis on [0, 1] with equally spaced interior knots. CheckSize must accept `degree` and `size`.
   static BsplineBasis Uniform(int degree, int size);
-  // `knots` as CheckKnots says.
+  // CheckKnots must accept `knots`.
   BsplineBasis(int degree, std::vector<double> knots);
 
-  // What is wrong with a degree and number of functions that a user gave.
+  // Reports what is wrong with a degree and a number of functions given by a user.
   static void CheckSize(std::int64_t degree, std::int64_t size, Problems& problems);
-  // What is wrong with knots: not finite, descending, more than `degree` of them equal inside, an end that is not
-  // degree + 1 times there.
+  // Reports what is wrong with a knot vector: values that are not finite, descending knots, more than `degree` equal
+  // interior knots, ends that are not repeated degree + 1 times.
   static void CheckKnots(int degree, const std::vector<double>& knots, Problems& problems);
 
   int degree() const { return degree_; }
@@ -38,9 +38,9 @@ class BsplineBasis {
   double front() const { return knots_.front(); }
   double back() const { return knots_.back(); }
 
-  // At a parameter, moved to the nearest end where it is beyond one.
+  // Evaluates at a parameter, which is clamped to the domain.
   Local At(double parameter) const;
-  // Mean of the knots inside of function i's support: with these as coefficients the spline is the identity.
+  // Greville abscissa of function i. With these as coefficients the spline is the identity.
   double Greville(int i) const;
 
  private:

@@ -23,7 +23,7 @@ int ControlIndex(const BsplineSolid::Bases& bases, int i, int j, int k) {
   return i + bases[0].size() * (j + bases[1].size() * k);
 }
 
-// A row for each sample: the functions' values there.
+// One row for each sample: the values of the basis functions there.
 SparseMatrix SampleMatrix(const BsplineSolid::Bases& bases, std::span<const SolidSample> samples) {
   Entries entries;
   const auto count = [&](int direction) { return bases[static_cast<std::size_t>(direction)].degree() + 1; };
@@ -56,7 +56,7 @@ std::array<double, 3> SecondDifference(const BsplineBasis& basis, int i) {
   return {mean / before, -mean / before - mean / after, mean / after};
 }
 
-// A row for each second difference along each direction.
+// One row for each second difference along each direction.
 SparseMatrix DifferenceMatrix(const BsplineSolid::Bases& bases) {
   Entries entries;
   int row = 0;
@@ -96,7 +96,7 @@ std::optional<SolidFit> FitBsplineSolid(BsplineSolid::Bases bases, std::span<con
                               per_control * SparseMatrix(differences.transpose() * differences);
   Eigen::MatrixX3d positions(static_cast<Index>(samples.size()), 3);
   for (std::size_t s = 0; s < samples.size(); ++s) positions.row(static_cast<Index>(s)) = samples[s].position;
-  // About their mean: coordinates may be large against the body.
+  // Subtracts the mean first: coordinates may be large compared with the body.
   const Eigen::RowVector3d mean = positions.colwise().mean();
   positions.rowwise() -= mean;
 

@@ -8,7 +8,7 @@
 
 namespace fascicle {
 
-// A point of space that a solid should have at given parameters.
+// A position that the solid should have at given parameters.
 struct SolidSample {
   Vec3 parameters;
   Vec3 position;  // [m]
@@ -21,11 +21,12 @@ struct SolidFit {
 
 // The control points q that minimize
 //   mean over samples of |x(parameters) - position|^2  +  smoothing * mean over control points of |second
-//   difference|^2,
-// second differences being those of the control net along each direction, divided by the distances of their Greville
-// points and times the mean distance squared, so that they vanish for every trilinear map [after Eilers and Marx 1996].
-// Smoothing also settles control points that no sample reaches. Sparse Cholesky, in sequence: the same bits on every
-// run. Nothing when the samples don't determine a solid.
+//   difference|^2.
+// Second differences are those of the control net along each direction, divided by the distances of the Greville points
+// and multiplied by the mean distance squared, so that they vanish for every trilinear map [after Eilers and Marx
+// 1996].
+// Smoothing also determines control points that no sample reaches. Sparse Cholesky factorization on one thread: the
+// same bits on every run. Returns nothing when the samples don't determine a solid.
 std::optional<SolidFit> FitBsplineSolid(BsplineSolid::Bases bases, std::span<const SolidSample> samples,
                                         double smoothing);
 

@@ -12,18 +12,18 @@
 namespace fascicle {
 namespace {
 
-constexpr double kRoundOff = 1e-13;  // distance at which Newton ends, of the solid's diagonal
-constexpr double kInside = 1e-9;     // distance that counts as none, of the diagonal
+constexpr double kRoundOff = 1e-13;  // distance at which Newton's method stops, relative to the solid's diagonal
+constexpr double kInside = 1e-9;     // distance that counts as zero, relative to the diagonal
 constexpr int kSamplesPerSpan = 2;
 
-// A point of the solid from which Newton may start.
+// A point of the solid, as a starting point for Newton's method.
 struct Sample {
   Vec3 position, parameters;
 };
 
 Eigen::AlignedBox3d bounding_box(const Sample& sample) { return Eigen::AlignedBox3d(sample.position); }
 
-// The parameters of one direction's samples: in the middle of equal parts of each span between different knots.
+// The sample parameters of one direction: the midpoints of equal parts of each non-empty knot span.
 std::vector<double> SampleParameters(const BsplineBasis& basis) {
   std::vector<double> parameters;
   const std::vector<double>& knots = basis.knots();
@@ -55,7 +55,7 @@ double Diagonal(const BsplineSolid& solid) {
   return box.diagonal().norm();
 }
 
-// A visitor of Eigen's tree that keeps the samples nearest to a point.
+// A visitor of Eigen's bounding volume tree that keeps the samples nearest to a point.
 struct NearestSamples {
   using Scalar = double;
   static constexpr std::size_t kCount = 4;
@@ -65,7 +65,7 @@ struct NearestSamples {
   };
 
   double minimumOnVolume(const Eigen::AlignedBox3d& box) const { return box.squaredExteriorDistance(point); }
-  // The tree may leave out what is farther than the last that is kept.
+  // Lets the tree skip samples that are farther away than the last one kept.
   double minimumOnObject(const Sample& sample) {
     const Candidate candidate{(sample.position - point).squaredNorm(), sample.parameters};
     const auto nearer = [](const Candidate& a, const Candidate& b) { return a.squared_distance < b.squared_distance; };
@@ -81,7 +81,7 @@ struct NearestSamples {
   std::array<Candidate, kCount> kept;
 };
 
-// Newton for one point. Parameters are scaled to the unit box.
+// Newton's method for one point. Parameters are scaled to the unit box.
 class Descent {
  public:
   Descent(const BsplineSolid& solid, double tolerance, const Vec3& target)
@@ -121,7 +121,7 @@ class Descent {
     return {offset, point.gradients * range_.asDiagonal(), offset.norm()};
   }
 
-  // The damped step in the directions that don't lead out of the box.
+  // The damped step, restricted to directions that stay within the box.
   static Vec3 Direction(const Vec3& s, const State& state, double damping) {
     Vec3 descent = state.gradients.transpose() * state.offset;
     Mat3 normal = state.gradients.transpose() * state.gradients;

@@ -11,17 +11,17 @@
 
 namespace fascicle {
 
-// The parameters of a point of space, or of the point of the solid that is nearest to it.
+// The parameters of a point, or of the nearest point of the solid.
 struct BsplineLocation {
   Vec3 parameters;
-  double distance;  // from the solid [m]
-  bool inside;      // the distance is within round-off
+  double distance;  // distance from the solid [m]
+  bool inside;      // whether the distance is zero up to round-off
 };
 
-// Inverts x(u, v, w) = p: Newton steps on |x - p|^2, damped where they don't descend [Nocedal and Wright 2006, 10.3]
-// and kept in the parameter box, from the nearest samples of the solid. For a regular solid (positive Jacobian)
-// parameters of points inside are found to about the round-off times the condition of the gradients. Const and
-// thread-safe.
+// Inverts x(u, v, w) = p by Newton's method on |x - p|^2, damped where a step does not descend [Nocedal and Wright
+// 2006, 10.3] and restricted to the parameter box, starting from the nearest samples of the solid. For a regular solid
+// (positive Jacobian) the parameters of interior points are accurate to about round-off times the condition number of
+// the gradients. Const and thread-safe.
 class BsplineLocator {
  public:
   explicit BsplineLocator(BsplineSolid solid);
@@ -29,7 +29,7 @@ class BsplineLocator {
 
   const BsplineSolid& solid() const;
   BsplineLocation Locate(const Vec3& point) const;
-  // Each point on its own: the same bits for any number of threads.
+  // Points are independent of each other: the same bits for any number of threads.
   std::vector<BsplineLocation> Locate(std::span<const Vec3> points, ThreadTeam& team) const;
 
  private:

@@ -20,14 +20,15 @@ struct Head {
   std::array<std::vector<double>, 3> knots;
 };
 
-// Fails with the first of what a basis finds wrong.
+// Fails with the first problem that a basis has found.
 void FailWith(const Problems& found, std::string_view direction, TextScanner& in) {
   if (found.empty()) return;
   const Problem& problem = found.kept().front();
   in.Fail(std::string(direction) + ": " + problem.message, problem.hint);
 }
 
-// Degrees and numbers of control points, which belong together and of which the text may hold as many.
+// Reads degrees and numbers of control points. They must match each other, and the rest of the text must be able to
+// hold so many points.
 Head ReadHead(TextScanner& in) {
   Head head;
   in.Expect("bspline_solid");

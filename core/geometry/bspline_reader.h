@@ -9,7 +9,7 @@
 
 namespace fascicle {
 
-// A solid from a text of words and numbers with white space between them; `#` starts a comment:
+// Reads a solid from a text of words and numbers separated by white space; `#` starts a comment:
 //
 //   bspline_solid
 //   degrees 3 3 3
@@ -18,8 +18,8 @@ namespace fascicle {
 //   points
 //   x y z                               (one for each control point, u running fastest)
 //
-// Coordinates stay in the file's unit. Malformed text adds to `problems` (paths empty) and gives nothing; nothing is
-// allocated that the text cannot fill.
+// Coordinates stay in the file's unit. Malformed text adds to `problems` (with empty paths) and returns nothing. Never
+// allocates more than the text could fill.
 std::optional<BsplineSolid> ReadBsplineSolid(std::string_view text, Problems& problems);
 
 }  // namespace fascicle

@@ -10,7 +10,7 @@ BsplineSolid::BsplineSolid(Bases bases, std::vector<Vec3> controls)
     : bases_(std::move(bases)), controls_(std::move(controls)) {
   std::size_t expected = 1;
   for (const BsplineBasis& basis : bases_) expected *= static_cast<std::size_t>(basis.size());
-  FASCICLE_CHECK(controls_.size() == expected, "as many control points as products of functions");
+  FASCICLE_CHECK(controls_.size() == expected, "one control point for each product of basis functions");
 }
 
 BsplineSolid::Point BsplineSolid::At(const Vec3& parameters) const {

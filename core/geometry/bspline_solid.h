@@ -28,7 +28,7 @@ class BsplineSolid {
   Vec3 lowest() const { return {bases_[0].front(), bases_[1].front(), bases_[2].front()}; }
   Vec3 highest() const { return {bases_[0].back(), bases_[1].back(), bases_[2].back()}; }
 
-  // At parameters (u, v, w), moved into their box.
+  // Evaluates at parameters (u, v, w), which are clamped to their box.
   Point At(const Vec3& parameters) const;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace fascicle {
 
-// A side of a tetrahedron, comparable with the same side of its neighbour.
+// A face of a tetrahedron, in a form that compares equal to the neighbour's copy of the same face.
 struct Face {
   Triangle nodes;         // ascending
   std::int64_t side = 0;  // 4 * tetrahedron + local side
@@ -21,7 +21,7 @@ Triangle Ascending(Triangle triangle);
 // Local side 0 to 3, counter-clockwise seen from outside of a tetrahedron of positive volume.
 Triangle OutwardTriangle(const Tetrahedron& tetrahedron, int local_side);
 
-// All sides of all tetrahedra, ordered by nodes, then by side: equal ones stand together. O(n log n).
+// All faces of all tetrahedra, ordered by nodes, then by side: equal faces are adjacent. O(n log n).
 std::vector<Face> SortedFaces(const std::vector<Tetrahedron>& tetrahedra);
 
 }  // namespace fascicle

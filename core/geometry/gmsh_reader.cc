@@ -50,7 +50,7 @@ void AddElement(TextScanner& in, std::int64_t type, std::int64_t tag, RawMesh& r
     if (type == kTetrahedron4) return;
     auto& middles = raw.middles.emplace_back();
     for (std::int64_t& node : middles) node = in.Int("a node number");
-    std::swap(middles[4], middles[5]);  // Gmsh has the edge from 2 to 3 before that from 1 to 3
+    std::swap(middles[4], middles[5]);  // Gmsh has edge 2-3 before edge 1-3
   } else if (type == kTriangle3 || type == kTriangle6) {
     auto& nodes = raw.triangles.emplace_back();
     for (std::int64_t& node : nodes) node = in.Int("a node number");
@@ -80,7 +80,7 @@ void ReadElements2(TextScanner& in, RawMesh& raw) {
   }
 }
 
-// Lines of points, curves, surfaces and volumes: tag, a point or a bounding box, physical tags, what bounds them.
+// Reads points, curves, surfaces and volumes: tag, a point or a bounding box, physical tags, bounding entities.
 void ReadEntities(TextScanner& in, EntityTags& tags) {
   std::size_t counts[4];
   for (std::size_t& count : counts) count = in.Count("entities", 8);

@@ -14,15 +14,15 @@
 namespace fascicle {
 namespace {
 
-// A node moves to a cut that is nearer than this part of the edge: `long` edges join corners or centres, `short` ones a
-// corner and a centre [Labelle and Shewchuk 2007, table 1].
+// A node is moved to a cut that is nearer than this fraction of the edge. `Long` edges join two corners or two centres,
+// `short` ones a corner and a centre [Labelle and Shewchuk 2007, table 1].
 constexpr double kWarpLong = 0.24999, kWarpShort = 0.41189;
-// Where the surface cuts an edge is found up to this part of the lattice's width.
+// Accuracy of cut points, relative to the lattice's width.
 constexpr double kCutAccuracy = 1e-4;
 
 struct Edge {
   std::int32_t inside, outside;
-  std::int32_t cut = -1;  // node of the result; -1 once an end has moved onto the surface
+  std::int32_t cut = -1;  // node of the result; -1 once an end has been moved onto the surface
   auto Key() const { return std::pair(inside, outside); }
 };
 
@@ -57,7 +57,7 @@ class Stuffing {
     }
   }
 
-  // Edges with one end inside and one outside.
+  // Finds the edges with one end inside and one outside.
   void FindEdges() {
     for (const Tetrahedron& t : kept_) {
       for (const auto& [i, j] : kTetEdges) {
@@ -71,14 +71,14 @@ class Stuffing {
         edges_.end());
   }
 
-  // By the Illinois variant of the false position: it keeps a bracket and needs no derivative.
+  // The Illinois variant of regula falsi: it keeps a bracket and needs no derivative.
   Vec3 CutOf(const Edge& edge) const {
     const Vec3 a = mesh_.nodes[edge.inside], b = mesh_.nodes[edge.outside];
     double low = 0, high = 1, at_low = values_[edge.inside], at_high = values_[edge.outside], s = 0.5;
     constexpr int kMost = 60;
     int last = 0;  // the end that moved last
     for (int i = 0; i < kMost; ++i) {
-      // Halved now and then, for surfaces that fold within the edge.
+      // Bisects now and then, for surfaces that fold within the edge.
       s = i % 8 == 7 ? 0.5 * (low + high) : low - at_low * (high - low) / (at_high - at_low);
       const double value = tree_.SignedDistance(a + s * (b - a));
       if (std::abs(value) < kCutAccuracy * lattice_.half || high - low < kCutAccuracy) break;
@@ -116,7 +116,7 @@ class Stuffing {
     return differences == 1;
   }
 
-  // Nodes, in order, move to the nearest cut that is too near; then the other cuts of their edges are gone.
+  // Moves each node, in order, to the nearest cut within the threshold. The other cuts of its edges are then void.
   void Warp() {
     std::vector<std::vector<std::int32_t>> edges_of(lattice_.positions.size());
     for (std::size_t e = 0; e < edges_.size(); ++e) {
@@ -157,9 +157,9 @@ class Stuffing {
     mesh_.tetrahedra.push_back(t);
   }
 
-  // Which way to split the quadrilateral of inside nodes a and b and their cuts towards `o`: whether the diagonal ends
-  // in the cut of a. It ends in the cut of a long edge; with two short ones their directions decide, so that the two
-  // such quadrilaterals of a tetrahedron are split crosswise [Labelle and Shewchuk 2007, the parity rule].
+  // How to split the quadrilateral of inside nodes a and b and their cuts towards `o`: true if the diagonal ends in the
+  // cut of a. It ends in the cut of a long edge. With two short edges their directions decide, so that two such
+  // quadrilaterals of a tetrahedron are split crosswise [Labelle and Shewchuk 2007, the parity rule].
   bool EndsInFirst(std::int32_t a, std::int32_t b, std::int32_t o) const {
     if (IsLong(a, o)) return true;
     if (IsLong(b, o)) return false;
@@ -168,7 +168,7 @@ class Stuffing {
     return greater % 2 == 0;
   }
 
-  // What is inside of a tetrahedron, by the signs at its corners.
+  // Adds the part of a tetrahedron that lies inside, by the signs at its corners.
   void Fill(const Tetrahedron& tetrahedron) {
     std::array<std::int32_t, 4> in{}, on{}, out{};
     int ins = 0, ons = 0, outs = 0;
@@ -191,7 +191,7 @@ class Stuffing {
     }
   }
 
-  // Over the quadrilateral of a, b and their cuts towards o.
+  // Adds the pyramid over the quadrilateral of a, b and their cuts towards o.
   void AddPyramid(std::int32_t apex, std::int32_t a, std::int32_t b, std::int32_t o) {
     if (!EndsInFirst(a, b, o)) std::swap(a, b);
     Add(apex, a, b, Cut(a, o));
@@ -201,7 +201,7 @@ class Stuffing {
   void FillTwoAndTwo(std::int32_t a, std::int32_t b, std::int32_t o, std::int32_t p) {
     const bool o_in_a = EndsInFirst(a, b, o), p_in_a = EndsInFirst(a, b, p);
     if (o_in_a == p_in_a) {
-      // Both diagonals begin in one node: cut off the other one's corner.
+      // Both diagonals start at one node: cut off the corner at the other one.
       if (!o_in_a) std::swap(a, b);
       Add(b, a, Cut(a, o), Cut(a, p));
       Add(b, Cut(a, o), Cut(a, p), Cut(b, o));
@@ -215,7 +215,7 @@ class Stuffing {
   }
 
   void FillThreeAndOne(std::array<std::int32_t, 3> in, std::int32_t o) {
-    // The cut that two diagonals end in takes the first place.
+    // Rotates the cut in which two diagonals end to the first place.
     for (int turn = 0; turn < 3; ++turn) {
       if (EndsInFirst(in[0], in[1], o) && EndsInFirst(in[0], in[2], o)) break;
       std::rotate(in.begin(), in.begin() + 1, in.end());
@@ -229,8 +229,8 @@ class Stuffing {
   const Lattice& lattice_;
   const TriangleTree& tree_;
   ThreadTeam& team_;
-  std::vector<double> values_;     // signed distances at the lattice's nodes; 0 for those moved onto the surface
-  std::vector<Tetrahedron> kept_;  // with a node inside
+  std::vector<double> values_;     // signed distances at the lattice's nodes; 0 for nodes moved onto the surface
+  std::vector<Tetrahedron> kept_;  // those with a node inside
   std::vector<Edge> edges_;        // ascending
   TetMesh mesh_;
 };

@@ -7,9 +7,9 @@
 
 namespace fascicle {
 
-// The part of a lattice inside of a surface: nodes near the surface move onto it, and the tetrahedra that it still cuts
-// are cut. Every dihedral angle is between 10.7 and 164.8 degrees, whatever the surface [Labelle and Shewchuk 2007,
-// theorem 1]; nodes on the outside lie on the surface. The same for any number of threads.
+// The part of a lattice inside a surface. Nodes near the surface move onto it; tetrahedra that it still intersects are
+// cut. Every dihedral angle is between 10.7 and 164.8 degrees, whatever the surface [Labelle and Shewchuk 2007, theorem
+// 1]. Boundary nodes lie on the surface. The same bits for any number of threads.
 TetMesh StuffLattice(const Lattice& lattice, const TriangleTree& tree, ThreadTeam& team);
 
 }  // namespace fascicle

@@ -22,14 +22,14 @@ namespace fascicle {
 namespace {
 
 constexpr std::size_t kExamples = 5;
-// A tetrahedron is degenerate when its smallest height is less than this part of its longest edge: its stable time step
-// would shrink as much.
+// A tetrahedron is degenerate when its smallest height is less than this part of its longest edge. Its stable time step
+// would shrink by the same factor.
 constexpr double kFlat = 1e-6;
-// Nodes closer than this part of the diagonal are one.
+// Nodes closer than this part of the diagonal coincide.
 constexpr double kCoincident = 1e-9;
 constexpr double kLargest = 10, kSmallest = 1e-4;  // [m]
 
-// "3 tetrahedra are inverted: 4, 7, 9 (counted from 0)".
+// Counts occurrences and reports them like "3 tetrahedra are inverted: 4, 7, 9 (counted from 0)".
 class Findings {
  public:
   void Add(std::string example) {
@@ -85,11 +85,12 @@ void CheckIndices(const TetMesh& mesh, Problems& problems) {
     if (!InRange(std::array{mesh.tagged_nodes[p]}, mesh.nodes.size())) points.Add(p);
   }
   const std::string hint = "the mesh has " + std::to_string(mesh.nodes.size()) + " nodes";
-  tetrahedra.Report("tetrahedron names a node that does not exist", "tetrahedra name nodes that do not exist", hint,
-                    problems);
-  triangles.Report("triangle names a node that does not exist", "triangles name nodes that do not exist", hint,
+  tetrahedra.Report("tetrahedron refers to a node that does not exist", "tetrahedra refer to nodes that do not exist",
+                    hint, problems);
+  triangles.Report("triangle refers to a node that does not exist", "triangles refer to nodes that do not exist", hint,
                    problems);
-  points.Report("point names a node that does not exist", "points name nodes that do not exist", hint, problems);
+  points.Report("point refers to a node that does not exist", "points refer to nodes that do not exist", hint,
+                problems);
 }
 
 bool IsDegenerate(const TetMesh& mesh, std::size_t t, double volume) {
@@ -108,7 +109,7 @@ void CheckVolumes(const TetMesh& mesh, Problems& problems) {
   Findings inverted, degenerate;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     const double volume = SignedVolume(mesh, t);
-    if (!std::isfinite(volume)) continue;  // see CheckCoordinates
+    if (!std::isfinite(volume)) continue;  // reported by CheckCoordinates
     if (IsDegenerate(mesh, t, volume)) {
       degenerate.Add(t);
     } else if (volume < 0) {
@@ -153,9 +154,9 @@ void CheckUnusedNodes(const TetMesh& mesh, Problems& problems) {
 
 using Cell = std::array<std::int64_t, 3>;
 
-// Nodes in one cell of a fine grid coincide, and so do nodes in neighbouring cells when one of them is within a tenth
-// of a cell of the other's: whatever is that close is found. A node is compared with the lowest one of each cell only,
-// not with all in it: O(n log n) for any mesh.
+// Nodes in the same cell of a fine grid coincide. So do nodes in neighbouring cells when one of them is within a tenth
+// of a cell of the other's cell; every pair that close is found. A node is compared only with the lowest node of each
+// cell, not with all nodes in it: O(n log n) for any mesh.
 void CheckCoincidentNodes(const TetMesh& mesh, const MeshReport& report, Problems& problems) {
   const double width = kCoincident * (report.highest - report.lowest).norm();
   if (!(width > 0) || !std::isfinite(width)) return;
@@ -169,7 +170,7 @@ void CheckCoincidentNodes(const TetMesh& mesh, const MeshReport& report, Problem
     if (mesh.nodes[n].allFinite()) cells.push_back({cell_of(mesh.nodes[n]), n});
   }
   std::sort(cells.begin(), cells.end());
-  // The lowest node of a cell, or none.
+  // The lowest node of a cell; none if it is empty.
   const auto first_in = [&](const Cell& cell) {
     const auto found = std::lower_bound(cells.begin(), cells.end(), std::pair(cell, std::size_t{0}));
     return found != cells.end() && found->first == cell ? found->second : std::numeric_limits<std::size_t>::max();
@@ -189,11 +190,11 @@ void CheckCoincidentNodes(const TetMesh& mesh, const MeshReport& report, Problem
   std::sort(twins.begin(), twins.end());
   Findings findings;
   for (const auto& [twin, n] : twins) findings.Add(std::to_string(twin) + " and " + std::to_string(n));
-  findings.Report("node coincides with another", "nodes coincide with others", "merge them: the body falls apart there",
-                  problems);
+  findings.Report("node coincides with another", "nodes coincide with others",
+                  "merge them: the body is disconnected there", problems);
 }
 
-// Face-connected parts, by union-find; also finds faces with more than two sides.
+// Counts the face-connected parts by union-find; also finds faces with more than two sides.
 int CheckComponents(const TetMesh& mesh, Problems& problems) {
   std::vector<std::int64_t> parent(mesh.tetrahedra.size());
   std::iota(parent.begin(), parent.end(), 0);
@@ -209,15 +210,15 @@ int CheckComponents(const TetMesh& mesh, Problems& problems) {
     parent[std::max(a, b)] = std::min(a, b);
     if (i >= 2 && faces[i - 2].nodes == faces[i].nodes) crowded.Add(std::size_t(faces[i].side / 4));
   }
-  crowded.Report("tetrahedron lies on a face that two others share already",
-                 "tetrahedra lie on faces that two others share already", "tetrahedra overlap: mesh the body again",
+  crowded.Report("tetrahedron has a face that two others already share",
+                 "tetrahedra have faces that two others already share", "tetrahedra overlap: mesh the body again",
                  problems);
   Findings parts;
   for (std::size_t t = 0; t < parent.size(); ++t) {
     if (root(std::int64_t(t)) == std::int64_t(t)) parts.Add("tetrahedron " + std::to_string(t));
   }
   if (parts.count() > 1) {
-    parts.Report("", "parts that share no face; they begin at",
+    parts.Report("", "separate parts without a common face, beginning at",
                  "give each part as a body of its own, or merge their nodes", problems);
   }
   return static_cast<int>(parts.count());
@@ -253,7 +254,7 @@ void MeasureBox(const TetMesh& mesh, MeshReport& report) {
   }
 }
 
-// Smallest angle between two sides of one tetrahedron.
+// The smallest dihedral angle of all tetrahedra [rad].
 double SmallestDihedralAngle(const TetMesh& mesh) {
   double smallest = mesh.tetrahedra.empty() ? 0 : std::numbers::pi;
   for (const Tetrahedron& tetrahedron : mesh.tetrahedra) {
@@ -271,7 +272,7 @@ double SmallestDihedralAngle(const TetMesh& mesh) {
   return smallest;
 }
 
-// Whether a ten-node element has a positive Jacobian in its corners and at the quadrature points of degree two.
+// Whether a ten-node element has a positive Jacobian at its corners and at the quadrature points of degree two.
 bool IsUpright(const std::array<Vec3, 10>& x) {
   for (const auto& [at, rest] : {std::pair(1.0, 0.0), std::pair(kNearCorner, kFarCorner)}) {
     for (int c = 0; c < 4; ++c) {
@@ -285,7 +286,7 @@ bool IsUpright(const std::array<Vec3, 10>& x) {
   return true;
 }
 
-// Curved edges are edges of the mesh, each named once, with a finite middle, and leave every tetrahedron upright.
+// Checks that every curved edge is an edge of the mesh, occurs once, has a finite midpoint and folds no tetrahedron.
 void CheckCurvedEdges(const TetMesh& mesh, Problems& problems) {
   if (mesh.curved_edges.empty()) return;
   std::map<std::array<std::int32_t, 2>, Vec3> middles;
@@ -314,9 +315,9 @@ void CheckCurvedEdges(const TetMesh& mesh, Problems& problems) {
     const auto [i, j] = std::minmax(mesh.curved_edges[k].ends[0], mesh.curved_edges[k].ends[1]);
     if (met.count({i, j}) == 0) wrong.Add(k);
   }
-  wrong.Report("curved edge is none of the mesh, is given twice or has no finite middle",
-               "curved edges are none of the mesh, are given twice or have no finite middle", "mesh the body again",
-               problems);
+  wrong.Report("curved edge is not an edge of the mesh, is given twice or has no finite midpoint",
+               "curved edges are not edges of the mesh, are given twice or have no finite midpoint",
+               "mesh the body again", problems);
   folded.Report("tetrahedron is folded by its curved edges", "tetrahedra are folded by their curved edges",
                 "mesh the body again, with optimization of high-order elements switched on", problems);
 }
@@ -332,7 +333,7 @@ MeshReport CheckMesh(const TetMesh& mesh, Problems& problems) {
   CheckCoincidentNodes(mesh, report, problems);
   const std::size_t before = problems.count();
   CheckIndices(mesh, problems);
-  if (problems.count() > before) return report;  // the rest follows the indices
+  if (problems.count() > before) return report;  // the checks below use the indices
   CheckVolumes(mesh, problems);
   CheckDuplicates(mesh, problems);
   CheckUnusedNodes(mesh, problems);

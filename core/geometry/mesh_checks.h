@@ -9,7 +9,7 @@
 
 namespace fascicle {
 
-// What is noteworthy about a mesh without being wrong.
+// Measures of a mesh.
 struct MeshReport {
   double volume = 0;                   // [m^3]
   Vec3 lowest = Vec3::Zero();          // corner of the bounding box [m]
@@ -18,17 +18,18 @@ struct MeshReport {
   double smallest_dihedral_angle = 0;  // [rad]
 };
 
-// Checks a mesh in metres: no tetrahedra, indices out of range, non-finite coordinates, inverted, degenerate (smallest
-// height under 1e-6 of the longest edge) and duplicate tetrahedra, faces of more than two tetrahedra, nodes of no
-// tetrahedron, curved edges that the mesh does not have or that fold a tetrahedron, coincident nodes (closer than 1e-10
-// of the diagonal; from 2e-9 on they are told apart), more than one component, a size that no muscle has (over 10 m or
-// under 0.1 mm: names the likely unit). Adds every problem it finds, a line for each kind with count and first
-// examples, counted from 0. Paths are left empty. When an index is out of range only the box of the report is measured.
-// O(n log n) in time and O(n) in memory for any mesh.
+// Checks a mesh in metres and reports: no tetrahedra, indices out of range, non-finite coordinates, inverted,
+// degenerate (smallest height under 1e-6 of the longest edge) and duplicate tetrahedra, faces shared by more than two
+// tetrahedra, nodes without a tetrahedron, curved edges that are not edges of the mesh or that fold a tetrahedron,
+// coincident nodes (closer than 1e-10 of the diagonal; nodes at least 2e-9 apart are distinct), more than one
+// component, and sizes that no muscle has (over 10 m or under 0.1 mm; the message names the likely unit). Adds one line
+// for each kind of problem, with the count and the first examples, counted from 0. Paths are left empty. When an index
+// is out of range, only the bounding box is measured.
+// O(n log n) time and O(n) memory for any mesh.
 MeshReport CheckMesh(const TetMesh& mesh, Problems& problems);
 
-// Turns round tetrahedra with negative volume when all of them are (a file with the other convention); a mixture is
-// left for CheckMesh to report. Returns whether it did.
+// Reorients all tetrahedra if every one has a negative volume (a file with the other convention); a mixture is left for
+// CheckMesh to report. Returns whether it did so.
 bool OrientConsistently(TetMesh& mesh);
 
 }  // namespace fascicle

@@ -12,13 +12,13 @@
 namespace fascicle {
 namespace {
 
-// Nodes whose worst angle is at least this far from 0 and 180 degrees are left alone.
+// Nodes are left alone when all dihedral angles around them are at least this far from 0 and 180 degrees.
 const double kGoodCosine = std::cos(35 * std::numbers::pi / 180);
-// What fitting the surface must not cost.
+// Fitting the surface must not make an angle smaller than this.
 const double kFitCosine = std::cos(15 * std::numbers::pi / 180);
 constexpr int kFitRounds = 4;
 
-// For each node the numbers of the cells that have it, ascending.
+// For each node, the ascending numbers of the cells that contain it.
 class CellsOfNodes {
  public:
   template <class Cells>
@@ -41,8 +41,8 @@ class CellsOfNodes {
   std::vector<std::int32_t> cells_;
 };
 
-// Nodes without a common tetrahedron may move at the same time: each gets the lowest colour that none of its
-// neighbours has.
+// Colours the nodes so that nodes of one colour share no tetrahedron and may move at the same time: each node gets the
+// lowest colour that no neighbour has.
 std::vector<std::vector<std::int32_t>> Colours(const TetMesh& mesh, const CellsOfNodes& tetrahedra) {
   std::vector<std::int32_t> colour(mesh.nodes.size(), -1);
   std::vector<std::vector<std::int32_t>> nodes_of;
@@ -104,8 +104,8 @@ class Improvement {
 
   bool IsOuter(std::size_t n) const { return triangles_of_.begin(n) != triangles_of_.end(n); }
 
-  // How far the worst angle of the tetrahedra around a node is from a right one, as a cosine, were it at `x`; larger is
-  // worse, and over 1 is inverted. Ends early when it is no better than `limit`.
+  // Largest |cosine| of the dihedral angles around node n if it were at `x`: larger is worse, and over 1 means
+  // inverted. Returns early once the result is no better than `limit`.
   double Badness(std::size_t n, const Vec3& x, double limit = 3) const {
     double worst = 0;
     for (const std::int32_t* t = tetrahedra_of_.begin(n); t != tetrahedra_of_.end(n) && worst < limit; ++t) {
@@ -120,7 +120,7 @@ class Improvement {
     return worst;
   }
 
-  // The mean of the nodes of the cells around.
+  // Mean of the nodes of the adjacent cells.
   template <class Cells>
   Vec3 Middle(std::size_t n, const CellsOfNodes& cells_of, const Cells& cells) const {
     Vec3 sum = Vec3::Zero();
@@ -162,7 +162,7 @@ class Improvement {
     return static_cast<std::size_t>(static_cast<std::size_t>(t[0]) == n ? t[1] : t[0]);
   }
 
-  // Steps along the axes and diagonals.
+  // Tries steps along the axes and diagonals.
   template <class Attempt>
   void Search(std::size_t n, double step, const Attempt& attempt) const {
     for (int direction = 0; direction < 27; ++direction) {
@@ -176,8 +176,8 @@ class Improvement {
     return (mesh_.nodes[t[1]] - mesh_.nodes[t[0]]).cross(mesh_.nodes[t[2]] - mesh_.nodes[t[0]]) / 2;
   }
 
-  // How far outside of each triangle the surface is on average, by the rule of degree 2 with points inside; and of each
-  // node the mean of its triangles.
+  // Mean distance of the surface beyond each triangle, by a quadrature rule of degree 2 with interior points; then for
+  // each node the mean over its triangles.
   std::vector<double> MeanOffsets() const {
     std::vector<double> offset(surface_.size());
     team_.For(surface_.size(), 32, [&](std::size_t begin, std::size_t end) {

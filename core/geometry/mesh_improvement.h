@@ -8,14 +8,14 @@
 
 namespace fascicle {
 
-// Moves nodes so that the worst angle around each gets better, those of the outside along the surface: towards the
-// middle of their neighbours, or wherever a search around them finds it better [Freitag and Ollivier-Gooch 1997]. No
-// angle that is the worst around its nodes gets worse. The same for any number of threads.
+// Moves nodes to improve the worst dihedral angle around each: towards the mean of their neighbours, or to a better
+// place found by local search [Freitag and Ollivier-Gooch 1997]. Boundary nodes move along the surface. The worst angle
+// around a node never gets worse. The same bits for any number of threads.
 void ImproveAngles(TetMesh& mesh, const TriangleTree& tree, int sweeps, ThreadTeam& team);
 
-// Moves outer nodes off the surface, so that flat triangles lie on both sides of it and not beneath its bulges: first
-// each until the mean distance of its triangles is zero, then all by the same length until the whole volume is
-// `volume`, if that is given. Nodes stay where an angle under 15 degrees would get smaller.
+// Moves boundary nodes off the surface, so that flat triangles lie on both sides of it rather than below its convex
+// parts. First each node moves until the mean distance of its triangles is zero; then all move by the same length until
+// the total volume is `volume`, if given. Nodes stay where a move would reduce an angle that is under 15 degrees.
 void FitSurface(TetMesh& mesh, const TriangleTree& tree, std::optional<double> volume, ThreadTeam& team);
 
 }  // namespace fascicle

@@ -22,7 +22,7 @@ std::string Extension(std::string_view name) {
   return extension;
 }
 
-// Orders the nodes by their numbers; false when two are the same.
+// Orders the nodes by number. False when a number occurs twice.
 bool SortNodes(RawMesh& raw, Problems& problems) {
   std::vector<std::int64_t>& numbers = raw.node_numbers;
   if (!std::is_sorted(numbers.begin(), numbers.end())) {
@@ -40,15 +40,15 @@ bool SortNodes(RawMesh& raw, Problems& problems) {
   return false;
 }
 
-// Finds nodes by their numbers.
+// Finds nodes by number.
 class NodeFinder {
  public:
   explicit NodeFinder(const RawMesh& raw)
       : numbers_(raw.node_numbers), first_(raw.first_node), count_(raw.nodes.size()) {
     if (numbers_.empty()) return;
     first_ = numbers_.front();
-    // The numbers are sorted and unique, and their range does not overflow: they are contiguous exactly if it is as
-    // long as their count.
+    // The numbers are sorted and unique, and their range does not overflow, so they are contiguous exactly if the range
+    // is as long as their count.
     contiguous_ = std::uint64_t(numbers_.back()) - std::uint64_t(first_) == count_ - 1;
   }
 
@@ -69,7 +69,7 @@ class NodeFinder {
   bool contiguous_ = true;
 };
 
-// Looks up the nodes of cells; reports the first that does not exist, and how many cells have such a node.
+// Looks up the nodes of cells. Reports the first node that does not exist and how many cells refer to such a node.
 template <std::size_t N>
 void FindNodes(const NodeFinder& finder, const std::vector<std::array<std::int64_t, N>>& cells,
                std::vector<std::array<std::int32_t, N>>& found, const char* kind, Problems& problems) {
@@ -88,12 +88,12 @@ void FindNodes(const NodeFinder& finder, const std::vector<std::array<std::int64
   }
   if (bad == 0) return;
   problems.Add("",
-               std::to_string(bad) + " " + kind + " name nodes that do not exist: the first is number " +
-                   std::to_string(first_bad) + " (counted from 0), which names node " + std::to_string(missing),
+               std::to_string(bad) + " " + kind + " refer to nodes that do not exist: the first is number " +
+                   std::to_string(first_bad) + " (counted from 0), which refers to node " + std::to_string(missing),
                "is the file complete, and does its numbering start where the format says?");
 }
 
-// Tags as 32-bit numbers; empty when all are zero, which stands for none.
+// Tags as 32-bit numbers; empty when all are zero, which means that there are no tags.
 std::vector<std::int32_t> NarrowTags(const std::vector<std::int64_t>& tags, Problems& problems) {
   if (std::all_of(tags.begin(), tags.end(), [](std::int64_t tag) { return tag == 0; })) return {};
   std::vector<std::int32_t> narrow(tags.size());
@@ -116,8 +116,8 @@ void ReportNothingToRead(const RawMesh& raw, Problems& problems) {
                                     : "fill the surface with tetrahedra, and write the volume elements");
 }
 
-// Turns the nodes in the middles of edges into curved edges, or drops them where they are straight up to round-off, and
-// numbers the other nodes anew.
+// Turns mid-edge nodes into curved edges, or drops them where the edge is straight up to round-off, and renumbers the
+// remaining nodes.
 void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, TetMesh& mesh, Problems& problems) {
   constexpr double kStraight = 1e-9;
   std::vector<char> is_middle(mesh.nodes.size());
@@ -131,9 +131,8 @@ void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, TetMes
     }
   }
   if (torn > 0) {
-    problems.Add("",
-                 std::to_string(torn) + " edges have another node in their middle than in a neighbouring tetrahedron",
-                 "the body would fall apart there: mesh it again");
+    problems.Add("", std::to_string(torn) + " edges have different mid-edge nodes in neighbouring tetrahedra",
+                 "the body would be disconnected there: mesh it again");
     return;
   }
   for (std::size_t t = 0; t < middles.size(); ++t) {
@@ -141,8 +140,7 @@ void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, TetMes
       if (!is_middle[corner]) continue;
       problems.Add("",
                    "node " + std::to_string(corner) +
-                       " (counted from 0) is a corner of one tetrahedron and in the "
-                       "middle of another's edge",
+                       " (counted from 0) is a corner of one tetrahedron and a mid-edge node of another",
                    "mesh the body again, with one element order");
       return;
     }
@@ -168,7 +166,7 @@ void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, TetMes
   for (CurvedEdge& edge : mesh.curved_edges) {
     for (std::int32_t& n : edge.ends) n = number[n];
   }
-  // A triangle on middles of edges is no side of a tetrahedron.
+  // A triangle on mid-edge nodes is not a face of a tetrahedron.
   for (const Triangle& triangle : mesh.tagged_triangles) {
     if (std::none_of(triangle.begin(), triangle.end(), [&](std::int32_t n) { return number[n] < 0; })) continue;
     problems.Add("", "a triangle has a node in the middle of a tetrahedron's edge",
@@ -176,7 +174,7 @@ void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, TetMes
     return;
   }
   renumber(mesh.tagged_triangles);
-  // The middle of an edge belongs to a part of the mesh when both of its ends do.
+  // A mid-edge node belongs to a part of the mesh when both ends of its edge do.
   std::size_t kept = 0;
   for (std::size_t p = 0; p < mesh.tagged_nodes.size(); ++p) {
     const std::int32_t node = number[mesh.tagged_nodes[p]];

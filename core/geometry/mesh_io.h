@@ -10,22 +10,22 @@
 
 namespace fascicle {
 
-// The bytes of a mesh file. The views must outlive the call only.
+// The bytes of a mesh file. The views must stay valid during the call only.
 struct MeshFile {
-  std::string_view name;  // its extension tells the format: .msh .vtu .vtk .mesh .node
+  std::string_view name;  // its extension gives the format: .msh .vtu .vtk .mesh .node
   std::string_view bytes;
   std::string_view element_bytes;  // TetGen only: the bytes of the .ele file
 };
 
 // Reads tetrahedra (and tagged triangles) from Gmsh 2.2/4.1 ASCII, VTK XML (.vtu: ascii, inline and appended, raw or
-// base64, zlib-compressed or not), VTK legacy (ascii and binary), MEDIT ASCII, and TetGen. Other cells are left out.
-// Node numbering of the file is kept where it is contiguous; TetGen files may count from 0 or 1.
+// base64, zlib-compressed or not), VTK legacy (ascii and binary), MEDIT ASCII, and TetGen. Other cells are skipped.
+// The file's node numbers are kept where they are contiguous; TetGen files may count from 0 or 1.
 // Coordinates stay in the file's unit; tetrahedra keep the file's orientation.
-// Malformed input never crashes, hangs or allocates more than a small multiple of the file's size: it adds to
-// `problems` (paths are left empty; line numbers stand in the message) and gives nothing.
+// Malformed input never crashes, hangs or allocates more than a small multiple of the file's size. It adds to
+// `problems` (with empty paths and line numbers in the message) and returns nothing.
 std::optional<TetMesh> ReadMesh(const MeshFile& file, Problems& problems);
 
-// The extensions that ReadMesh knows, for messages: ".msh, .vtu, ...".
+// The extensions that ReadMesh accepts, for messages: ".msh, .vtu, ...".
 std::string KnownMeshExtensions();
 
 }  // namespace fascicle

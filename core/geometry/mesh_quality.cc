@@ -12,7 +12,7 @@ namespace fascicle {
 
 Cosines DihedralCosines(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 ab = b - a, ac = c - a, ad = d - a;
-  // Inward normals of the sides opposite to b, c, d and a.
+  // Inward normals of the faces opposite to b, c, d and a.
   const std::array<Vec3, 4> normals = {ac.cross(ad), ad.cross(ab), ab.cross(ac),
                                        Vec3(-(ac.cross(ad) + ad.cross(ab) + ab.cross(ac)))};
   if (!(normals[0].dot(ab) > 0)) return {-2, 2};

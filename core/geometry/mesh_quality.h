@@ -8,22 +8,22 @@
 
 namespace fascicle {
 
-// The smallest and the largest cosine of the six angles between a tetrahedron's sides; of one that is flat or inverted
-// at least one is beyond [-1, 1].
+// The smallest and the largest cosine of a tetrahedron's six dihedral angles. If it is flat or inverted, at least one
+// is outside of [-1, 1].
 struct Cosines {
   double lowest, highest;
 };
 Cosines DihedralCosines(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-// Angles between sides of tetrahedra [rad].
+// Dihedral angles of tetrahedra [rad].
 struct AngleFigures {
   double smallest = 0;
   double largest = 0;
-  double median = 0;  // of each tetrahedron's smallest
+  double median = 0;  // of the smallest angle of each tetrahedron
 };
 AngleFigures MeasureAngles(const TetMesh& mesh);
 
-// Of each tetrahedron the face-connected part that it belongs to, counted from 0 in the order of their lowest
+// The face-connected part to which each tetrahedron belongs. Parts are counted from 0 in the order of their lowest
 // tetrahedra.
 std::vector<std::int32_t> FaceConnectedParts(const TetMesh& mesh);
 

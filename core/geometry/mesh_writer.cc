@@ -8,7 +8,7 @@
 namespace fascicle {
 namespace {
 
-// Numbers are written as short as they can be read back exactly.
+// Numbers are written in the shortest form that reads back exactly.
 template <class Number>
 void Append(Number value, std::string& text) {
   std::array<char, 32> digits;

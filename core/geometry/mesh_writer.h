@@ -16,8 +16,9 @@ struct TagName {
   std::string name;  // without quotes
 };
 
-// The mesh as a Gmsh file, version 2.2, ASCII: ReadMesh gives back the same nodes to the last bit, tetrahedra, tagged
-// triangles and tags. A triangle of several regions stands in the file once for each. Curved edges are not written.
+// The mesh as a Gmsh file, version 2.2, ASCII. ReadMesh restores the same nodes (to the last bit), tetrahedra, tagged
+// triangles and tags. A triangle that belongs to several regions is written once for each. Curved edges are not
+// written.
 std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names);
 
 }  // namespace fascicle

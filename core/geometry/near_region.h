@@ -9,8 +9,8 @@
 
 namespace fascicle {
 
-// The triangles of a mesh's surface whose corners are all no further than `distance` from another surface, and their
-// nodes. `surface` must be BoundaryTriangles(mesh); all lengths are in one unit.
+// The boundary triangles of a mesh whose corners are all within `distance` of another surface, and their nodes.
+// `surface` must be BoundaryTriangles(mesh); all lengths are in one unit.
 Region SelectNear(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name,
                   const TriangleTree& other, double distance);
 

@@ -53,7 +53,7 @@ class ObjReader {
     raw_.nodes.push_back(node);
   }
 
-  // Corners are node/texture/normal; nodes count from 1, or backwards from the last one when negative.
+  // Corners are node/texture/normal. Nodes count from 1, or backwards from the last one if negative.
   void ReadFace(std::string_view line) {
     std::vector<std::int64_t> polygon;
     for (std::string_view word = Word(line); !word.empty(); word = Word(line)) {

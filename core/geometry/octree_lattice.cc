@@ -12,17 +12,17 @@
 namespace fascicle {
 namespace {
 
-// So that positions fit a key of 63 bits.
+// Positions must fit a key of 63 bits.
 constexpr int kDeepest = 19;
 
 using Position = std::array<std::int32_t, 3>;
 
-// A cube of the octree; positions count in halves of the finest leaf's width, so that centres are whole numbers too.
+// A cube of the octree. Positions are multiples of half the finest leaf's width, so that centres are integers, too.
 struct Cell {
   Position lowest;
   std::int32_t width;
   std::int32_t children = -1;  // the first of eight, in the order of bits x, y, z
-  bool outside = false;        // all of it, and the surface is further away than the finest width
+  bool outside = false;        // wholly outside, and farther from the surface than the finest width
 
   bool is_leaf() const { return children < 0; }
   Position Centre() const { return {lowest[0] + width / 2, lowest[1] + width / 2, lowest[2] + width / 2}; }
@@ -100,7 +100,7 @@ class Octree {
     }
   }
 
-  // The cell of a width that begins at `lowest`, or the leaf that holds it; none beyond the root.
+  // The cell of the given width at `lowest`, or the leaf that contains it; null outside of the root.
   const Cell* Find(const Position& lowest, std::int32_t width) const {
     for (const std::int32_t x : lowest) {
       if (x < 0 || x >= cells_[0].width) return nullptr;
@@ -115,8 +115,8 @@ class Octree {
     return cell;
   }
 
-  // Cells that meet along an edge differ by a factor of two at most. Those outside need not: whatever touches them is
-  // outside too.
+  // Makes cells that share an edge differ by a factor of at most two. Cells outside need not: everything that touches
+  // them is outside, too.
   void Balance() {
     for (bool changed = true; changed;) {
       changed = false;
@@ -166,7 +166,7 @@ class Octree {
     }
   }
 
-  // The corners of a side, in a ring.
+  // The corners of a side, in cyclic order.
   static std::array<Position, 4> Ring(const Cell& cell, int axis, int direction) {
     std::array<Position, 4> ring;
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -183,10 +183,11 @@ class Octree {
     return {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
   }
 
-  // Around each edge of the common side one tetrahedron with both centres, or two where smaller cells halve the edge.
+  // Adds, around each edge of the common side, one tetrahedron with both centres, or two where smaller cells split the
+  // edge.
   void AddBesideEqual(const Cell& cell, const Cell& neighbour, int axis) {
     const std::array<Position, 4> ring = Ring(cell, axis, 1);
-    // Where the cells beyond the edge from corner i to i + 1 are.
+    // Directions to the cells beyond the edge from corner i to i + 1.
     const int across[4] = {(axis + 2) % 3, (axis + 1) % 3, (axis + 2) % 3, (axis + 1) % 3};
     const int sign[4] = {-1, 1, 1, -1};
     for (int i = 0; i < 4; ++i) {
@@ -208,7 +209,7 @@ class Octree {
     }
   }
 
-  // Half a pyramid on either side of the diagonal that ends in the middle of the larger cell's side.
+  // Adds half a pyramid on each side of the diagonal that ends at the midpoint of the larger cell's side.
   void AddBesideLarger(const Cell& cell, const Cell& larger, int axis, int direction) {
     const std::array<Position, 4> ring = Ring(cell, axis, direction);
     Position middle = larger.Centre();

@@ -10,12 +10,12 @@
 
 namespace fascicle {
 
-// Tetrahedra of a body-centred cubic lattice that cover what a surface encloses, coarser inside [Labelle and Shewchuk
-// 2007, 3.1]. Its nodes are the corners and centres of an octree's leaves.
+// Tetrahedra of a body-centred cubic lattice that cover the interior of a surface, coarser away from it [Labelle and
+// Shewchuk 2007, 3.1]. The nodes are the corners and centres of an octree's leaves.
 struct Lattice {
   Vec3 origin = Vec3::Zero();
-  double half = 0;                                     // of the finest leaf's width
-  std::vector<std::array<std::int32_t, 3>> positions;  // of nodes, in halves from the origin
+  double half = 0;                                     // half the finest leaf's width
+  std::vector<std::array<std::int32_t, 3>> positions;  // of nodes, as multiples of `half` from the origin
   std::vector<Tetrahedron> tetrahedra;
 
   Vec3 Position(std::size_t node) const {
@@ -23,9 +23,9 @@ struct Lattice {
   }
 };
 
-// Leaves are `width` wide wherever the surface is nearer than that, and elsewhere no wider than `width` plus `grading`
-// times the distance from the surface; those that meet along an edge differ by a factor of two at most. Some of the
-// tetrahedra lie outside of the surface. The same for any number of threads.
+// Leaves have the width `width` where the surface is nearer than that, and elsewhere at most `width` plus `grading`
+// times the distance from the surface. Leaves that share an edge differ by a factor of at most two. Some tetrahedra lie
+// outside of the surface. The same bits for any number of threads.
 Lattice MakeLattice(const TriangleMesh& surface, const TriangleTree& tree, double width, double grading,
                     ThreadTeam& team);
 

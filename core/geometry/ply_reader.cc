@@ -42,7 +42,7 @@ class PlyReader {
   RawSurface Read() {
     ReadHeader();
     for (const Element& element : elements_) {
-      // Each takes a byte at least, unless it has no properties.
+      // Each element takes at least a byte, unless it has no properties.
       if (!element.properties.empty() && !in_.Holds(static_cast<std::int64_t>(element.count), element.name, 1)) break;
       for (std::size_t i = 0; i < element.count && !element.properties.empty() && !in_.failed(); ++i) {
         ReadElement(element);
@@ -127,7 +127,7 @@ class PlyReader {
     std::vector<std::int64_t> polygon;
     for (int i = 0; i < static_cast<int>(count) && !in_.failed(); ++i) {
       const double value = Number(property.type);
-      // What is no whole number becomes no node.
+      // A value that is not an integer becomes an invalid node.
       if (face) polygon.push_back(WholeNumbers({value})[0]);
     }
     if (face) raw_.polygons.push_back(std::move(polygon));

@@ -5,15 +5,15 @@
 
 #include "core/geometry/tet_mesh.h"
 
-// Tetrahedra of ten nodes: the corners, and the middles of the edges in the order of kTetEdges.
+// Tetrahedra of ten nodes: the corners, then the mid-edge nodes in the order of kTetEdges.
 namespace fascicle {
 
-// Quadrature of degree two: four points, each with this barycentric coordinate to the corner next to it and to the
-// others [Zienkiewicz, Taylor & Zhu 2013, 5.11].
+// Quadrature rule of degree two: at each of four points, the barycentric coordinate of the nearest corner and that of
+// the other corners [Zienkiewicz, Taylor & Zhu 2013, 5.11].
 inline constexpr double kNearCorner = 0.58541019662496845446;  // (5 + 3 sqrt 5) / 20
 inline constexpr double kFarCorner = 0.13819660112501051518;   // (5 - sqrt 5) / 20
 
-// Corners of the linear tetrahedron that is mapped as the element is where the barycentric coordinates are L:
+// Corners of the linear tetrahedron with the same Jacobian as the element at barycentric coordinates L:
 //   y_c = (4 L_c - 1) x_c + sum_{j != c} 4 L_j x_cj.
 inline std::array<Vec3, 4> CornersAt(const std::array<Vec3, 10>& x, const std::array<double, 4>& L) {
   std::array<Vec3, 4> corners;

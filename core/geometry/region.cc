@@ -14,9 +14,9 @@
 namespace fascicle {
 namespace {
 
-constexpr double kRoundOff = 1e-9;  // of the diagonal; for angles in [rad]
+constexpr double kRoundOff = 1e-9;  // relative to the diagonal; for angles in [rad]
 
-// What selection needs of a kind of mesh: its elements, and the faces of its surface.
+// Access to one kind of mesh: its elements and the faces of its boundary.
 struct Tetrahedra {
   using Surface = std::vector<Triangle>;
   const TetMesh& mesh;
@@ -62,14 +62,14 @@ Vec3 CentroidOf(const std::vector<Vec3>& nodes, const Cell& cell) {
   return sum / static_cast<double>(cell.size());
 }
 
-// The same face whichever corner it starts from and whichever way it turns.
+// A key that is the same for every starting corner and orientation of a face.
 template <class FaceNodes>
 FaceNodes Sorted(FaceNodes face) {
   std::sort(face.begin(), face.end());
   return face;
 }
 
-// Appends the nodes of a cell; SortNodes must follow.
+// Appends the nodes of a cell. Call SortNodes afterwards.
 template <class Cell>
 void AddNodes(const Cell& cell, Region& region) {
   region.nodes.insert(region.nodes.end(), cell.begin(), cell.end());
@@ -131,7 +131,7 @@ struct Select {
     for (const FaceNodes& face : cells.surface) {
       const Vec3& origin = cells.mesh.nodes[face[0]];
       const Vec3 normal = (cells.mesh.nodes[face[1]] - origin).cross(cells.mesh.nodes[face[2]] - origin);
-      // atan2 keeps the angle exact near 0 and pi, where the arc cosine loses half of the digits.
+      // atan2 stays accurate near 0 and pi, where the arc cosine loses half of the digits.
       const double angle = std::atan2(normal.cross(selector.direction).norm(), normal.dot(selector.direction));
       if (normal.isZero(0) || angle > selector.max_angle + kRoundOff) continue;
       Cells::AddFace(face, region);
@@ -142,8 +142,8 @@ struct Select {
   }
 
  private:
-  // The file lists triangles in any orientation, and perhaps inside of the body: those of the surface are taken from
-  // there.
+  // Triangles in the file have any orientation and may lie inside of the body. Those on the boundary are taken from the
+  // boundary, with its orientation.
   std::vector<Triangle> TaggedTriangles(std::int32_t tag) const {
     const TetMesh& mesh = cells.mesh;
     std::vector<Triangle> tagged;
@@ -174,7 +174,7 @@ struct Select {
     }
   }
 
-  // Nodes that are `inside`, the surface between them, and the elements with their centroid inside.
+  // Selects the nodes that are `inside`, the boundary faces between them, and the elements with their centroid inside.
   template <class Inside>
   void SelectNodes(const Inside& inside) const {
     const std::vector<Vec3>& nodes = cells.mesh.nodes;
@@ -189,7 +189,7 @@ struct Select {
     }
   }
 
-  // The elements with their centroid within a distance of the region's faces.
+  // Selects the elements with their centroid within a distance of the region's faces.
   void SelectLayer(double depth) const {
     const std::vector<Vec3>& nodes = cells.mesh.nodes;
     const std::vector<Triangle> triangles = Cells::Triangles(Cells::FacesOf(region));

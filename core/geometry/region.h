@@ -12,7 +12,7 @@
 
 namespace fascicle {
 
-// The selectors of scene.proto, lengths in [m], directions of any non-zero length.
+// The selectors of scene.proto: lengths in [m], directions of any non-zero length.
 struct TagSelector {
   std::int32_t tag = 0;
 };
@@ -37,32 +37,34 @@ using Selector = std::variant<TagSelector, PlaneSelector, BoxSelector, SphereSel
 struct Region {
   std::string name;
   std::vector<std::int32_t> nodes;  // ascending, no duplicates
-  std::vector<Triangle> triangles;  // of a tetrahedral surface: outward, all nodes in `nodes` (side, tag: the selected
+  std::vector<Triangle> triangles;  // of a tetrahedral boundary: outward, all nodes in `nodes` (side, tag: the selected
                                     // ones)
-  std::vector<std::int32_t> elements;    // ascending; tag: those with it; plane, box, sphere: whose centroid is inside;
-                                         // side: whose centroid is no further than its depth from a face
-  std::vector<Quad> quads;               // the same of a surface of bricks
-  std::vector<Selector> selectors = {};  // what it was selected by; all hold
+  std::vector<std::int32_t> elements;    // ascending; tag: those with the tag; plane, box, sphere: centroid inside;
+                                         // side: those with their centroid within the depth of a face
+  std::vector<Quad> quads;               // the same for the boundary of bricks
+  std::vector<Selector> selectors = {};  // the selectors that define it; all must hold
 };
 
-// Selects what a selector names; may be empty. Tag: the triangles with the tag, and if there are none the elements
-// with it, and if there are none of these either the nodes with it and the surface between them; triangles inside of
-// the body give nodes only. Elements are those with the tag in any case. Side: faces whose outward normal is
-// within the angle. Round-off allowance of plane, box and sphere: 1e-9 of the mesh's diagonal; of the angle: 1e-9 rad.
+// Selects the nodes, boundary faces and elements that match a selector; all may be empty.
+// Tag: the triangles with the tag; if there are none, the elements with it; if there are none of these either, the
+// nodes with it and the boundary faces between them. Triangles inside of the body give nodes only. Elements are always
+// those with the tag.
+// Side: faces whose outward normal is within the angle of the direction.
+// Tolerances: 1e-9 of the mesh's diagonal for plane, box and sphere; 1e-9 rad for the angle.
 // `surface` must be BoundaryTriangles(mesh).
 Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name,
                     const Selector& selector);
 
-// The same of bricks; the tag is their label. `surface` must be BoundaryQuads(mesh).
+// The same for bricks; the tag is their label. `surface` must be BoundaryQuads(mesh).
 Region SelectRegion(const BrickMesh& mesh, const std::vector<Quad>& surface, std::string name,
                     const Selector& selector);
 
-// Which points of space belong to a region of a surface: those within `slack` [m] of what each of its selectors names;
-// of a side, those no further than its depth and the slack from the region's faces. Tags belong to elements, not to
-// points: none. Const; may be asked from several threads at once.
+// Decides which points of space belong to a region of a surface: those within `slack` [m] of every selector's set. For
+// a side selector: those within its depth plus the slack of the region's faces. Tag selectors contain no points,
+// because tags belong to elements. Const and thread-safe.
 class RegionPoints {
  public:
-  // nodes: those that the region's triangles number.
+  // nodes: positions of the nodes that the region's triangles refer to.
   RegionPoints(const Region& region, const std::vector<Vec3>& nodes, double slack);
   bool Contain(const Vec3& x) const;
 
@@ -70,10 +72,10 @@ class RegionPoints {
   struct Faces;
   std::vector<Selector> selectors_;
   double slack_;
-  std::shared_ptr<const Faces> faces_;  // of a side
+  std::shared_ptr<const Faces> faces_;  // for side selectors
 };
 
-// What lies in both regions, under the name of the first.
+// The intersection of two regions, with the name of the first.
 Region Intersection(const Region& first, const Region& second);
 
 }  // namespace fascicle

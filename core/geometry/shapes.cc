@@ -11,17 +11,17 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Local nodes of a hexahedron; bit d of kCorner[n] tells whether node n is at the far end along axis d.
+// Local nodes of a hexahedron: bit d of kCorner[n] tells whether node n is at the far end along axis d.
 constexpr int kCorner[8] = {0b000, 0b001, 0b011, 0b010, 0b100, 0b101, 0b111, 0b110};
 constexpr int kKuhn[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
 
-// A block of hexahedra. Mirrored axes are cut into two halves in which the hexahedra's local axes point away from the
-// middle: then every hexahedron at a rounded edge is split through that edge, not beside it, where it would leave
-// slivers. The faces between mirror images fit.
+// A block of hexahedra. A mirrored axis is split in two halves, with the hexahedra's local axes pointing away from the
+// middle. Every hexahedron at a rounded edge is then split through that edge, not beside it, which would create
+// slivers. The faces between mirror images match.
 struct Block {
   std::array<int, 3> divisions;
   std::array<bool, 3> mirrored = {false, false, false};
-  bool ring = false;  // the last axis closes on itself
+  bool ring = false;  // the last axis is periodic
 
   int NodeCount(int axis) const { return divisions[axis] + (ring && axis == 2 ? 0 : 1); }
   std::int32_t Node(const std::array<int, 3>& at) const {
@@ -73,12 +73,12 @@ TetMesh MakeBlock(const Block& block, const Place& place) {
   return mesh;
 }
 
-// Node `index` of `divisions` along [-1, 1].
+// Coordinate of node `index` out of `divisions` along [-1, 1].
 double Centred(int index, int divisions) { return (2.0 * index - divisions) / divisions; }
 
-// Maps the square or cube [-1, 1]^N onto the unit disc or ball: shells around the middle to circles or spheres, with
-// equal angles along each side. In two dimensions it keeps ratios of area [Shirley and Chiu 1997, "A low distortion
-// map between disk and square"]; in three it is the equiangular cubed sphere [Ronchi et al. 1996].
+// Maps the square or cube [-1, 1]^N onto the unit disc or ball. Concentric square shells become circles or spheres,
+// with equal angles along each side. In two dimensions the map preserves ratios of area [Shirley and Chiu 1997, "A low
+// distortion map between disk and square"]; in three it is the equiangular cubed sphere [Ronchi et al. 1996].
 template <int N>
 Eigen::Matrix<double, N, 1> RoundOff(const Eigen::Matrix<double, N, 1>& point) {
   const double radius = point.cwiseAbs().maxCoeff();
@@ -119,7 +119,7 @@ TetMesh MakeFusiform(const Fusiform& shape) {
 TetMesh MakeTorus(const Torus& shape) {
   const int across = shape.divisions_across, around = shape.divisions_around;
   return MakeBlock({{across, across, around}, {true, true, false}, true}, [&](int i, int j, int k) {
-    // Up, away from the axis, around it: a right-handed frame.
+    // Along the axis, radially, around the axis: a right-handed frame.
     const Eigen::Vector2d at = shape.minor_radius * OnDisc(i, j, across);
     const double angle = 2 * kPi * k / around;
     const double radius = shape.major_radius + at.y();

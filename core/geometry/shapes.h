@@ -7,15 +7,15 @@
 
 namespace fascicle {
 
-// The built-in shapes of scene.proto, with the same meaning; lengths in [m], arguments already checked.
-// Hexahedra are split into six tetrahedra around the diagonal from local node 0 to 6 (Kuhn): with the hexahedron's
-// nodes 0-3 at the bottom counter-clockwise and 4-7 above them, (0,1,2,6)(0,2,3,6)(0,3,7,6)(0,7,4,6)(0,4,5,6)(0,5,1,6).
-// In round shapes, whose divisions across are even, each quarter (of the sphere: eighth) is the mirror image of the
-// next, with local node 0 towards the middle. Squares become discs by the map of [Shirley and Chiu 1997, "A low
-// distortion map between disk and square"]: nodes of the surface lie on it exactly, tetrahedra are of even volume, and
-// no dihedral angle is below 16 degrees however fine the mesh is, as long as hexahedra are about as long as wide.
+// The built-in shapes of scene.proto, with the same meaning. Lengths in [m]; arguments must have been checked.
+// Hexahedra are split into six tetrahedra around the diagonal from local node 0 to 6 (Kuhn). With nodes 0-3 at the
+// bottom, counter-clockwise, and 4-7 above them: (0,1,2,6)(0,2,3,6)(0,3,7,6)(0,7,4,6)(0,4,5,6)(0,5,1,6).
+// Round shapes have an even number of divisions across. Each quarter (of the sphere: eighth) is the mirror image of the
+// next, with local node 0 towards the middle. Squares are mapped to discs as in [Shirley and Chiu 1997, "A low
+// distortion map between disk and square"]. Boundary nodes lie on the surface exactly, tetrahedra have similar volumes,
+// and no dihedral angle is below 16 degrees at any resolution, provided that hexahedra are about as long as wide.
 
-// Node i + (nx+1) (j + (ny+1) k) is at (i, j, k): x runs fastest.
+// Node i + (nx+1) (j + (ny+1) k) is at (i, j, k): x varies fastest.
 TetMesh MakeBox(const Vec3& origin, const Vec3& size, const std::array<int, 3>& divisions);
 
 struct Fusiform {

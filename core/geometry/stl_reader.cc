@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kHeader = 80, kFacet = 50;
 
-// Corners in threes become triangles; those at the same place one node, numbered by first appearance.
+// Makes a triangle of every three corners. Corners at the same position become one node, numbered by first appearance.
 RawSurface Join(const std::vector<Vec3>& corners) {
   std::vector<std::size_t> order(corners.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -47,7 +47,7 @@ std::vector<Vec3> ReadBinary(std::string_view bytes, std::size_t count) {
   std::vector<Vec3> corners;
   corners.reserve(3 * count);
   for (std::size_t i = 0; i < count; ++i) {
-    // A normal, which is not needed, and three corners.
+    // A normal, which is not used, and three corners.
     const std::string_view numbers = bytes.substr(kHeader + 4 + kFacet * i + 12, 36);
     const std::vector<double> values = ToDoubles(numbers, NumberType::kFloat32, false);
     for (int corner = 0; corner < 3; ++corner) corners.emplace_back(values.data() + 3 * corner);
@@ -64,7 +64,7 @@ std::vector<Vec3> ReadAscii(std::string_view bytes, Problems& problems) {
     while (!in.failed() && in.Peek() == "facet") {
       in.Token();
       in.Expect("normal");
-      // Some programs write nan here; the corners say it anyway.
+      // The normal. Some programs write nan here; it is not used.
       for (int i = 0; i < 3; ++i) in.Token();
       in.Expect("outer");
       in.Expect("loop");
@@ -85,7 +85,7 @@ std::vector<Vec3> ReadAscii(std::string_view bytes, Problems& problems) {
 }  // namespace
 
 RawSurface ReadStl(std::string_view bytes, Problems& problems) {
-  // Binary files may begin with `solid` too: their size tells them apart.
+  // Binary files may begin with `solid`, too; their size identifies them.
   std::uint32_t count = 0;
   if (bytes.size() >= kHeader + 4) std::memcpy(&count, bytes.data() + kHeader, 4);
   const bool binary = bytes.size() >= kHeader + 4 && bytes.size() == kHeader + 4 + kFacet * std::size_t{count};

@@ -10,13 +10,13 @@
 
 namespace fascicle {
 
-// A surface as its file has it, before node numbers are checked. The readers fill one.
+// A surface as stored in its file, before node numbers are checked. Filled by the readers.
 struct RawSurface {
   std::vector<Vec3> nodes;
   std::vector<std::vector<std::int64_t>> polygons;  // node indices from 0, three or more; anything else is malformed
 };
 
-// Each adds to `problems` what is malformed and then gives something to be thrown away.
+// Each adds malformed input to `problems`; its result must then be discarded.
 RawSurface ReadStl(std::string_view bytes, Problems& problems);
 RawSurface ReadObj(std::string_view bytes, Problems& problems);
 RawSurface ReadPly(std::string_view bytes, Problems& problems);

@@ -19,13 +19,14 @@
 namespace fascicle {
 namespace {
 
-// Triangles of least area take the cube of the number of edges: longer boundaries get a fan from their middle.
+// Filling with least area takes time proportional to the cube of the number of edges. Longer boundaries are filled by a
+// fan around their centre.
 constexpr std::size_t kLongestBoundary = 300;
 constexpr std::size_t kPlacesTold = 5;
 
 using Loop = std::vector<std::int32_t>;
 
-// An edge as one triangle has it.
+// An edge as it occurs in one triangle.
 struct Side {
   std::int32_t low, high;  // nodes
   std::int32_t triangle;
@@ -48,7 +49,7 @@ std::vector<Side> SortedSides(const std::vector<Triangle>& triangles) {
   return sides;
 }
 
-// Calls visit(first, last) for the sides of each edge.
+// Calls visit(first, last) with the sides of each edge.
 template <class Visit>
 void ForEachEdge(const std::vector<Side>& sides, const Visit& visit) {
   for (std::size_t first = 0; first < sides.size();) {
@@ -59,7 +60,7 @@ void ForEachEdge(const std::vector<Side>& sides, const Visit& visit) {
   }
 }
 
-// Sets of numbers that are joined step by step; the lowest number stands for each.
+// Disjoint sets of numbers, each represented by its lowest member.
 class UnionFind {
  public:
   explicit UnionFind(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
@@ -89,7 +90,7 @@ SurfacePlace PlaceOf(const std::vector<Vec3>& x, const Nodes& nodes) {
   return place;
 }
 
-// The first few places, as part of a sentence.
+// The first few places, formatted for a sentence.
 std::string PlacesText(const std::vector<SurfacePlace>& places) {
   std::string text;
   for (std::size_t i = 0; i < std::min(places.size(), kPlacesTold); ++i) {
@@ -113,13 +114,13 @@ void JoinNodes(TriangleMesh& surface) {
   }
 }
 
-// Whether two triangles of the same nodes go round the same way.
+// Whether two triangles with the same nodes have the same orientation.
 bool SameWay(const Triangle& a, const Triangle& b) {
   const auto at = std::find(b.begin(), b.end(), a[0]) - b.begin();
   return b[(at + 1) % 3] == a[1];
 }
 
-// Triangles without area go, and those that stand twice; two that stand back to back go both.
+// Removes triangles without area and duplicates. Of two opposite triangles with the same nodes both are removed.
 void RemoveTriangles(TriangleMesh& surface, SurfaceReport& report) {
   const std::size_t before = surface.triangles.size();
   std::erase_if(surface.triangles, [&](const Triangle& t) {
@@ -130,7 +131,7 @@ void RemoveTriangles(TriangleMesh& surface, SurfaceReport& report) {
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) same[Ascending(surface.triangles[t])].push_back(t);
   std::vector<char> gone(surface.triangles.size());
   for (const auto& [nodes, triangles] : same) {
-    std::int64_t net = 0;  // those like the first less those against it
+    std::int64_t net = 0;  // those oriented like the first minus the opposite ones
     for (const std::size_t t : triangles) {
       net += SameWay(surface.triangles[triangles[0]], surface.triangles[t]) ? 1 : -1;
     }
@@ -146,8 +147,8 @@ void RemoveTriangles(TriangleMesh& surface, SurfaceReport& report) {
   report.removed_triangles = static_cast<std::int64_t>(before - surface.triangles.size());
 }
 
-// Neighbours over an edge of two triangles go along it in opposite directions: turns those round that don't, beginning
-// at the lowest triangle of each part. Says where that can't be done.
+// Orients triangles consistently: neighbours must traverse their common edge in opposite directions. Starts at the
+// lowest triangle of each part and reports where consistency is impossible.
 void OrientNeighbours(TriangleMesh& surface, SurfaceReport& report, Problems& problems) {
   struct Neighbour {
     std::int32_t triangle;
@@ -182,7 +183,7 @@ void OrientNeighbours(TriangleMesh& surface, SurfaceReport& report, Problems& pr
       }
     }
     if (conflict) one_sided.push_back(PlaceOf(surface.nodes, surface.triangles[*conflict]));
-    // The majority stays.
+    // The majority keeps its orientation.
     const signed char change = 2 * turned > part.size() ? 0 : 1;
     for (const std::int32_t t : part) {
       if (turn[t] != change) continue;
@@ -213,14 +214,14 @@ std::vector<Loop> Boundaries(const TriangleMesh& surface, Problems& problems) {
   });
   if (!crowded.empty()) {
     problems.Add("",
-                 std::to_string(crowded.size()) + " edges have three or more triangles that close nothing, at " +
-                     PlacesText(crowded),
+                 std::to_string(crowded.size()) +
+                     " edges belong to three or more triangles and do not bound a volume, at " + PlacesText(crowded),
                  "remove sheets that hang on the surface or stand inside of it");
     return {};
   }
   std::vector<Loop> loops;
   while (!next.empty()) {
-    // Where boundaries touch, each return to a node ends a loop.
+    // Where boundaries touch, each return to a node closes a loop.
     Loop path = {next.begin()->first};
     while (!path.empty()) {
       const auto step = next.find(path.back());
@@ -240,7 +241,7 @@ std::vector<Loop> Boundaries(const TriangleMesh& surface, Problems& problems) {
   return loops;
 }
 
-// Triangles of least total area over a boundary, by dynamic programming over its parts.
+// Fills a boundary with triangles of least total area, by dynamic programming.
 void FillWithLeastArea(const Loop& loop, TriangleMesh& surface) {
   const std::size_t n = loop.size();
   const auto area = [&](std::size_t i, std::size_t j, std::size_t k) {
@@ -312,12 +313,12 @@ void FillHoles(TriangleMesh& surface, double largest_hole, SurfaceReport& report
   }
 }
 
-// The parts that edges connect, ordered by their lowest triangle.
+// The edge-connected parts, ordered by their lowest triangle.
 std::vector<std::vector<std::int32_t>> Parts(const TriangleMesh& surface) {
   UnionFind joined(surface.triangles.size());
   const std::vector<Side> sides = SortedSides(surface.triangles);
   ForEachEdge(sides, [&](std::size_t first, std::size_t last) {
-    // Where two bodies touch along an edge they stay two.
+    // Two bodies that touch along an edge stay separate.
     if (last - first == 2) joined.Join(sides[first].triangle, sides[first + 1].triangle);
   });
   std::map<std::int32_t, std::vector<std::int32_t>> parts;
@@ -336,7 +337,7 @@ TriangleMesh PartOf(const TriangleMesh& surface, const std::vector<std::int32_t>
   return part;
 }
 
-// A part that is inside out is a cavity when it lies inside of another part, and else is turned round.
+// A part with inward normals is a cavity if it lies inside another part; otherwise it is reoriented.
 void OrientParts(TriangleMesh& surface, SurfaceReport& report) {
   const std::vector<std::vector<std::int32_t>> parts = Parts(surface);
   report.parts = static_cast<std::int64_t>(parts.size());
@@ -361,7 +362,7 @@ void OrientParts(TriangleMesh& surface, SurfaceReport& report) {
   }
 }
 
-// Pairs that cut each other, gathered to places where they hang together.
+// Finds pairs of triangles that intersect and groups connected ones into places.
 void FindCuts(const TriangleMesh& surface, SurfaceReport& report) {
   const auto pairs = TriangleTree(surface).CuttingPairs();
   UnionFind joined(surface.nodes.size());

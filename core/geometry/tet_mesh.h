@@ -12,23 +12,23 @@ namespace fascicle {
 using Tetrahedron = std::array<std::int32_t, 4>;  // node indices; det[X1-X0, X2-X0, X3-X0] > 0
 using Triangle = std::array<std::int32_t, 3>;     // node indices; counter-clockwise seen from outside
 
-// The corners at the ends of each edge of a tetrahedron.
+// The end nodes of each edge of a tetrahedron.
 inline constexpr std::array<std::array<int, 2>, 6> kTetEdges = {{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
 
-// The middle of an edge that is not straight.
+// An edge that is not straight.
 struct CurvedEdge {
   std::array<std::int32_t, 2> ends;  // node indices
-  Vec3 middle;                       // [m], as the nodes
+  Vec3 middle;                       // position of the mid-edge node, in the unit of the nodes
 };
 
-// Tetrahedra with what their file says about them. Plain data: see mesh_checks.h for what makes one fit to simulate.
+// Tetrahedra and the tags of their file. Plain data; mesh_checks.h decides whether a mesh is fit for simulation.
 struct TetMesh {
   std::vector<Vec3> nodes;  // [m] (readers: the file's own unit)
   std::vector<Tetrahedron> tetrahedra;
   std::vector<std::int32_t> tetrahedron_tags;  // physical tag of each tetrahedron; empty when the file has none
   std::vector<Triangle> tagged_triangles;      // triangles listed in the file, in its own orientation
   std::vector<std::int32_t> triangle_tags;     // physical tag of each of them
-  std::vector<std::int32_t> tagged_nodes;      // nodes that the file lists by themselves
+  std::vector<std::int32_t> tagged_nodes;      // single nodes listed in the file
   std::vector<std::int32_t> node_tags;         // physical tag of each of them
   std::vector<CurvedEdge> curved_edges;        // for quadratic elements; all other edges are straight
 };
@@ -39,7 +39,7 @@ double SignedVolume(const TetMesh& mesh, std::size_t tetrahedron);
 Vec3 Centroid(const TetMesh& mesh, std::size_t tetrahedron);
 // Sum of the signed volumes [m^3].
 double TotalVolume(const TetMesh& mesh);
-// Faces that belong to one tetrahedron only, outward oriented, in a fixed order.
+// Faces that belong to one tetrahedron only, oriented outward, in a fixed order.
 std::vector<Triangle> BoundaryTriangles(const TetMesh& mesh);
 
 }  // namespace fascicle

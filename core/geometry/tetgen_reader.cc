@@ -9,7 +9,7 @@
 namespace fascicle {
 namespace {
 
-// Number of values that follow on each line; a file cannot hold more of them than bytes.
+// Number of values that follow on each line. A file cannot hold more of them than it has bytes.
 std::int64_t Width(TextScanner& in, std::string_view what) {
   const std::int64_t width = in.Int(what);
   if (!in.failed() && (width < 0 || width > 1000)) in.Fail(std::to_string(width) + " as " + std::string(what));

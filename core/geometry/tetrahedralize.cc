@@ -14,13 +14,13 @@
 namespace fascicle {
 namespace {
 
-constexpr double kLargestHole = 0.1;  // of the diagonal
+constexpr double kLargestHole = 0.1;  // relative to the diagonal
 constexpr double kMostTetrahedra = 5e7;
 constexpr int kSizeRounds = 5;
 constexpr double kCountTolerance = 0.05;
 constexpr int kSweeps = 8;
-constexpr double kOwnPart = 0.01;       // of the volume: smaller parts are crumbs
-constexpr double kCutTolerance = 0.01;  // of the volume, for surfaces that cut themselves
+constexpr double kOwnPart = 0.01;       // relative to the volume: smaller parts are left out
+constexpr double kCutTolerance = 0.01;  // relative to the volume, for surfaces that intersect themselves
 
 std::string Number(double value) {
   char text[32];
@@ -65,7 +65,7 @@ class Meshing {
 
   double CountAt(double size) const { return 12 * report_.surface_volume / (size * size * size); }
 
-  // Stuffs with the given size, or with sizes that come nearer and nearer to the wanted number of tetrahedra.
+  // Stuffs the surface at the given size, or at sizes that approach the wanted number of tetrahedra.
   bool Stuff(const TriangleTree& tree) {
     double size = options_.size;
     if (size > 0 && CountAt(size) > kMostTetrahedra) {
@@ -97,7 +97,7 @@ class Meshing {
     return false;
   }
 
-  // Crumbs go; several bodies are refused.
+  // Drops negligible parts; refuses several bodies.
   bool KeepLargestPart() {
     const std::vector<std::int32_t> part = FaceConnectedParts(mesh_);
     const std::int32_t parts = *std::max_element(part.begin(), part.end()) + 1;
@@ -131,7 +131,7 @@ class Meshing {
     return true;
   }
 
-  // The volume of a surface that cuts itself is not known beforehand.
+  // The true volume of a self-intersecting surface is not known beforehand.
   bool Fit(const TriangleTree& tree) {
     const std::vector<SurfacePlace>& cuts = report_.surface.cuts;
     std::optional<double> volume;
@@ -141,10 +141,10 @@ class Meshing {
     if (cuts.empty() || std::abs(error) <= kCutTolerance) return true;
     for (const SurfacePlace& place : cuts) {
       problems_.Add("",
-                    "the surface cuts itself at " + PlaceText(place) + ", in " + std::to_string(place.count) +
+                    "the surface intersects itself at " + PlaceText(place) + ", in " + std::to_string(place.count) +
                         " pairs of triangles",
-                    "what it winds round once differs by " + Number(100 * std::abs(error)) +
-                        " % from the volume it encloses: take the surface apart there");
+                    "the volume inside, counted once, differs by " + Number(100 * std::abs(error)) +
+                        " % from the enclosed volume, which counts overlaps twice: separate the parts there");
     }
     return false;
   }

@@ -105,7 +105,7 @@ bool TextScanner::Holds(std::int64_t count, std::string_view what, std::size_t b
   if (count < 0) {
     Fail("the number of " + std::string(what) + " is " + std::to_string(count));
   } else if (static_cast<std::uint64_t>(count) > (rest_.size() + 1) / bytes_each) {
-    // One more, as the last thing may end without a new line.
+    // One more, because the last item may end without a newline.
     Fail(std::to_string(count) + " " + std::string(what) + " are announced, but the file ends after " +
              std::to_string(rest_.size()) + " bytes more",
          kCutOff);

@@ -10,11 +10,11 @@
 
 namespace fascicle {
 
-// Takes tokens, lines and raw bytes from text that nobody has checked. The first failure adds one problem with the line
-// number and leaves nothing to read: from then on numbers are 0, tokens and lines empty, and failed() is true.
+// Reads tokens, lines and raw bytes from untrusted text. The first failure adds one problem with the line number and
+// ends the input: from then on numbers are 0, tokens and lines are empty, and failed() is true.
 class TextScanner {
  public:
-  // Both must outlive the scanner. A `comment` character starts a comment that reaches to the end of its line.
+  // Both must outlive the scanner. A `comment` character starts a comment that extends to the end of its line.
   TextScanner(std::string_view text, Problems& problems, char comment = '\0')
       : rest_(text), problems_(problems), comment_(comment) {}
 
@@ -22,28 +22,28 @@ class TextScanner {
   int line() const { return line_; }
   std::size_t remaining() const { return rest_.size(); }
 
-  // The next characters without white space; empty at the end.
+  // The next token, delimited by white space; empty at the end.
   std::string_view Token();
   std::string_view Peek();
-  // Whether nothing but white space and comments is left.
+  // Whether only white space and comments are left.
   bool AtEnd() { return Peek().empty(); }
-  // The rest of the current line, without its end.
+  // The rest of the current line, without the line break.
   std::string_view Line();
-  // Raw bytes, of which there must be `size`.
+  // Exactly `size` raw bytes; fails if there are fewer.
   std::string_view Bytes(std::size_t size, std::string_view what);
 
-  // Numbers; `what` names them in problems, as in "a node number".
+  // Numbers. `what` names them in problems, as in "a node number".
   std::int64_t Int(std::string_view what);
   double Double(std::string_view what);
-  // A number of things that follow, each at least `bytes_each` long: never more than the rest of the text can hold.
+  // A number of items that follow, each at least `bytes_each` long. Fails if the rest of the text cannot hold them.
   std::size_t Count(std::string_view what, std::size_t bytes_each);
-  // Whether `count` things of `bytes_each` can still follow; fails otherwise.
+  // Whether the rest of the text can hold `count` items of `bytes_each`; fails otherwise.
   bool Holds(std::int64_t count, std::string_view what, std::size_t bytes_each);
 
-  // Expects a token to be exactly `word`.
+  // Requires the next token to be exactly `word`.
   void Expect(std::string_view word);
 
-  // Adds "line N: message".
+  // Adds the problem "line N: message".
   void Fail(const std::string& message, std::string hint = {});
 
  private:
@@ -57,11 +57,11 @@ class TextScanner {
   bool failed_ = false;
 };
 
-// The whole of `token` as a number.
+// Parses the whole of `token` as a number.
 bool ParseInt(std::string_view token, std::int64_t& value);
 bool ParseDouble(std::string_view token, double& value);
 
-// `token` as it may be shown in a message: short, printable, in quotes.
+// `token` in a form fit for a message: short, printable, in quotes.
 std::string Quoted(std::string_view token);
 
 }  // namespace fascicle

@@ -18,7 +18,7 @@ double SquaredDistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-// Above the triangle's interior the distance is that to its plane, elsewhere that to the nearest edge.
+// If the projection of p lies in the triangle, the distance to its plane; otherwise the distance to the nearest edge.
 double SquaredDistance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const double area = normal.squaredNorm();
@@ -56,7 +56,7 @@ bool TriangleDistance::IsWithin(const Vec3& point, double distance) const {
     double reach;
     bool found = false;
     bool intersectVolume(const BoundingBox& box) const { return box.squaredExteriorDistance(point) <= reach; }
-    // True ends the search.
+    // Returning true ends the search.
     bool intersectObject(const Triangle& t) {
       found = SquaredDistance(point, nodes[t[0]], nodes[t[1]], nodes[t[2]]) <= reach;
       return found;

@@ -8,14 +8,14 @@
 
 namespace fascicle {
 
-// Distances from points to a set of triangles. May be asked from several threads at once.
+// Distances from points to a set of triangles. Thread-safe.
 class TriangleDistance {
  public:
-  // `nodes` must outlive the object; there is at least one triangle.
+  // `nodes` must outlive the object. There must be at least one triangle.
   TriangleDistance(const std::vector<Vec3>& nodes, const std::vector<Triangle>& triangles);
   ~TriangleDistance();
 
-  // Whether a point is no further than `distance` [m] from some triangle.
+  // Whether a point is within `distance` [m] of any triangle.
   bool IsWithin(const Vec3& point, double distance) const;
 
  private:

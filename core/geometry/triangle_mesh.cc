@@ -40,7 +40,7 @@ std::optional<TriangleMesh> Finish(RawSurface raw, Problems& problems) {
     if (!good) ++bad;
   }
   if (bad > 0) {
-    problems.Add("", std::to_string(bad) + " triangles or polygons name nodes that do not exist",
+    problems.Add("", std::to_string(bad) + " triangles or polygons refer to nodes that do not exist",
                  "is the file complete? It has " + std::to_string(raw.nodes.size()) + " nodes");
   }
   const auto infinite =
@@ -67,7 +67,7 @@ std::optional<TriangleMesh> Finish(RawSurface raw, Problems& problems) {
 
 double EnclosedVolume(const TriangleMesh& surface) {
   if (surface.triangles.empty()) return 0;
-  // From a point of the surface: far from the origin the terms would cancel.
+  // Relative to a point of the surface: far from the origin the terms would cancel.
   const Vec3 origin = surface.nodes[surface.triangles[0][0]];
   double volume = 0;
   for (const auto& [a, b, c] : surface.triangles) {

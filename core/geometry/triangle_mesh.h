@@ -11,25 +11,26 @@
 
 namespace fascicle {
 
-// A surface of triangles, counter-clockwise seen from outside where it is closed. Lengths in any one unit.
+// A surface of triangles; counter-clockwise seen from outside if it is closed. Lengths are in any one unit.
 struct TriangleMesh {
   std::vector<Vec3> nodes;
   std::vector<Triangle> triangles;
 };
 
-// What the surface encloses, by the divergence theorem; what is enclosed twice counts twice. 0 without triangles.
+// The enclosed volume, by the divergence theorem. Regions enclosed twice count twice. 0 without triangles.
 double EnclosedVolume(const TriangleMesh& surface);
 double Area(const TriangleMesh& surface);
-// Length of the diagonal of the box around the nodes.
+// Diagonal of the nodes' bounding box.
 double Diagonal(const std::vector<Vec3>& nodes);
 
 // Reads a surface from the bytes of an STL (ASCII and binary), OBJ, PLY (ASCII and binary) or VTK XML (.vtp) file; the
-// extension of `name` tells which. Polygons are split into triangles; STL corners at the same place become one node.
-// Malformed input never crashes, hangs or allocates more than a small multiple of the file's size: it adds to
-// `problems` (paths are left empty; line numbers stand in the message) and gives nothing.
+// extension of `name` selects the format. Polygons are split into triangles. STL corners at the same position become
+// one node.
+// Malformed input never crashes, hangs or allocates more than a small multiple of the file's size. It adds to
+// `problems` (with empty paths and line numbers in the message) and returns nothing.
 std::optional<TriangleMesh> ReadSurface(std::string_view name, std::string_view bytes, Problems& problems);
 
-// The extensions that ReadSurface knows, for messages: ".stl, .obj, ...".
+// The extensions that ReadSurface accepts, for messages: ".stl, .obj, ...".
 std::string KnownSurfaceExtensions();
 
 }  // namespace fascicle

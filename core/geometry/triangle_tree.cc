@@ -17,9 +17,9 @@ namespace fascicle {
 namespace {
 
 constexpr std::int32_t kLeaf = 4;
-// Boxes further away than this many of their radii are dipoles.
+// Boxes farther away than this multiple of their radius are treated as dipoles.
 constexpr double kFar = 2.5;
-// Halving by count leaves no more levels than this for 2^31 triangles.
+// Splitting by count gives at most this many levels for 2^31 triangles.
 constexpr std::size_t kDeepest = 64;
 
 // [Ericson 2005, 5.1.5]
@@ -51,7 +51,8 @@ double SolidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
   return numerator == 0 && denominator == 0 ? 0 : 2 * std::atan2(numerator, denominator);
 }
 
-// Six times the signed volume; its sign is the side of d of the plane through a, b and c.
+// Six times the signed volume of the tetrahedron; its sign tells on which side of the plane through a, b and c the
+// point d is.
 double Side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return (b - a).cross(c - a).dot(d - a); }
 
 bool SegmentCuts(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -61,7 +62,7 @@ bool SegmentCuts(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, con
   return (Side(p, q, b, c) > 0) == s && (Side(p, q, c, a) > 0) == s;
 }
 
-// Whether an edge of `s` between nodes that are none of `t` goes through `t`.
+// Whether an edge of `s` that has no node in common with `t` intersects `t`.
 bool EdgeCuts(const std::vector<Vec3>& x, const Triangle& s, const Triangle& t) {
   const auto shared = [&](std::int32_t n) { return std::find(t.begin(), t.end(), n) != t.end(); };
   for (int k = 0; k < 3; ++k) {
@@ -74,7 +75,7 @@ bool EdgeCuts(const std::vector<Vec3>& x, const Triangle& s, const Triangle& t) 
 }  // namespace
 
 TriangleTree::TriangleTree(const TriangleMesh& surface) : surface_(surface) {
-  FASCICLE_CHECK(!surface.triangles.empty(), "a tree has a triangle at least");
+  FASCICLE_CHECK(!surface.triangles.empty(), "a tree has at least one triangle");
   const auto count = static_cast<std::int32_t>(surface.triangles.size());
   for (std::int32_t t = 0; t < count; ++t) {
     const auto& [a, b, c] = surface.triangles[t];
@@ -84,7 +85,7 @@ TriangleTree::TriangleTree(const TriangleMesh& surface) : surface_(surface) {
   Build(0, count);
 }
 
-// Makes the box of order_[first, first + count) and those below it.
+// Makes the box of order_[first, first + count) and its descendants.
 std::int32_t TriangleTree::Build(std::int32_t first, std::int32_t count) {
   const auto index = static_cast<std::int32_t>(boxes_.size());
   boxes_.emplace_back();

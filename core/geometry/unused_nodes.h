@@ -8,7 +8,7 @@
 
 namespace fascicle {
 
-// Removes the nodes that no cell (triangle, tetrahedron) names and numbers the others anew, in their order.
+// Removes nodes that no cell (triangle, tetrahedron) refers to and renumbers the others, preserving their order.
 template <class Cell>
 void DropUnusedNodes(std::vector<Vec3>& nodes, std::vector<Cell>& cells) {
   std::vector<std::int32_t> number(nodes.size(), -1);

@@ -9,7 +9,7 @@
 namespace fascicle {
 namespace {
 
-// What the solid ones among eight voxels make together.
+// The coarse voxel made of eight fine ones.
 struct Joined {
   std::uint8_t material = 0;
   float stiffness = 0;

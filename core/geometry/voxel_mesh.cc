@@ -7,12 +7,12 @@
 namespace fascicle {
 namespace {
 
-// Voxels of a slab at least, and slabs at most: enough of them for some threads, few enough that the planes which two
-// slabs touch are not many.
+// Least number of voxels of a slab, and greatest number of slabs: enough slabs for several threads, but few planes of
+// nodes shared by two slabs.
 constexpr std::int32_t kSlabVoxels = 16384;
 constexpr std::int32_t kMostSlabs = 32;
 
-// The run that holds i, among runs [begin, end) of one row; null if none.
+// The run that contains i among the runs [begin, end) of one row; null if none does.
 template <class Run>
 const Run* FindRun(const std::vector<Run>& runs, std::int32_t begin, std::int32_t end, std::int32_t i) {
   const auto after = std::upper_bound(runs.begin() + begin, runs.begin() + end, i,
@@ -98,7 +98,7 @@ void VoxelMesh::NumberNodes() {
       std::vector<Interval> intervals;
       for (int r = 0; r < 4; ++r) {
         for (Interval interval : VoxelIntervals(j - (r & 1), k - (r >> 1))) {
-          ++interval.end;  // a row of voxels has one node more
+          ++interval.end;  // a row of voxels has one more node than voxels
           intervals.push_back(interval);
         }
       }
@@ -109,7 +109,7 @@ void VoxelMesh::NumberNodes() {
       node_row_begin_.push_back(static_cast<std::int32_t>(node_runs_.size()));
     }
   }
-  FASCICLE_CHECK(nodes <= 700'000'000, "three numbers a node are counted with 31 bits");
+  FASCICLE_CHECK(nodes <= 700'000'000, "component indices must fit 31 bits");
   nodes_ = static_cast<std::int32_t>(nodes);
   node_runs_.shrink_to_fit();
 }

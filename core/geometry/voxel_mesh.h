@@ -9,41 +9,41 @@
 
 namespace fascicle {
 
-// Solid voxels of one material one behind the other along i. Their corners stand in four rows of consecutive nodes.
+// Consecutive solid voxels of one material along i. Their corners are four rows of consecutive nodes.
 struct VoxelRun {
   std::int32_t i, j, k;      // of the first voxel
   std::int32_t length;       // voxels
   std::int32_t first_voxel;  // number of the first voxel
-  std::int32_t material;     // of all of them, from 1
+  std::int32_t material;     // of all of them, counted from 1
   std::int32_t node[4];      // first node of rows (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1)
 };
 
-// Nodes one behind the other along i, numbered from `first` on.
+// Consecutive nodes along i, numbered from `first`.
 struct NodeRun {
   std::int32_t i, j, k;
   std::int32_t length;
   std::int32_t first;
 };
 
-// Layers of voxels that one thread takes at a time. Slabs touch their neighbours in one plane of nodes; those of even
-// number touch no other even one, so that even and odd slabs may be added up after each other without locks, in an
-// order that depends on the mesh alone.
+// A range of voxel layers that one thread processes at a time. Neighbouring slabs share one plane of nodes, and slabs
+// of even number share none with each other. So all even slabs and then all odd slabs may be summed up without locks,
+// in an order that depends on the mesh only.
 struct VoxelSlab {
   std::int32_t first_layer, end_layer;  // k
   std::int32_t first_run, end_run;
   std::int32_t first_node, end_node;    // all of its nodes
-  std::int32_t first_inner, end_inner;  // those that no other slab has
+  std::int32_t first_inner, end_inner;  // nodes that no other slab has
 };
 
-// The solid voxels of a grid and their corners, numbered i fastest, then j, then k. Nothing is stored by voxel or node
-// but what a run of them has in common: about a byte a voxel.
+// The solid voxels of a grid and their corners, numbered i fastest, then j, then k. Only data common to a run is
+// stored, nothing per voxel or node: about a byte per voxel.
 class VoxelMesh {
  public:
   VoxelMesh() = default;
   explicit VoxelMesh(const VoxelGrid& grid);
 
-  // Joins 2x2x2 voxels of `fine`, wherever there is one, and says of which material each is:
-  // material_of(place) >= 1.
+  // Joins 2x2x2 voxels of `fine` wherever at least one exists; material_of(place) >= 1 gives the material of each
+  // result.
   template <class MaterialOf>
   static VoxelMesh Coarser(const VoxelMesh& fine, const MaterialOf& material_of);
 
@@ -55,15 +55,15 @@ class VoxelMesh {
   const std::vector<VoxelRun>& runs() const { return runs_; }
   const std::vector<NodeRun>& node_runs() const { return node_runs_; }
   const std::vector<VoxelSlab>& slabs() const { return slabs_; }
-  // Node runs of plane k, 0 <= k <= size()[2]: [begin, end).
+  // Node runs [begin, end) of plane k, 0 <= k <= size()[2].
   std::array<std::int32_t, 2> NodeRunsOfPlane(std::int32_t k) const;
 
-  // Null where there is none, also outside of the box. O(log(runs in a row)).
+  // The run at a place; null where there is none and outside of the grid. O(log(runs in a row)).
   const VoxelRun* RunAt(const GridIndex& at) const;
-  // -1 where there is none, also outside of the box. O(log(runs in a row)).
+  // The voxel at a place; -1 where there is none and outside of the grid. O(log(runs in a row)).
   std::int32_t VoxelAt(const GridIndex& at) const;
   std::int32_t NodeAt(const GridIndex& at) const;
-  // Where each node is; O(nodes) memory.
+  // Grid index of each node; O(nodes) memory.
   std::vector<GridIndex> NodePlaces() const;
 
  private:
@@ -71,13 +71,13 @@ class VoxelMesh {
     std::int32_t first, end;
   };
   void AddRun(const GridIndex& first, std::int32_t length, std::int32_t material);
-  // After all runs, in order.
+  // Call after all runs have been added, in order.
   void Finish();
   std::vector<Interval> VoxelIntervals(std::int32_t j, std::int32_t k) const;
   void NumberNodes();
   void CutSlabs();
   static std::vector<Interval> Union(std::vector<Interval> intervals);
-  // Where a voxel of twice the spacing has voxels of this mesh in row (j, k) of twice the spacing.
+  // Where row (j, k) of the coarser mesh has voxels.
   std::vector<Interval> CoarseIntervals(std::int32_t j, std::int32_t k) const;
 
   GridIndex size_ = {0, 0, 0};
@@ -86,11 +86,11 @@ class VoxelMesh {
   std::vector<VoxelRun> runs_;
   std::vector<std::int32_t> row_begin_;  // first run of each row j + size_j k, and the end
   std::vector<NodeRun> node_runs_;
-  std::vector<std::int32_t> node_row_begin_;  // of each row j + (size_j + 1) k
+  std::vector<std::int32_t> node_row_begin_;  // the same for node rows j + (size_j + 1) k
   std::vector<VoxelSlab> slabs_;
 };
 
-// Calls body(voxel, its place, nodes): corner c = 0 to 7 is at the place plus (c & 1, c >> 1 & 1, c >> 2).
+// Calls body(voxel, place, nodes): corner c = 0 to 7 is at the place plus (c & 1, c >> 1 & 1, c >> 2).
 template <class Body>
 void ForVoxelsOfRun(const VoxelRun& run, const Body& body) {
   for (std::int32_t n = 0; n < run.length; ++n) {

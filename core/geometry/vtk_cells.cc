@@ -10,7 +10,7 @@ namespace {
 constexpr std::int64_t kTriangle = 5, kTetrahedron = 10, kQuadraticTriangle = 22, kQuadraticTetrahedron = 24,
                        kLagrangeTetrahedron = 71;
 
-// Nodes of the linear cell types 0 to 14; 0 where any number will do.
+// Number of nodes of the linear cell types 0 to 14; 0 where it may vary.
 constexpr std::int64_t kNodes[] = {0, 1, 0, 2, 0, 3, 0, 0, 4, 4, 4, 8, 8, 6, 5};
 std::int64_t NodesOf(std::int64_t type) {
   if (type == kQuadraticTriangle) return 6;
@@ -43,7 +43,7 @@ std::string AddCells(const VtkCells& cells, std::int64_t node_count, std::int64_
     const auto name = [c] { return "cell " + std::to_string(c); };
     const std::int64_t end = cells.ends[c];
     if (end < begin || end > static_cast<std::int64_t>(cells.connectivity.size())) {
-      return name() + " has its nodes beyond the list of nodes";
+      return name() + " refers beyond the connectivity array";
     }
     const std::int64_t* nodes = cells.connectivity.data() + begin;
     const std::int64_t size = end - begin;
@@ -59,7 +59,7 @@ std::string AddCells(const VtkCells& cells, std::int64_t node_count, std::int64_
     }
     const auto outside = std::find_if(nodes, nodes + size, [&](std::int64_t n) { return n < 0 || n >= node_count; });
     if (outside != nodes + size) {
-      return name() + " names node " + std::to_string(*outside) + " of " + std::to_string(node_count) +
+      return name() + " refers to node " + std::to_string(*outside) + " of " + std::to_string(node_count) +
              " (counted from 0)";
     }
     const std::int64_t tag = cells.tags.empty() ? 0 : cells.tags[c];

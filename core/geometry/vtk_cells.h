@@ -10,18 +10,19 @@
 
 namespace fascicle {
 
-// The cells of a VTK unstructured grid, whichever format they came in.
+// The cells of a VTK unstructured grid, in any of its formats.
 struct VtkCells {
-  std::vector<std::int64_t> types;         // one each
-  std::vector<std::int64_t> ends;          // where each cell's nodes end in `connectivity`
+  std::vector<std::int64_t> types;         // one for each cell
+  std::vector<std::int64_t> ends;          // where the nodes of each cell end in `connectivity`
   std::vector<std::int64_t> connectivity;  // node indices
-  std::vector<std::int64_t> tags;          // one each, or empty
+  std::vector<std::int64_t> tags;          // one for each cell, or empty
 };
 
 // Whether a cell array of this name holds physical tags: physical, gmsh:physical, medit:ref, tag.
 bool IsTagArray(std::string_view name);
 
-// Takes tetrahedra and triangles into `raw`, adding `first_node` to their nodes. Gives what is wrong, or nothing.
+// Adds tetrahedra and triangles to `raw`, with `first_node` added to their nodes. Returns what is wrong, or an empty
+// string.
 std::string AddCells(const VtkCells& cells, std::int64_t node_count, std::int64_t first_node, RawMesh& raw);
 
 }  // namespace fascicle

@@ -83,7 +83,7 @@ class LegacyReader {
       const std::size_t count = in_.Count("cell types", BytesEach(NumberType::kInt32));
       cells_.types = Ints(count, NumberType::kInt32);
     } else if (keyword == "cell_data" || keyword == "point_data") {
-      // Attributes that each take at least a byte; the sections below count again.
+      // Each attribute takes at least a byte. The sections below have counts of their own.
       attribute_count_ = in_.Count("attributes", 1);
       of_cells_ = keyword == "cell_data";
       if (!in_.failed() && of_cells_ && attribute_count_ != cells_.types.size()) {
@@ -108,8 +108,8 @@ class LegacyReader {
     for (std::size_t n = 0; n < count; ++n) raw_.nodes[n] = Vec3(values[3 * n], values[3 * n + 1], values[3 * n + 2]);
   }
 
-  // Up to version 4: `CELLS n size`, then n times a count and that many nodes. From 5 on: `CELLS n+1 size`, then where
-  // the cells begin and their nodes, as two arrays.
+  // Up to version 4: `CELLS n size`, then n times a node count and the nodes. From version 5 on: `CELLS n+1 size`, then
+  // two arrays: offsets and connectivity.
   void ReadCells() {
     if (!cells_.connectivity.empty()) return in_.Fail("a second section CELLS");
     const std::size_t count = in_.Count("cells", 1);
@@ -160,7 +160,7 @@ class LegacyReader {
       ReadArray(name, type, components, attribute_count_);
     } else if (keyword == "lookup_table") {
       in_.Token();  // name
-      // Four values a colour: bytes, or numbers from 0 to 1 in ASCII.
+      // Four values per colour: bytes, or numbers from 0 to 1 in ASCII.
       ReadArray("", binary_ ? "unsigned_char" : "float", 4, in_.Count("colours", 4));
     } else if (keyword == "color_scalars") {
       const std::string name(in_.Token());
@@ -208,7 +208,7 @@ class LegacyReader {
     }
   }
 
-  // Ends with an empty line.
+  // The metadata ends with an empty line.
   void SkipMetadata() {
     in_.Line();
     while (in_.remaining() > 0) {
@@ -224,11 +224,11 @@ class LegacyReader {
     return type;
   }
 
-  // The least that a number takes.
+  // Least size of a number in the file.
   std::size_t BytesEach(NumberType type) const { return binary_ ? SizeOf(type) : 2; }
 
   std::string_view Raw(std::size_t count, NumberType type) {
-    in_.Line();  // the rest of the head's line
+    in_.Line();  // the rest of the header line
     if (!in_.Holds(std::int64_t(count), "numbers", SizeOf(type))) return {};
     return in_.Bytes(count * SizeOf(type), "bytes");
   }

@@ -10,8 +10,8 @@
 namespace fascicle {
 namespace {
 
-// Meshes compress two to ten times; far more is an attack on our memory. Without compression, all arrays and the
-// headers that are looked at beforehand fit in a few times the file, unless many arrays claim the same bytes.
+// Meshes compress by a factor of two to ten; much more is a decompression bomb. Without compression, all arrays and the
+// headers examined beforehand fit in a few times the file's size, unless many arrays claim the same bytes.
 constexpr std::uint64_t kMaxRatioCompressed = 32, kMaxRatioPlain = 4;
 constexpr std::uint64_t kAlwaysAllowed = 1 << 20;  // bytes
 
@@ -26,8 +26,8 @@ constexpr std::array<std::int8_t, 256> kBase64 = [] {
   return values;
 }();
 
-// Decodes until `size` bytes are there or the text ends. Padding may stand inside: a header and its data are often
-// encoded one after the other.
+// Decodes until `size` bytes are available or the text ends. Padding may occur inside: a header and its data are often
+// encoded separately, one after the other.
 bool DecodeBase64(std::string_view text, std::size_t size, std::string& data) {
   std::uint32_t bits = 0;
   int letters = 0;
@@ -55,8 +55,8 @@ bool DecodeBase64(std::string_view text, std::size_t size, std::string& data) {
   return true;
 }
 
-// The most base64 text that the first `size` bytes may take is not known, as white space may stand in it; this much of
-// them can be there at all.
+// Upper bound for the bytes that the text can hold. (The length of the text for a given number of bytes is unknown,
+// because it may contain white space.)
 std::size_t MostBytes(std::string_view text, bool base64) { return base64 ? text.size() / 4 * 3 + 3 : text.size(); }
 
 bool Inflate(std::string_view compressed, std::size_t size, std::string& data) {
@@ -114,12 +114,12 @@ std::optional<std::string> VtuDecoder::DecodePlain(std::string_view text, bool b
   if (!Fetch(text, base64, word, data)) return Fail("has no header");
   const std::uint64_t size = HeaderWord(data, 0);
   if (size > MostBytes(text, base64) || !Fetch(text, base64, word + size, data)) {
-    return Fail("should hold " + std::to_string(size) + " bytes, which are not there");
+    return Fail("should hold " + std::to_string(size) + " bytes, but has fewer");
   }
   return data.substr(word);
 }
 
-// Header: number of blocks, size of a block, size of the last block if it is smaller (or 0), compressed sizes.
+// Header: number of blocks, block size, size of the last block if it is smaller (or 0), compressed sizes.
 std::optional<std::string> VtuDecoder::DecodeCompressed(std::string_view text, bool base64) {
   const std::size_t word = encoding_.header_word;
   const std::uint64_t most = MostBytes(text, base64);
@@ -128,7 +128,7 @@ std::optional<std::string> VtuDecoder::DecodeCompressed(std::string_view text, b
   const std::uint64_t blocks = HeaderWord(data, 0);
   if (blocks == 0) return std::string();
   if (blocks > most / word || !Fetch(text, base64, (3 + blocks) * word, data)) {
-    return Fail("should hold " + std::to_string(blocks) + " compressed blocks, which are not there");
+    return Fail("should hold " + std::to_string(blocks) + " compressed blocks, but has fewer");
   }
   const std::uint64_t block_size = HeaderWord(data, 1), last_size = HeaderWord(data, 2);
   std::vector<std::uint64_t> sizes;

@@ -9,7 +9,7 @@
 
 namespace fascicle {
 
-// How a VTK XML file writes binary data: header words, then bytes, raw or in base64, perhaps compressed
+// Encoding of binary data in a VTK XML file: header words, then bytes, raw or in base64, optionally compressed
 // ["VTK file formats", VTK User's Guide].
 struct VtuEncoding {
   bool big_endian = false;
@@ -17,14 +17,14 @@ struct VtuEncoding {
   bool compressed = false;      // by zlib
 };
 
-// Takes the data of arrays out of one file, and no more in total than the file can reasonably hold.
+// Decodes arrays of one file. Limits their total size to what such a file can reasonably hold.
 class VtuDecoder {
  public:
-  // `file_size` bounds what all arrays may hold.
+  // `file_size` bounds the total size of all arrays.
   VtuDecoder(const VtuEncoding& encoding, std::size_t file_size);
 
-  // The bytes of one array that begins where `text` does; `base64` or raw. Nothing, with `problem()` set, when they are
-  // not there.
+  // The bytes of one array that starts at the beginning of `text`, in base64 or raw. Returns nothing and sets
+  // `problem()` if they are incomplete.
   std::optional<std::string> Decode(std::string_view text, bool base64);
   const std::string& problem() const { return problem_; }
 
@@ -35,7 +35,7 @@ class VtuDecoder {
   std::optional<std::string> DecodePlain(std::string_view text, bool base64);
   std::optional<std::string> DecodeCompressed(std::string_view text, bool base64);
   std::optional<std::string> Fail(std::string problem);
-  // Counts against the allowance; false when it is used up.
+  // Deducts from the allowance; false when it is exhausted.
   bool Allow(std::uint64_t size);
 
   VtuEncoding encoding_;

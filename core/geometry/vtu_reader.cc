@@ -33,10 +33,10 @@ std::optional<NumberType> TypeNamed(std::string_view name) {
   return std::nullopt;
 }
 
-// The appended section, which is not XML when it is raw: the file without it, and its data.
+// The file without its appended section (which is not valid XML when raw), and the section's data.
 struct Parts {
   std::string xml;
-  std::string_view appended;  // after the underscore
+  std::string_view appended;  // without the leading underscore
   bool base64 = false;
   bool complete = true;
 };
@@ -95,7 +95,7 @@ class VtuReader {
     return std::move(raw_);
   }
 
-  // Of a surface.
+  // The polygons of a surface file.
   std::vector<std::vector<std::int64_t>> TakePolygons() { return std::move(polygons_); }
 
  private:
@@ -177,7 +177,7 @@ class VtuReader {
   bool ReadCount(pugi::xml_node piece, const char* name, std::int64_t& count) {
     const std::string_view text = piece.attribute(name).value();
     if (ParseInt(text, count) && count >= 0 && count < kMaxCount) return true;
-    return Fail(std::string(name) + " is " + Quoted(text) + ", not a number of things in a file");
+    return Fail(std::string(name) + " is " + Quoted(text) + ", not a valid count");
   }
 
   static pugi::xml_node Named(pugi::xml_node parent, const char* name) {
@@ -210,7 +210,7 @@ class VtuReader {
     return true;
   }
 
-  // The bytes of a binary array, which hold exactly `count` numbers; of an ascii one only its head.
+  // The bytes of a binary array, exactly `count` numbers. For an ascii array only its attributes are read.
   bool ReadData(pugi::xml_node array, const std::string& name, std::int64_t count, NumberType& type, std::string& bytes,
                 bool& ascii) {
     if (!array) return Fail("the array " + Quoted(name) + " is missing", "is the file complete?");

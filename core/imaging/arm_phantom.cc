@@ -8,27 +8,27 @@
 namespace fascicle {
 namespace {
 
-// All lengths of the anatomy in millimetres: x to the side of the anconeus, y to the back, z along the arm.
+// The anatomy, with lengths in millimetres: x to the side of the anconeus, y to the back, z along the arm.
 constexpr GridIndex kSize = {140, 220, 71};
 constexpr double kSpacing = 0.5;
 constexpr double kMiddleHeight = 0.5 * kSpacing * 71;
-constexpr int kSubdivisions = 2;  // of a voxel along each axis, for its mean
+constexpr int kSubdivisions = 2;  // of a voxel along each axis, to average tissues
 
-// Values of tissues, by ArmTissue: T1 weighted, fat 1000.
+// Values of tissues, by ArmTissue: T1-weighted, fat has 1000.
 constexpr std::array<double, 7> kValue = {0, 480, 1000, 380, 380, 40, 900};
 
 struct Point {
   double x, y, z;
 };
 
-// Signed distance from an ellipse about (x, y), of first order: exact on it, and along the axes of a circle.
+// First-order signed distance from an ellipse around (x, y): exact on the ellipse, and everywhere for a circle.
 double Ellipse(const Point& p, double x, double y, double half_x, double half_y) {
   const double u = (p.x - x) / half_x, v = (p.y - y) / half_y;
   const double k = std::hypot(u, v), slope = std::hypot(u / half_x, v / half_y);
   return slope == 0 ? -std::min(half_x, half_y) : k * (k - 1) / slope;
 }
 
-// Of the anconeus: an ellipsoid, bent so that it lies against the skin.
+// Signed distance from the anconeus: an ellipsoid, bent to lie against the skin.
 double Anconeus(const Point& p) {
   constexpr double kHalfX = 9.3, kHalfY = 22, kHalfZ = 17.2;
   const double v = (p.y - 60) / kHalfY, w = (p.z - kMiddleHeight) / kHalfZ;
@@ -43,7 +43,7 @@ double Septum(const Point& p) {
   const double tilt = 0.1 * (p.z - kMiddleHeight);
   const double across = std::abs(p.y - 51 - 3 * std::sin(p.x / 9) - tilt);
   double nearest = across;
-  // Biceps before brachialis; the heads of the triceps behind.
+  // The septa between biceps and brachialis, and between the heads of the triceps.
   if (p.y < 50) nearest = std::min(nearest, std::abs(p.y - 27 - 0.008 * (p.x - 30) * (p.x - 30) + tilt));
   if (p.y > 52) nearest = std::min(nearest, std::abs(p.x - 30 - 4 * std::sin(p.y / 12) - tilt));
   return nearest;
@@ -60,18 +60,19 @@ ArmTissue TissueAt(const Point& p) {
   const double humerus = Ellipse(p, 26, 52, 9.5, 9);
   if (humerus <= -kShell) return ArmTissue::kMarrow;
   if (humerus <= 0) return ArmTissue::kBone;
-  // Fat under the skin is thickest at the back.
+  // Subcutaneous fat is thickest at the back.
   const double fat = 4 + 1.5 * (p.y / 110);
   if (skin > -kSkin - fat || anconeus <= kSheath || Septum(p) < kSheet) return ArmTissue::kFat;
   return ArmTissue::kMuscle;
 }
 
-// Normal numbers made from the engine's bits alone, which the standard fixes (its distributions it does not).
+// Normally distributed numbers, computed from the engine's bits, which the C++ standard specifies. (It does not specify
+// the results of std::normal_distribution.)
 class NormalNumbers {
  public:
   explicit NormalNumbers(std::uint64_t seed) : engine_(seed) {}
 
-  // Two of them [Box and Muller 1958].
+  // Two independent numbers [Box and Muller 1958].
   std::array<double, 2> Next() {
     const double radius = std::sqrt(-2 * std::log(1 - Uniform())), angle = 2 * std::numbers::pi * Uniform();
     return {radius * std::cos(angle), radius * std::sin(angle)};
@@ -83,7 +84,7 @@ class NormalNumbers {
   std::mt19937_64 engine_;
 };
 
-// Mean value of the tissues in a voxel about its centre.
+// Mean value of the tissues in the voxel around a centre.
 double MeanValue(const Point& centre) {
   double sum = 0;
   for (int s = 0; s < kSubdivisions * kSubdivisions * kSubdivisions; ++s) {
@@ -95,7 +96,7 @@ double MeanValue(const Point& centre) {
   return sum / (kSubdivisions * kSubdivisions * kSubdivisions);
 }
 
-// The coil's field: strongest at one side of the arm, weakest at the other.
+// Sensitivity of the receiving coil: highest at one side of the arm, lowest at the other.
 double Field(const Point& p, double bias) { return 1 + bias * std::cos(std::numbers::pi * (p.y - 10) / 110); }
 
 }  // namespace
@@ -117,7 +118,7 @@ ArmPhantom MakeArmPhantom(const ArmPhantomSettings& settings) {
       for (std::int32_t i = 0; i < kSize[0]; ++i) {
         const Point p = {kSpacing * (i + 0.5), kSpacing * (j + 0.5), kSpacing * (k + 0.5)};
         const auto [real, imaginary] = normal.Next();
-        // The magnitude of a complex signal: Rician [Gudbjartsson and Patz 1995].
+        // The magnitude of a complex signal has Rician noise [Gudbjartsson and Patz 1995].
         const double signal = MeanValue(p) * Field(p, settings.bias);
         image.values.push_back(static_cast<float>(std::hypot(signal + noise * real, noise * imaginary)));
         phantom.truth.push_back(TissueAt(p));

@@ -19,15 +19,15 @@ using MaskImage = itk::Image<std::uint8_t, 3>;
 using N4 = itk::N4BiasFieldCorrectionImageFilter<FloatImage, MaskImage, FloatImage>;
 using Lattice = N4::BiasFieldControlPointLatticeType;
 
-// The field is smooth: it is found from blocks of about that many of the finest voxels along each axis, as its authors
-// do it, but of no fewer blocks than kLeastBlocks.
+// The field is smooth, so it is fitted to block averages, as the authors of N4 do it: about this many voxels along each
+// axis of a block, and at least kLeastBlocks blocks.
 constexpr double kBlock = 4;
 constexpr int kLeastBlocks = 12;
 constexpr int kBins = 1024;
 constexpr unsigned kSplineOrder = 3;
 constexpr std::int32_t kLeastVoxels = 4;  // along each axis, for a spline
 
-// The sums by which N4 fits its splines depend on how many threads ITK takes by default: always as many.
+// The sums by which N4 fits its splines depend on ITK's default number of threads: sets it to a constant.
 void FixDefaultThreads() {
   static std::once_flag once;
   std::call_once(once, [] { itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(4); });
@@ -47,7 +47,7 @@ FloatImage::Pointer Blocks(const VolumeImage& image, FloatImage* whole) {
 
 std::size_t VoxelsOf(const FloatImage& image) { return image.GetBufferedRegion().GetNumberOfPixels(); }
 
-// What is brighter than the background: the darkest of three classes of what is above 0. Null where nothing is.
+// The foreground: everything above 0 except for the darkest of three classes. Null if there is none.
 MaskImage::Pointer Foreground(FloatImage& image) {
   const float* const values = image.GetBufferPointer();
   std::vector<float> above_zero;
@@ -109,7 +109,7 @@ double MeanInMask(const FloatImage& field, const MaskImage& mask) {
   return sum / count;
 }
 
-// Copies of the last layer behind those of an image that is thinner than `size`; or the first layers of a thicker one.
+// Extends an image that is thinner than `size` by copies of its last layer, or crops a thicker one to its first layers.
 VolumeImage WithSize(const VolumeImage& image, const GridIndex& size) {
   VolumeImage result = image;
   result.size = size;

@@ -6,8 +6,8 @@
 
 namespace fascicle {
 
-// The image divided by its coil's field: ApplyFilter of a BiasFieldFilter. Works on up to four threads; the bits do not
-// depend on how many there are. An image without two different values above 0 comes back as it was.
+// Divides the image by its bias field: ApplyFilter for a BiasFieldFilter. Uses up to four threads; the bits do not
+// depend on their number. An image without two different values above 0 is returned unchanged.
 VolumeImage WithoutBiasField(const VolumeImage& image, const BiasFieldFilter& filter);
 
 }  // namespace fascicle

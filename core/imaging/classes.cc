@@ -8,7 +8,7 @@
 namespace fascicle {
 namespace {
 
-// Bins with counts alone: what classes are made of.
+// The non-empty bins of a histogram.
 struct Bins {
   std::vector<double> value, count;
 };
@@ -24,7 +24,7 @@ Bins FilledBins(const Histogram& histogram) {
 }
 
 double Power(double distance, double exponent) {
-  // 2 is what nearly everyone takes.
+  // 2 is the usual exponent.
   return exponent == 2 ? distance * distance : std::pow(distance, exponent);
 }
 
@@ -41,7 +41,7 @@ std::size_t Histogram::filled() const {
 }
 
 Histogram MakeHistogram(std::span<const float> values, int bins) {
-  FASCICLE_CHECK(!values.empty() && bins >= 1, "a histogram of something");
+  FASCICLE_CHECK(!values.empty() && bins >= 1, "a histogram needs values and bins");
   Histogram histogram;
   const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
   histogram.lowest = *lowest;
@@ -51,25 +51,25 @@ Histogram MakeHistogram(std::span<const float> values, int bins) {
   return histogram;
 }
 
-// By dynamic programming over the number of classes, as [Liao 2001] has it: the best parting of the first bins into c
-// classes extends one into c - 1. Exact, unlike a search; ITK's goes through all combinations.
+// By dynamic programming over the number of classes [Liao 2001]: the best division of the first bins into c classes
+// extends one into c - 1 classes. Exact, and faster than ITK's search through all combinations.
 std::vector<double> OtsuThresholds(const Histogram& histogram, int classes) {
   const Bins bins = FilledBins(histogram);
   const std::size_t n = bins.value.size();
-  FASCICLE_CHECK(classes >= 2 && n >= static_cast<std::size_t>(classes), "as many values as classes");
-  std::vector<double> count(n + 1, 0), moment(n + 1, 0);  // of the first bins
+  FASCICLE_CHECK(classes >= 2 && n >= static_cast<std::size_t>(classes), "at least as many filled bins as classes");
+  std::vector<double> count(n + 1, 0), moment(n + 1, 0);  // cumulative, over the first bins
   for (std::size_t b = 0; b < n; ++b) {
     count[b + 1] = count[b] + bins.count[b];
     moment[b + 1] = moment[b] + bins.count[b] * (bins.value[b] - histogram.lowest);
   }
-  // What bins [begin, end) add to the variance between classes, up to a constant.
+  // Contribution of a class with bins [begin, end) to the variance between classes, up to a constant.
   const auto gain = [&](std::size_t begin, std::size_t end) {
     const double m = moment[end] - moment[begin];
     return m * m / (count[end] - count[begin]);
   };
-  std::vector<double> best(n + 1, 0);  // of the first bins, in the classes so far
+  std::vector<double> best(n + 1, 0);  // for the first bins, with the current number of classes
   for (std::size_t end = 1; end <= n; ++end) best[end] = gain(0, end);
-  std::vector<std::vector<std::size_t>> starts;  // of the last class, for each end
+  std::vector<std::vector<std::size_t>> starts;  // start of the last class, for each end
   for (int c = 2; c <= classes; ++c) {
     std::vector<double> better(n + 1, -1);
     std::vector<std::size_t> start(n + 1, 0);
@@ -117,7 +117,7 @@ std::size_t FuzzyMeans::ClassOf(double value) const {
 
 FuzzyMeans FindFuzzyMeans(const Histogram& histogram, int classes, double fuzziness) {
   constexpr int kMostIterations = 1000;
-  constexpr double kTolerance = 1e-7;  // of the range
+  constexpr double kTolerance = 1e-7;  // relative to the range
   const Bins bins = FilledBins(histogram);
   FuzzyMeans means;
   means.fuzziness = fuzziness;

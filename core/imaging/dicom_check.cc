@@ -13,7 +13,7 @@ constexpr std::uint32_t kUndefined = 0xffffffff;
 constexpr std::array<std::string_view, 34> kTypes = {
     "AE", "AS", "AT", "CS", "DA", "DS", "DT", "FD", "FL", "IS", "LO", "LT", "OB", "OD", "OF", "OL", "OV",
     "OW", "PN", "SH", "SL", "SQ", "SS", "ST", "SV", "TM", "UC", "UI", "UL", "UN", "UR", "US", "UT", "UV"};
-// Types with a length of 32 bits.
+// Value representations with a length of 32 bits.
 constexpr std::array<std::string_view, 13> kLongTypes = {"OB", "OD", "OF", "OL", "OV", "OW", "SQ",
                                                          "SV", "UC", "UN", "UR", "UT", "UV"};
 
@@ -30,7 +30,7 @@ struct Element {
   bool Is(std::uint16_t g, std::uint16_t n) const { return group == g && number == n; }
 };
 
-// What tells how many bytes of voxels there must be.
+// The values that determine how many bytes of voxels there must be.
 struct ImageSize {
   std::uint32_t rows = 0, columns = 0, bits = 0, samples = 1, frames = 1;
   std::uint64_t voxel_bytes = 0;
@@ -45,7 +45,7 @@ class Walk {
     constexpr std::size_t kPreamble = 128;
     if (bytes_.size() < kPreamble + 4 || bytes_.substr(kPreamble, 4) != "DICM") return false;
     at_ = kPreamble + 4;
-    // The first group is explicit and little-endian always, and names the syntax of the others.
+    // The first group is always explicit and little-endian; it names the transfer syntax of the others.
     std::string syntax;
     while (at_ + 2 <= bytes_.size() && Number<std::uint16_t>(at_) == 2) {
       Element element;
@@ -79,7 +79,7 @@ class Walk {
     return text;
   }
 
-  // Tag, type and length; what follows is the value.
+  // Reads tag, type and length; the value follows.
   bool TakeElement(Element& element, std::size_t end) {
     constexpr std::size_t kShort = 8, kLong = 12;
     if (end - at_ < kShort) return false;
@@ -103,7 +103,7 @@ class Walk {
     return true;
   }
 
-  // Elements up to `end`, or the end of an item whose length is not said.
+  // Reads elements up to `end`, or up to the end of an item of undefined length.
   bool Elements(std::size_t end, bool until_item_ends, int depth, ImageSize* size) {
     if (depth > kDeepest) return false;
     std::uint32_t last = 0;
@@ -112,7 +112,7 @@ class Walk {
       if (!TakeElement(element, end)) return false;
       if (element.Is(0xfffe, 0xe00d)) return until_item_ends && element.length == 0;
       const std::uint32_t tag = (std::uint32_t{element.group} << 16) | element.number;
-      // They rise.
+      // Tags must ascend.
       if (tag <= last || element.group == 0xfffe) return false;
       last = tag;
       if (!Value(element, end, depth, size)) return false;
@@ -136,7 +136,7 @@ class Walk {
     return true;
   }
 
-  // Of a sequence, up to `end` or its delimiter.
+  // Reads the items of a sequence, up to `end` or its delimiter.
   bool Items(std::size_t end, bool until_delimiter, int depth) {
     while (at_ < end) {
       Element item;
@@ -150,7 +150,7 @@ class Walk {
     return !until_delimiter;
   }
 
-  // Of compressed voxels.
+  // Reads the fragments of compressed voxels.
   bool Fragments(std::size_t end) {
     while (at_ < end) {
       Element item;
@@ -180,7 +180,7 @@ class Walk {
     return true;
   }
 
-  // Numbers as text have digits, signs, points, exponents and separators alone.
+  // Numeric text may contain only digits, signs, points, exponents and separators.
   bool CheckText(const Element& element) const {
     if (element.type != "DS" && element.type != "IS") return true;
     return bytes_.substr(at_, element.length).find_first_not_of(std::string_view("0123456789+-.eE\\ \0", 19)) ==
@@ -197,7 +197,7 @@ class Walk {
 bool CheckDicom(std::string_view bytes, Problems& problems) {
   ImageSize size;
   if (!Walk(bytes).All(size)) {
-    problems.Add("", "it is no whole DICOM file", "is it complete, and is it what its extension says?");
+    problems.Add("", "it is not a complete DICOM file", "is it complete, and is it what its extension says?");
     return false;
   }
   if (!size.has_voxels || size.rows == 0 || size.columns == 0) {

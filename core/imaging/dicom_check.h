@@ -5,12 +5,13 @@
 
 #include "core/base/problems.h"
 
-// For this room alone.
+// Internal to this room.
 namespace fascicle {
 
-// Whether bytes are a whole DICOM file with one image of numbers: preamble, elements of known types that nest and end
-// where they say (explicit and implicit, either byte order), rows, columns, and as many bytes of voxels as these need.
-// GDCM, as it is built for Debian, ends the program on files that are not. Adds to `problems` what is wrong.
+// Whether the bytes are a complete DICOM file with one image of numbers: a preamble, elements of known types that nest
+// and end correctly (explicit and implicit, either byte order), rows, columns, and as many bytes of voxels as these
+// require. Debian's build of GDCM aborts the program on malformed files, so they are checked first. Adds to `problems`
+// what is wrong.
 bool CheckDicom(std::string_view bytes, Problems& problems);
 
 }  // namespace fascicle

@@ -15,7 +15,7 @@
 namespace fascicle {
 namespace {
 
-// How far slices may be from where they should, of their distance.
+// Largest deviation of a slice from its expected position, relative to the slice distance.
 constexpr double kTolerance = 0.02;
 
 struct Slice {
@@ -50,25 +50,26 @@ std::optional<std::vector<Slice>> ReadSlices(const std::vector<DicomFile>& files
     slices.push_back({file.name, std::move(volume->image)});
   }
   if (series.size() > 1) {
-    problems.Add("", "the slices are of " + std::to_string(series.size()) + " series", "give the slices of one alone");
+    problems.Add("", "the slices belong to " + std::to_string(series.size()) + " series",
+                 "give the slices of one series only");
   }
   if (!problems.empty()) return std::nullopt;
   return slices;
 }
 
-// Whether the slices lie in parallel planes and look alike.
+// Whether the slices are parallel and have the same size, spacing and direction.
 bool CheckAlike(const std::vector<Slice>& slices, Problems& problems) {
   const VolumeImage& first = slices[0].image;
   for (const Slice& slice : slices) {
     const VolumeImage& image = slice.image;
     const char* differs = nullptr;
-    if (image.size[2] != 1) differs = "has several slices itself";
-    if (image.size[0] != first.size[0] || image.size[1] != first.size[1]) differs = "has another size";
+    if (image.size[2] != 1) differs = "contains more slices";
+    if (image.size[0] != first.size[0] || image.size[1] != first.size[1]) differs = "has a different size";
     if ((image.spacing - first.spacing).head<2>().cwiseAbs().maxCoeff() > 1e-4 * first.spacing[0])
-      differs = "has another spacing";
-    if ((image.direction - first.direction).cwiseAbs().maxCoeff() > 1e-3) differs = "has another direction";
+      differs = "has a different spacing";
+    if ((image.direction - first.direction).cwiseAbs().maxCoeff() > 1e-3) differs = "has a different direction";
     if (differs == nullptr) continue;
-    problems.Add("", slice.name + " " + differs + " than " + slices[0].name, "give the slices of one series alone");
+    problems.Add("", slice.name + " " + differs + " than " + slices[0].name, "give the slices of one series only");
     return false;
   }
   return true;
@@ -81,13 +82,13 @@ std::string Millimetres(double metres) {
   return text.str();
 }
 
-// Whether the slices, which are in order, follow each other at the same distance, which is found.
+// Whether the slices, which are in order, are equally spaced; finds their distance.
 bool FindDistance(const std::vector<Slice>& slices, double& distance, Problems& problems) {
   std::vector<double> gaps;
   for (std::size_t s = 1; s < slices.size(); ++s) gaps.push_back(slices[s].height - slices[s - 1].height);
   const auto same = std::min_element(gaps.begin(), gaps.end()) - gaps.begin();
   if (gaps[same] < 1e-6) {
-    problems.Add("", slices[same].name + " and " + slices[same + 1].name + " are at the same place",
+    problems.Add("", slices[same].name + " and " + slices[same + 1].name + " are at the same position",
                  "give the slices of one series and of one time");
     return false;
   }
@@ -126,7 +127,7 @@ std::optional<VolumeImage> Stack(std::vector<Slice> slices, Problems& problems) 
     if ((slices[s].image.origin - place).norm() > 5 * kTolerance * distance) {
       problems.Add(
           "",
-          "the slices are shifted against each other: " + slices[s].name + " does not stand above " + slices[0].name,
+          "the slices are shifted relative to each other: " + slices[s].name + " is not aligned with " + slices[0].name,
           "the scanner was tilted: resample the series to a box of voxels");
       return std::nullopt;
     }

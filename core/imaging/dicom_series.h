@@ -8,7 +8,7 @@
 
 #include "core/imaging/volume_files.h"
 
-// For this room alone.
+// Internal to this room.
 namespace fascicle {
 
 struct DicomFile {
@@ -16,13 +16,13 @@ struct DicomFile {
   std::filesystem::path path;
 };
 
-// Stacks slices of one series, in any order, along the normal of their planes. A single file may have several slices.
-// Refused, with all that is wrong: slices of several series, of different sizes or directions, two at the same place,
-// gaps, and stacks that are not at right angles to their slices.
+// Stacks the slices of one series, in any order, along the normal of their planes. A single file may contain several
+// slices. Refuses, reporting every problem: slices of several series, slices of different sizes or directions, two
+// slices at the same position, gaps, and stacks that are not perpendicular to their slices.
 std::optional<VolumeImage> ReadDicomSeries(const std::vector<DicomFile>& files, std::int64_t memory_limit,
                                            Problems& problems);
 
-// Whether a file says that it is DICOM.
+// Whether a file starts like a DICOM file.
 bool IsDicom(const std::filesystem::path& path);
 
 }  // namespace fascicle

@@ -20,7 +20,7 @@ std::string Text(const GridIndex& at) {
   return "(" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) + ")";
 }
 
-// The statistics of the voxels of `values` by group: group_of(voxel) is a group's number, or negative for none.
+// Statistics of `values` by group: group_of(voxel) is the group's number, or negative for none.
 template <class GroupOf>
 std::vector<ClassStatistics> StatisticsOf(const VolumeImage& image, int groups, const GroupOf& group_of) {
   std::vector<ClassStatistics> all(groups);
@@ -75,8 +75,8 @@ class StageRun {
     VoxelBox box = stage_.region.value_or(VoxelBox{{0, 0, 0}, image.size});
     for (int axis = 0; axis < 3; ++axis) {
       if (box.first[axis] >= image.size[axis] || box.size[axis] > image.size[axis] - box.first[axis]) {
-        return Refuse("region", "does not lie in the image, which has " + Text(image.size) + " voxels",
-                      "first + size may be as large as that");
+        return Refuse("region", "is not inside of the image, which has " + Text(image.size) + " voxels",
+                      "first + size must not exceed that");
       }
     }
     result_.image = stage_.region ? Crop(image, box) : image;
@@ -87,7 +87,7 @@ class StageRun {
     if (voxels > kGrowth * static_cast<double>(result_.image.voxels()) ||
         voxels > std::numeric_limits<std::int32_t>::max()) {
       return Refuse("resample", "makes " + Text(size) + " voxels",
-                    "64 times as many as before are allowed: take larger ones");
+                    "at most 64 times as many as before are allowed: use larger voxels");
     }
     const bool labels = std::holds_alternative<LabelChoice>(stage_.choice);
     result_.image =
@@ -121,7 +121,7 @@ class StageRun {
     }
   }
 
-  // The values that classes are told by.
+  // The values by which voxels are classified.
   const std::vector<float>& values() const {
     return stage_.filters.empty() ? result_.image.values : result_.filtered.values;
   }
@@ -159,7 +159,7 @@ class StageRun {
       if (labels.size() > kTold) break;
     }
     std::ostringstream text;
-    text << (labels.size() > kTold ? "some that there are: " : "there are: ");
+    text << (labels.size() > kTold ? "some of the existing labels: " : "existing labels: ");
     for (auto label = labels.begin(); label != labels.end(); ++label)
       text << (label == labels.begin() ? "" : ", ") << *label;
     return labels.empty() ? "all voxels are 0" : text.str();
@@ -183,10 +183,11 @@ class StageRun {
       } else {
         means = FindFuzzyMeans(histogram, choice.classes, choice.fuzziness);
         if (!means.converged) {
-          return Refuse("classification", "fuzzy means don't settle", "take fewer classes or a fuzziness nearer to 2");
+          return Refuse("classification", "fuzzy means do not converge",
+                        "use fewer classes or a fuzziness nearer to 2");
         }
         result_.centres = means.centres;
-        // Memberships are equal in the middle between two centres.
+        // Memberships are equal halfway between two centres.
         for (std::size_t c = 1; c < means.centres.size(); ++c) {
           result_.thresholds.push_back(0.5 * (means.centres[c - 1] + means.centres[c]));
         }
@@ -220,7 +221,7 @@ class StageRun {
       if (found == result_.wanted_class) continue;
       problems_.Add(IndexPath("seeds", s),
                     "is in class " + std::to_string(found) + ", not in class " + std::to_string(result_.wanted_class),
-                    "move it, or take other classes");
+                    "move it, or use other classes");
     }
     return problems_.empty();
   }
@@ -251,7 +252,8 @@ class StageRun {
     const auto nothing_left = [&] {
       return std::all_of(body.material.begin(), body.material.end(), [](std::uint8_t m) { return m == 0; });
     };
-    if (nothing_left()) return Refuse("classification", "no voxel is of the wanted class", "lower least_membership");
+    if (nothing_left())
+      return Refuse("classification", "no voxel belongs to the wanted class", "lower least_membership");
     const VoxelGrid whole = body;
     Erode(body, opening, team_);
     if (nothing_left())
@@ -269,7 +271,7 @@ class StageRun {
   bool KeepSeeds() {
     for (std::size_t s = 0; s < seeds_.size(); ++s) {
       if (result_.body.MaterialAt(seeds_[s]) != 0) continue;
-      problems_.Add(IndexPath("seeds", s), "voxel " + Text(seeds_[s]) + " is not of the body",
+      problems_.Add(IndexPath("seeds", s), "voxel " + Text(seeds_[s]) + " is not in the body",
                     stage_.cleaning.opening > 0 ? "move it away from the side, or open by less" : "move it");
     }
     if (!problems_.empty()) return false;
@@ -281,12 +283,12 @@ class StageRun {
     Show(0.9, "levels");
     result_.grid = result_.body;
     MakeRightHanded(result_.grid);
-    // The lattice of the levels begins at the body's own box, so that it does not depend on the region.
+    // The lattice of levels starts at the body's bounding box, so that it does not depend on the region.
     result_.grid = CropToSolid(result_.grid);
     for (int level = 0; level < stage_.level; ++level) result_.grid = fascicle::Coarsen(result_.grid, stage_.fraction);
     result_.grid = CropToSolid(result_.grid);
     if (result_.grid.voxels() == 0)
-      return Refuse("level", "no voxel is left at this level", "take a lower one, or a smaller fraction");
+      return Refuse("level", "no voxel is left at this level", "use a lower level, or a smaller fraction");
     return true;
   }
 

@@ -14,10 +14,10 @@
 
 namespace fascicle {
 
-// The image is labels already: which of them.
+// The image contains labels: which of them to use.
 struct LabelChoice {
-  // Material m is the voxels of value labels[m - 1]; at most 255, none twice, none 0. Empty: a mask, whose voxels other
-  // than 0 are material 1.
+  // Voxels with value labels[m - 1] become material m; at most 255 distinct labels, none 0. Empty: the image is a mask,
+  // whose non-zero voxels become material 1.
   std::vector<int> labels;
 
   bool operator==(const LabelChoice&) const = default;
@@ -25,18 +25,18 @@ struct LabelChoice {
 
 enum class ClassMethod {
   kFuzzyMeans,       // fuzzy c-means
-  kOtsu,             // thresholds of largest variance between classes
-  kGivenThresholds,  // thresholds of the user
+  kOtsu,             // thresholds with the largest variance between classes
+  kGivenThresholds,  // thresholds given by the user
 };
 
-// Voxels are parted into classes by their (filtered) values, and those of one class are material 1.
+// Voxels are divided into classes by their (filtered) values; those of one class become material 1.
 struct Classification {
   ClassMethod method = ClassMethod::kFuzzyMeans;
-  int classes = 3;                 // 2 to 8; not for given thresholds, which tell it
-  double fuzziness = 2;            // (1, 10], of fuzzy means
-  double least_membership = 0;     // [0, 1], of fuzzy means: voxels of the class below this stay out
-  std::vector<double> thresholds;  // rising, 1 to 7; of kGivenThresholds [the values' unit]
-  // Counted from 0 at the darkest; none: the class that the seeds have.
+  int classes = 3;                 // 2 to 8; given thresholds determine it themselves
+  double fuzziness = 2;            // (1, 10], for fuzzy means
+  double least_membership = 0;     // [0, 1], for fuzzy means: voxels of the class with a lower membership are excluded
+  std::vector<double> thresholds;  // ascending, 1 to 7; for kGivenThresholds [unit of the values]
+  // Counted from 0, the darkest; absent: the class of the seeds.
   std::optional<int> wanted_class;
 
   bool operator==(const Classification&) const = default;
@@ -44,66 +44,67 @@ struct Classification {
 
 enum class KeptParts {
   kAll,
-  kLargest,  // the largest island (that hang together by faces of voxels)
-  kSeeds,    // the islands of the seeds
+  kLargest,  // the largest island (face-connected component)
+  kSeeds,    // the islands that contain the seeds
 };
 
-// What is done with the chosen voxels, in this order.
+// Operations on the selected voxels, in this order.
 struct Cleaning {
-  double opening = 0;  // [m], >= 0: parts that a ball of this radius does not reach go, before islands are told apart
+  double opening = 0;  // [m], >= 0: parts thinner than a ball of this radius are removed first
   KeptParts keep = KeptParts::kLargest;
   bool fill_holes = true;
 
   bool operator==(const Cleaning&) const = default;
 };
 
-// From an image to voxels, in the order of its members.
+// From an image to voxels; the members are applied in their order.
 struct ImageStage {
-  std::optional<VoxelBox> region;    // of interest: what lies outside is cut off
-  std::optional<double> resample;    // [m]: spacing of cubes that the image is resampled to
+  std::optional<VoxelBox> region;    // region of interest; everything outside is cropped
+  std::optional<double> resample;    // [m]: spacing of the cubes to which the image is resampled
   std::vector<ImageFilter> filters;  // in this order; none for labels
   std::variant<Classification, LabelChoice> choice;
-  std::vector<Vec3> seeds;  // points [m] in the image's frame, that are of the body
+  std::vector<Vec3> seeds;  // points of the body [m], in the image's frame
   Cleaning cleaning;
-  int level = 0;          // 0 to 10: how many times 2x2x2 voxels are joined [Zhu et al. 1998, 4]
-  double fraction = 0.5;  // (0, 1]: of the eight that must be solid
+  int level = 0;          // 0 to 10: how often 2x2x2 voxels are joined [Zhu et al. 1998, 4]
+  double fraction = 0.5;  // (0, 1]: part of the eight voxels that must be solid
 
   bool operator==(const ImageStage&) const = default;
 };
 
-// Checks all of a stage that can be told without its image. Paths are the members: "filters[0].deviation",
+// Checks everything about a stage that does not depend on the image. Paths name the members: "filters[0].deviation",
 // "classification.classes", "labels[1]", "cleaning.opening".
 void CheckImageStage(const ImageStage& stage, Problems& problems);
 
 struct ClassStatistics {
   std::int64_t voxels = 0;
   double volume = 0;                                        // [m^3]
-  double lowest = 0, highest = 0, mean = 0, deviation = 0;  // of the image before it was filtered
+  double lowest = 0, highest = 0, mean = 0, deviation = 0;  // of the unfiltered image
 };
 
 struct StagedImage {
-  VolumeImage image;     // in the region and resampled, before filters
-  VolumeImage filtered;  // without values when there are no filters
-  // The classes, from the darkest on (of labels: one for each, in their order).
+  VolumeImage image;     // cropped and resampled, not filtered
+  VolumeImage filtered;  // without values if there are no filters
+  // The classes, starting with the darkest. For labels: one for each label, in their order.
   std::vector<std::uint8_t> classes;        // of each voxel; empty for labels
   std::vector<ClassStatistics> statistics;  // of each class or label
   std::vector<double> thresholds;           // between classes [the values' unit]; empty for labels
   std::vector<double> centres;              // of fuzzy means
-  std::vector<float> membership;            // of each voxel in the wanted class; of fuzzy means
+  std::vector<float> membership;            // of each voxel in the wanted class; for fuzzy means
   int wanted_class = 0;
-  // The body at level 0 in the whole of `image`, and its statistics.
+  // The body at level 0 in the grid of `image`, and its statistics.
   VoxelGrid body;
   ClassStatistics body_statistics;
-  // The body at the level that was asked for, cropped to its solid voxels.
+  // The body at the requested level, cropped to its solid voxels.
   VoxelGrid grid;
 };
 
-// `fraction` of the whole is done, and what comes next.
+// Called with the completed fraction and the next stage.
 using ImageProgress = std::function<void(double fraction, const char* stage)>;
 
-// Runs a stage (that CheckImageStage passed) on an image. The same bits for any number of threads. Adds to `problems`,
-// with paths as above, where the region is not in the image, a label has no voxels (which there are is told), a seed
-// lies outside or in another class, all values are the same, or nothing is left; and gives nothing then.
+// Runs a stage, which CheckImageStage must have accepted, on an image. The same bits for any number of threads. Returns
+// nothing and adds to `problems`, with paths as above, if the region is not inside of the image, a label has no voxels
+// (the message lists the existing labels), a seed lies outside or in another class, all values are equal, or no voxel
+// is left.
 std::optional<StagedImage> RunImageStage(const VolumeImage& image, const ImageStage& stage, ThreadTeam& team,
                                          Problems& problems, const ImageProgress& progress = {});
 

@@ -39,7 +39,7 @@ VolumeImage GaussianOf(const VolumeImage& image, const GaussianFilter& filter, i
   blur->SetInput(import->GetOutput());
   blur->SetVariance(filter.deviation * filter.deviation);
   blur->SetUseImageSpacing(true);
-  constexpr double kLeftOut = 1e-4;  // of the kernel's weight
+  constexpr double kLeftOut = 1e-4;  // relative weight of the kernel's truncated part
   blur->SetMaximumError(kLeftOut);
   const double widest = filter.deviation / image.spacing.minCoeff();
   blur->SetMaximumKernelWidth(2 * static_cast<int>(std::ceil(6 * widest)) + 3);
@@ -48,7 +48,7 @@ VolumeImage GaussianOf(const VolumeImage& image, const GaussianFilter& filter, i
 }
 
 VolumeImage DiffusedOf(const VolumeImage& image, const CurvatureFilter& filter, int threads) {
-  // In units of the smallest spacing, so that the step below is the stable one: 1 / 2^4 in three dimensions.
+  // In units of the smallest spacing, for which the step below is the largest stable one: 1 / 2^4 in three dimensions.
   const auto import = Import(image.values, image.size, image.spacing / image.spacing.minCoeff());
   auto diffusion = itk::CurvatureAnisotropicDiffusionImageFilter<FloatImage, FloatImage>::New();
   diffusion->SetInput(import->GetOutput());

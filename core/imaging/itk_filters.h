@@ -4,7 +4,7 @@
 #include "core/imaging/filters.h"
 #include "core/imaging/volume_image.h"
 
-// The filters that are ITK's, on so many threads. For this room alone.
+// ITK's filters, run with the given number of threads. Internal to this room.
 namespace fascicle {
 
 VolumeImage GaussianOf(const VolumeImage& image, const GaussianFilter& filter, int threads);

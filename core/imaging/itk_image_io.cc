@@ -24,7 +24,7 @@ using Component = itk::CommonEnums::IOComponent;
 
 constexpr double kMillimetre = 1e-3;  // [m]
 
-// Libraries that print what we tell by ourselves.
+// Silences libraries that print errors which are reported here anyway.
 void Silence() {
   [[maybe_unused]] static const bool once = [] {
     itk::Object::GlobalWarningDisplayOff();
@@ -60,7 +60,7 @@ void Convert(const char* bytes, std::size_t count, float* values) {
   }
 }
 
-// False for types that no image has.
+// False for types that do not occur in images.
 bool ConvertComponents(Component type, const std::vector<char>& bytes, std::vector<float>& values) {
   const auto convert = [&]<class T>(T) { Convert<T>(bytes.data(), values.size(), values.data()); };
   switch (type) {
@@ -110,12 +110,12 @@ void AddCantBeRead(VolumeFormat format, Problems& problems) {
                "is it complete, and is it what its extension says?");
 }
 
-// Three dimensions of numbers, of which further ones must be 1 long.
+// Accepts images of numbers in three dimensions; further dimensions must have length 1.
 bool TakeHeader(const ImageIOBase& io, const ItkFile& file, std::int64_t memory_limit, VolumeImage& image,
                 Problems& problems) {
   if (io.GetNumberOfComponents() != 1) {
     problems.Add("", "the image has " + std::to_string(io.GetNumberOfComponents()) + " components a voxel",
-                 "one is read: save one channel by itself");
+                 "only one can be read: save one channel by itself");
     return false;
   }
   const std::uint64_t width = file.bytes_per_voxel > 0 ? file.bytes_per_voxel : io.GetComponentSize();
@@ -160,19 +160,19 @@ std::optional<ItkVolume> Read(const ItkFile& file, std::int64_t memory_limit, Pr
   ItkVolume volume;
   if (!TakeHeader(*io, file, memory_limit, volume.image, problems)) return std::nullopt;
   if (auto* dicom = dynamic_cast<itk::GDCMImageIO*>(io.GetPointer())) {
-    // The series' number, without which ITK gives an empty text.
+    // The series instance UID, without which ITK returns an empty text.
     dicom->GetValueFromTag("0020|000e", volume.series);
   }
   itk::ImageIORegion region(io->GetNumberOfDimensions());
   for (unsigned axis = 0; axis < io->GetNumberOfDimensions(); ++axis) region.SetSize(axis, io->GetDimensions(axis));
   io->SetIORegion(region);
-  // ITK may need more of it than the numbers take in the end.
+  // ITK may temporarily need more bytes than the numbers take.
   std::vector<char> bytes(
       std::max<std::size_t>(io->GetImageSizeInBytes(), volume.image.voxels() * io->GetComponentSize()));
   io->Read(bytes.data());
   volume.image.values.resize(volume.image.voxels());
   if (!ConvertComponents(io->GetComponentType(), bytes, volume.image.values)) {
-    problems.Add("", "the image's numbers are of a type that is not known", "save them as 16-bit integers or floats");
+    problems.Add("", "the image's number type is unknown", "save them as 16-bit integers or floats");
     return std::nullopt;
   }
   if (!CheckValues(volume.image, problems)) return std::nullopt;
@@ -231,7 +231,7 @@ std::optional<ItkVolume> ReadByItk(const ItkFile& file, std::int64_t memory_limi
   try {
     return Read(file, memory_limit, problems);
   } catch (const std::exception&) {
-    // What ITK says names its classes and addresses; it helps no one.
+    // ITK's messages contain class names and addresses, which do not help a user.
     if (problems.count() == before) AddCantBeRead(file.format, problems);
     return std::nullopt;
   }

@@ -9,8 +9,8 @@
 
 namespace fascicle {
 
-// An image of ITK over numbers that stay ours, and are not written to. Axes and origin don't matter to filters. For
-// this room alone.
+// An ITK image that refers to numbers owned by the caller and does not write to them. Filters ignore its axes and
+// origin. Internal to this room.
 template <class T>
 typename itk::ImportImageFilter<T, 3>::Pointer Import(const std::vector<T>& values, const GridIndex& size,
                                                       const Vec3& spacing) {

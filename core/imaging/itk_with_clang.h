@@ -1,8 +1,8 @@
 #ifndef FASCICLE_CORE_IMAGING_ITK_WITH_CLANG_H_
 #define FASCICLE_CORE_IMAGING_ITK_WITH_CLANG_H_
 
-// ITK as Debian installs it compiles with GCC alone, which it asks for in a header of its own. Clang (of the fuzz
-// targets) takes the same code: told that it is GCC there, it is let in. Included before all else by the build.
+// Debian's ITK compiles with GCC only, which one of its headers checks. Clang (for the fuzz targets) accepts the same
+// code if it poses as GCC there. The build includes this file before all others.
 #pragma clang diagnostic push
 #pragma clang diagnostic ignored "-Wbuiltin-macro-redefined"
 #pragma push_macro("__clang__")

@@ -17,9 +17,9 @@ std::vector<std::uint8_t> Marked(const VoxelGrid& grid, bool solid) {
 // Squared distances are sums of rounded squares.
 constexpr double kRounding = 1 + 1e-9;
 
-// Which voxels have a marked one, or are one, whose centre is no further than `radius` [m]. By axes: the squared
-// distance to the nearest is found along i, then the least of these and the square of the way along j, then k; no
-// further than the ball.
+// The voxels whose centres are within `radius` [m] of that of a marked voxel. Works axis by axis: first the squared
+// distance to the nearest marked voxel along i, then the minimum of these plus the squared offset along j, then along
+// k; never beyond the radius.
 std::vector<std::uint8_t> Within(const std::vector<std::uint8_t>& marked, const VoxelGrid& grid, double radius,
                                  ThreadTeam& team) {
   const double far = 4 * radius * radius + 1;
@@ -82,7 +82,8 @@ void FillHoles(VoxelGrid& grid) {
   empty.material = Marked(grid, false);
   const Islands islands = FindIslands(empty);
   std::vector<bool> open(islands.voxels.size(), false);
-  std::vector<std::map<std::uint8_t, std::int64_t>> around(islands.voxels.size());  // faces of each material
+  std::vector<std::map<std::uint8_t, std::int64_t>> around(
+      islands.voxels.size());  // number of faces with each material
   ForVoxels(grid, [&](std::size_t v, const GridIndex& at) {
     const std::int32_t island = islands.island[v];
     if (island < 0) return;

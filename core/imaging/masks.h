@@ -6,24 +6,25 @@
 
 namespace fascicle {
 
-// What is done to the solid voxels of a grid before they are simulated. Materials stay those that they were.
+// Morphological operations on the solid voxels of a grid before simulation. Voxels keep their materials.
 
-// Empties all voxels whose centres are no further from that of an empty one than `radius` [m], whatever the spacing:
-// what is left are the places where a ball fits in. Outside of the box counts as solid.
+// Erosion: empties all voxels whose centres are within `radius` [m] of that of an empty voxel, whatever the spacing.
+// What remains are the centres of balls that fit into the body. Everything outside of the grid counts as solid.
 void Erode(VoxelGrid& grid, double radius, ThreadTeam& team);
 
-// Brings back the voxels of `whole` no further than `radius` [m] from those that are left in `grid`. After Erode this
-// is an opening: thin bridges and sheets are gone, and so is what hung on them when its island was emptied in between.
+// Restores the voxels of `whole` within `radius` [m] of the solid voxels of `grid`. After Erode this completes an
+// opening: thin bridges and sheets are removed, together with islands that have been emptied in between.
 void Restore(VoxelGrid& grid, const VoxelGrid& whole, double radius, ThreadTeam& team);
 
-// Empties all but the islands (FindIslands) that hold one of these voxels, which must be inside of the box and solid.
+// Empties all islands (FindIslands) except for those that contain one of these voxels, which must be solid.
 void KeepIslandsOf(VoxelGrid& grid, const std::vector<GridIndex>& seeds);
 
-// Makes empty voxels solid from where no way through empty voxels (by faces) leads to a side of the box: each hole gets
-// the material that most of the faces around it have.
+// Fills holes: empty voxels that are not face-connected to the boundary of the grid. Each hole gets the material that
+// is most frequent among the adjacent faces.
 void FillHoles(VoxelGrid& grid);
 
-// 2 |A and B| / (|A| + |B|) of the solid voxels of two grids of the same size [Dice 1945]; 1 where both are empty.
+// Dice coefficient 2 |A and B| / (|A| + |B|) of the solid voxels of two grids of the same size [Dice 1945]; 1 if both
+// are empty.
 double DiceOverlap(const VoxelGrid& a, const VoxelGrid& b);
 
 }  // namespace fascicle

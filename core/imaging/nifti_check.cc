@@ -8,15 +8,15 @@
 namespace fascicle {
 namespace {
 
-// In millimetres, of lengths and positions.
+// In millimetres, for lengths and positions.
 constexpr float kLargest = 1e6F, kSmallest = 1e-6F;
 
-// Numbers of a header in either order of bytes [NIfTI-1 data format, nifti1.h].
+// The numbers of a header in either byte order [NIfTI-1 data format, nifti1.h].
 class NiftiHeader {
  public:
   explicit NiftiHeader(std::string_view bytes) : bytes_(bytes) { swapped_ = !IsDimension(Number<std::int16_t>(40)); }
 
-  // The order of bytes is that in which dim[0] makes sense, as the format has it.
+  // The byte order is the one for which dim[0] is valid, as the format defines it.
   bool ok() const { return IsDimension(Number<std::int16_t>(40)); }
   float spacing(int axis) const { return Number<float>(80 + 4 * axis); }
   bool has_matrix() const { return Number<std::int16_t>(254) > 0; }
@@ -61,7 +61,7 @@ bool CheckNiftiPlace(std::string_view bytes, Problems& problems) {
   if (!header.ok()) return true;
   bool ok = true;
   for (int axis = 0; axis < 3; ++axis) {
-    // 0 stands for 1 by custom.
+    // By convention 0 stands for 1.
     const float spacing = std::abs(header.spacing(axis));
     ok &= spacing == 0 || (spacing >= kSmallest && spacing <= kLargest);
   }
@@ -69,7 +69,7 @@ bool CheckNiftiPlace(std::string_view bytes, Problems& problems) {
   if (header.has_matrix()) ok &= CheckMatrix(header);
   if (!ok) {
     problems.Add(
-        "", "where the image lies is not told in numbers that make sense",
+        "", "the image's position has invalid numbers",
         "pixdim, quatern, qoffset and srow of its header must be finite, at most 10^6, and lengths above 10^-6 mm");
   }
   return ok;

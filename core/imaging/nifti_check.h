@@ -5,14 +5,15 @@
 
 #include "core/base/problems.h"
 
-// For this room alone.
+// Internal to this room.
 namespace fascicle {
 
 inline constexpr std::size_t kNiftiHeader = 352;
 
-// Whether the place of a NIfTI-1 image, in its first kNiftiHeader bytes, is one that ITK can take: its matrix library
-// ends the program on numbers that are not finite, as those become that are too large, or too small to divide by.
-// False, with problems, otherwise. What is no such header is left to ITK, which says so.
+// Whether the position and axes of a NIfTI-1 image, given by its first kNiftiHeader bytes, are acceptable to ITK. ITK's
+// matrix library aborts the program on non-finite numbers, which also result from numbers that are too large, or too
+// small to divide by. If not, returns false and adds problems. Bytes that are not such a header are left to ITK, which
+// reports that.
 bool CheckNiftiPlace(std::string_view header, Problems& problems);
 
 }  // namespace fascicle

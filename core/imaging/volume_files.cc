@@ -15,7 +15,7 @@
 namespace fascicle {
 namespace {
 
-// Headers are short. Longer lines and more of them are none, whatever a library would do with them.
+// Headers have few and short lines. Anything beyond these bounds is not a header, whatever a library would do with it.
 constexpr std::size_t kLongestLine = 4096, kMostLines = 1000;
 
 std::string Lower(std::string_view text) {
@@ -30,7 +30,7 @@ std::string_view Trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-// The next line of `text`, which is cut off; nothing at its end, or when it is too long.
+// Removes and returns the next line of `text`; nothing at its end, or when the line is too long.
 std::optional<std::string_view> TakeLine(std::string_view& text) {
   if (text.empty()) return std::nullopt;
   const std::size_t end = text.find('\n');
@@ -46,17 +46,17 @@ bool AddNoHeader(VolumeFormat format, Problems& problems) {
   return false;
 }
 
-// Files that headers name lie beside them, one for each.
+// A header may name one data file, which must be beside it.
 bool CheckDataFile(const std::string& name, Problems& problems) {
   const bool several = name == "LIST" || name.starts_with("LIST ") || name.find('%') != std::string::npos;
   if (several) {
-    problems.Add("", "the header names several files of voxels: `" + name.substr(0, 100) + "`",
+    problems.Add("", "the header names several data files: `" + name.substr(0, 100) + "`",
                  "save the image with one file for all voxels, or as .mha, .nrrd or .nii.gz");
     return false;
   }
   if (name.find_first_of("/\\") != std::string::npos || name == "." || name == "..") {
-    problems.Add("", "the header names a file of voxels in another folder: `" + name.substr(0, 100) + "`",
-                 "it must lie beside the header, and be named so");
+    problems.Add("", "the header names a data file in another folder: `" + name.substr(0, 100) + "`",
+                 "it must be in the header's folder and be named without one");
     return false;
   }
   return true;
@@ -71,9 +71,10 @@ bool ReadMetaHeader(std::string_view& text, TextHeader& header, Problems& proble
     const std::string key = Lower(Trimmed(line->substr(0, equals)));
     const std::string_view value = Trimmed(line->substr(equals + 1));
     if (key == "ndims") {
-      // The library has room for ten.
+      // The library supports up to ten dimensions.
       if (value != "2" && value != "3" && value != "4") {
-        problems.Add("", "the image has `" + std::string(value.substr(0, 20)) + "` dimensions", "three are read");
+        problems.Add("", "the image has `" + std::string(value.substr(0, 20)) + "` dimensions",
+                     "only three can be read");
         return false;
       }
       has_dimensions = true;
@@ -230,7 +231,7 @@ bool CheckDeflated(std::string_view bytes, Problems& problems) {
   }
   inflateEnd(&stream);
   if (state == Z_STREAM_END) return true;
-  problems.Add("", "the file's compressed voxels break off or are damaged", "is it complete?");
+  problems.Add("", "the file's compressed voxels are incomplete or damaged", "is it complete?");
   return false;
 }
 
@@ -260,7 +261,7 @@ bool CheckValues(const VolumeImage& image, Problems& problems) {
   const auto count = std::count_if(bad, image.values.end(), [&](float value) { return !finite(value); });
   const auto index = bad - image.values.begin();
   std::ostringstream message;
-  message << count << " voxels are infinite or no numbers: the first is (" << index % image.size[0] << ", "
+  message << count << " voxels are infinite or not numbers: the first is (" << index % image.size[0] << ", "
           << index / image.size[0] % image.size[1] << ", " << index / image.size[0] / image.size[1] << ")";
   problems.Add("", message.str(), "write a number there, such as 0");
   return false;

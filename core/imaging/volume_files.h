@@ -10,28 +10,28 @@
 #include "core/base/problems.h"
 #include "core/imaging/volume_image.h"
 
-// What the readers of images share. For this room alone.
+// Functions shared by the readers of images. Internal to this room.
 namespace fascicle {
 
 enum class VolumeFormat { kMetaImage, kNrrd, kNifti, kDicom, kRaw };
 
-// By the extension of a name.
+// The format that belongs to a name's extension.
 std::optional<VolumeFormat> FormatOf(std::string_view name);
 std::string NameOf(VolumeFormat format);
-// Whether it is the extension of a header alone: .mhd or .nhdr.
+// Whether the extension is that of a separate header: .mhd or .nhdr.
 bool IsDetachedHeader(std::string_view name);
 
-// What the text at the beginning of a MetaImage or NRRD file says of the numbers.
+// What the text header of a MetaImage or NRRD file says about its data.
 struct TextHeader {
-  std::string data_file;  // empty: they follow the header
+  std::string data_file;  // empty: the data follow the header
   bool compressed = false;
   bool as_text = false;
-  std::size_t bytes = 0;  // of the text itself
+  std::size_t bytes = 0;  // length of the text itself
 };
-// Adds to `problems`, and gives nothing, where the text is none, or names several files or one elsewhere.
+// Returns nothing and adds to `problems` if the text is not a header, or names several data files or one elsewhere.
 std::optional<TextHeader> ReadTextHeader(VolumeFormat format, std::string_view bytes, Problems& problems);
 
-// A folder of our own in the system's place for such, with all that is in it removed in the end.
+// A folder within the system's temporary folder; removed with its contents by the destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder();  // throws std::runtime_error
@@ -44,9 +44,9 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-// Whether an image of that size, with so many bytes a voxel in the file, can be read: its voxels can be counted, what
-// reading needs is below the limit, and `available` bytes of the file can hold it. Compressed data hold at most
-// 1032 times as much (deflate's bound).
+// Whether an image of that size, with so many bytes per voxel in the file, can be read: the number of voxels is within
+// range, reading needs less memory than the limit, and the `available` bytes of the file can hold the voxels.
+// Compressed data hold at most 1032 times their size (deflate's bound).
 struct VolumeClaim {
   std::array<std::uint64_t, 3> size = {};
   std::uint64_t bytes_per_voxel = 1;
@@ -55,15 +55,15 @@ struct VolumeClaim {
 };
 bool CheckClaim(const VolumeClaim& claim, std::int64_t memory_limit, Problems& problems);
 
-// Whether bytes begin with a whole deflated stream (zlib or gzip), check sum and all: libraries take what there is for
-// the rest. False, with a problem, otherwise.
+// Whether the bytes start with a complete deflated stream (zlib or gzip), checksum included. Libraries accept
+// incomplete streams. If not, returns false and adds a problem.
 bool CheckDeflated(std::string_view bytes, Problems& problems);
 
-// Spacing and axes as they stand in a file: spacings must be finite and above 0, axes unit vectors at right angles to
-// 1e-3. They are made so to the last bit. False, with problems, otherwise.
+// Checks spacing and axes as read from a file: spacings must be finite and above 0; axes must be orthonormal to 1e-3
+// and are then made so to the last bit. If not, returns false and adds problems.
 bool CheckPlace(VolumeImage& image, Problems& problems);
 
-// Finite everywhere.
+// Whether all values are finite.
 bool CheckValues(const VolumeImage& image, Problems& problems);
 
 }  // namespace fascicle

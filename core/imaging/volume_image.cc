@@ -9,13 +9,13 @@
 namespace fascicle {
 namespace {
 
-// Where a centre of a resampled image lies between centres of the image, along one axis.
+// Position of a voxel centre of the resampled image between two centres of the original, along one axis.
 struct Between {
   std::int32_t low, high;
-  double weight;  // of high, in [0, 1]
+  double weight;  // weight of `high`, in [0, 1]
 };
 
-// Of the first centre from that of the image, along one axis: both images have the same middle.
+// Offset of the first centre from that of the original image, along one axis: both images have the same midpoint.
 double FirstCentre(std::int32_t from_size, double from_spacing, std::int32_t size, double spacing) {
   return 0.5 * (from_size * from_spacing - size * spacing) + 0.5 * (spacing - from_spacing);
 }
@@ -106,7 +106,7 @@ VolumeImage Resample(const VolumeImage& image, double spacing, Interpolation int
 }
 
 VoxelGrid MakeVoxelGrid(const VolumeImage& image, std::vector<std::uint8_t> material) {
-  FASCICLE_CHECK(material.size() == image.voxels(), "a material for each voxel");
+  FASCICLE_CHECK(material.size() == image.voxels(), "one material for each voxel");
   VoxelGrid grid;
   grid.size = image.size;
   grid.spacing = image.spacing;

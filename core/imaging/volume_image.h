@@ -8,15 +8,15 @@
 
 namespace fascicle {
 
-// A volume of one number a voxel: a scan, or the labels of one. Plain data.
+// A volume with one number per voxel: a scan, or its labels. Plain data.
 struct VolumeImage {
   GridIndex size = {0, 0, 0};   // voxels along i, j, k
-  Vec3 spacing = Vec3::Ones();  // of a voxel [m]
-  // The centre of voxel (i, j, k) is at origin + direction * (spacing times (i, j, k)) [m], in the patient's frame of
-  // DICOM: x to the left, y to the back, z to the head.
+  Vec3 spacing = Vec3::Ones();  // edge lengths of a voxel [m]
+  // The centre of voxel (i, j, k) is at origin + direction * (spacing times (i, j, k)) [m], in DICOM's patient
+  // coordinates: x to the left, y to the back, z to the head.
   Vec3 origin = Vec3::Zero();
   Mat3 direction = Mat3::Identity();  // columns: unit vectors along i, j, k
-  // Of each voxel, i fastest, then j. In the file's own unit; whole numbers are exact up to 2^24.
+  // Value of each voxel, i fastest, then j, in the file's own unit. Integers are exact up to 2^24.
   std::vector<float> values;
 
   std::size_t voxels() const { return static_cast<std::size_t>(size[0]) * size[1] * size[2]; }
@@ -31,7 +31,7 @@ struct VolumeImage {
   Vec3 CentreOf(const GridIndex& at) const {
     return origin + direction * spacing.cwiseProduct(Vec3(at[0], at[1], at[2]));
   }
-  // The voxel that holds a point [m], which may be outside of the image.
+  // The voxel that contains a point [m]; may be outside of the image.
   GridIndex VoxelAt(const Vec3& point) const;
 };
 
@@ -43,20 +43,20 @@ struct VoxelBox {
   bool operator==(const VoxelBox&) const = default;
 };
 
-// The part of an image in a box, which must lie inside of it.
+// The part of an image in a box, which must be inside of the image.
 VolumeImage Crop(const VolumeImage& image, const VoxelBox& box);
 
-// The image in cubes of that spacing [m], which fill the same box up to half a cube: values between the centres of
-// voxels are trilinear, or those of the nearest voxel for labels; beyond the outermost centres they stay the same.
+// How to evaluate values between the centres of voxels: trilinear, or nearest voxel for labels. Beyond the outermost
+// centres the values are constant. (Resampling: cubes of the given spacing [m] fill the same box up to half a cube.)
 enum class Interpolation { kLinear, kNearest };
 VolumeImage Resample(const VolumeImage& image, double spacing, Interpolation interpolation);
-// The size that the result has.
+// The size of a resampled image.
 GridIndex ResampledSize(const GridIndex& size, const Vec3& from, double spacing);
 
-// A grid in the image's place whose voxels are of `material` (one for each voxel, 0: empty), in the image's order.
+// A grid at the image's position with the given `material` of each voxel (0: empty), in the image's order.
 VoxelGrid MakeVoxelGrid(const VolumeImage& image, std::vector<std::uint8_t> material);
-// Images may have left-handed axes; what is simulated must not. Such a grid is turned round along k: each voxel stays
-// where it is in space.
+// Images may have left-handed axes; simulated grids must not. Reverses such a grid along k; each voxel stays where it
+// is in space.
 void MakeRightHanded(VoxelGrid& grid);
 // The materials of a grid as an image.
 VolumeImage MakeLabelImage(const VoxelGrid& grid);

@@ -21,12 +21,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kTypeNames[] = {"uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"};
-// The header of a MetaImage or NRRD file is shorter.
+// Upper bound for the header of a MetaImage or NRRD file.
 constexpr std::size_t kLongestHeader = 1 << 20;
 
 std::string BaseName(std::string_view name) { return fs::path(name).filename().string(); }
 
-// A file on the disk; nothing, with a problem, when it can't be read.
+// Size of a file; nothing, with a problem, if it can't be read.
 std::optional<std::uint64_t> SizeOf(const fs::path& path, Problems& problems) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) {
@@ -49,7 +49,7 @@ std::string StartOf(const fs::path& path, std::size_t bytes) {
   return start;
 }
 
-// The same of what is in a file that may be deflated by gzip.
+// The first bytes of a file that may be compressed by gzip.
 std::string InflatedStartOf(const fs::path& path, unsigned bytes) {
   const gzFile file = gzopen(path.c_str(), "rb");
   if (file == nullptr) return {};
@@ -103,7 +103,7 @@ std::optional<VolumeImage> ReadRaw(const fs::path& path, std::uint64_t bytes, co
   return image;
 }
 
-// Bits of a voxel stand in 16 bits of either order; 0 when it is none of those known.
+// The bits per voxel, a 16-bit number in either byte order; 0 if the value is not a known one.
 std::uint64_t NiftiVoxelBytes(const std::string& header) {
   constexpr std::size_t kPlace = 72;
   if (header.size() < kNiftiHeader) return 0;
@@ -112,7 +112,7 @@ std::uint64_t NiftiVoxelBytes(const std::string& header) {
   return bits == 8 || bits == 16 || bits == 32 || bits == 64 ? bits / 8 : 0;
 }
 
-// Deflated voxels at an offset of their file must be whole. Others, such as text, are left to ITK.
+// Compressed voxels at an offset of their file must be complete. Other encodings, such as text, are left to ITK.
 bool CheckCompressed(const ItkFile& file, std::size_t offset, const fs::path& voxels, Problems& problems) {
   const std::string bytes = StartOf(voxels, offset + file.bytes);
   const std::string_view data = std::string_view(bytes).substr(std::min(offset, bytes.size()));
@@ -141,7 +141,7 @@ std::optional<VolumeImage> ReadFile(const fs::path& path, const VolumeReaderOpti
   if (*format == VolumeFormat::kMetaImage || *format == VolumeFormat::kNrrd) {
     const std::optional<TextHeader> header = ReadTextHeader(*format, StartOf(path, kLongestHeader), problems);
     if (!header) return std::nullopt;
-    // Text has a digit and a blank at least for each number, which are no fewer than half of its bytes there.
+    // In text every number takes at least a digit and a blank.
     file.compressed = header->compressed || header->as_text;
     file.bytes -= header->bytes;
     offset = header->bytes;
@@ -159,7 +159,7 @@ std::optional<VolumeImage> ReadFile(const fs::path& path, const VolumeReaderOpti
   return std::move(volume->image);
 }
 
-// The file that the others belong to, or the slices of a series.
+// Reads the one image, or the slices of a series, that the files belong to.
 std::optional<VolumeImage> ReadFiles(const std::vector<fs::path>& paths, const VolumeReaderOptions& options,
                                      Problems& problems) {
   std::vector<DicomFile> slices;
@@ -178,7 +178,7 @@ std::optional<VolumeImage> ReadFiles(const std::vector<fs::path>& paths, const V
     if (!problems.empty()) return std::nullopt;
     return ReadDicomSeries(slices, options.memory_limit, problems);
   }
-  // A header goes before the file of numbers that it names.
+  // A header takes precedence over the data file that it names.
   const auto header = std::find_if(images.begin(), images.end(),
                                    [](const fs::path& path) { return IsDetachedHeader(path.filename().string()); });
   if (header != images.end()) std::iter_swap(images.begin(), header);
@@ -188,11 +188,12 @@ std::optional<VolumeImage> ReadFiles(const std::vector<fs::path>& paths, const V
   }
   const std::string name = images[0].filename().string();
   if (!FormatOf(name)) {
-    problems.Add("", name + " is no image that is known", "expected " + KnownVolumeExtensions());
+    problems.Add("", name + " is not a known image format", "expected " + KnownVolumeExtensions());
     return std::nullopt;
   }
   if (!slices.empty() || images.size() > (header != images.end() ? 2 : 1)) {
-    problems.Add("", "several images are given", "one is read; several files are the slices of a DICOM series");
+    problems.Add("", "several images are given",
+                 "only one can be read; several files must be slices of a DICOM series");
     return std::nullopt;
   }
   return ReadFile(images[0], options, problems);

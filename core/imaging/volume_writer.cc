@@ -13,10 +13,11 @@ void WriteVolume(const VolumeImage& image, VoxelType type, const std::filesystem
   const std::string name = path.filename().string();
   const std::optional<VolumeFormat> format = FormatOf(name);
   if (!format || IsDetachedHeader(name) || *format == VolumeFormat::kDicom || *format == VolumeFormat::kRaw) {
-    problems.Add("", name + " is no image that can be written", "its name must end in .mha, .nrrd, .nii or .nii.gz");
+    problems.Add("", name + " is not an image format that can be written",
+                 "its name must end in .mha, .nrrd, .nii or .nii.gz");
     return;
   }
-  // ITK tells the format by the extension, in small letters.
+  // ITK chooses the format by the extension, in lower case.
   std::string beside_name = "." + std::to_string(getpid()) + "." + name;
   for (char& c : beside_name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   const std::filesystem::path beside = path.parent_path() / beside_name;

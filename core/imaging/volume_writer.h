@@ -9,9 +9,9 @@
 
 namespace fascicle {
 
-// Writes an image, compressed, with millimetres as unit: .mha, .nrrd, .nii or .nii.gz. Values are rounded and cut off
-// to the range of whole `type`s. The file is whole or not there: it is written beside and renamed. Adds to `problems`
-// (with an empty path) what went wrong.
+// Writes an image, compressed, in millimetres: .mha, .nrrd, .nii or .nii.gz. For integer `type`s, values are rounded
+// and clamped to the range of the type. The file is written beside and renamed, so it is complete or absent. Adds to
+// `problems` (with an empty path) what went wrong.
 void WriteVolume(const VolumeImage& image, VoxelType type, const std::filesystem::path& path, Problems& problems);
 
 }  // namespace fascicle

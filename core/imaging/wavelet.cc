@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<float, 5> kSpline = {1.0F / 16, 4.0F / 16, 6.0F / 16, 4.0F / 16, 1.0F / 16};
 constexpr std::size_t kGrain = 16;  // rows
 
-// Mirrored about the outermost voxels as often as it takes.
+// Reflects an index at the outermost voxels as often as necessary.
 std::int32_t Mirrored(std::int32_t at, std::int32_t size) {
   if (size == 1) return 0;
   const std::int32_t period = 2 * (size - 1);
@@ -51,7 +51,7 @@ void BlurAlongRows(const std::vector<float>& from, const GridIndex& size, std::i
   });
 }
 
-// Along j (axis 1) or k (axis 2): whole rows are added up.
+// Along j (axis 1) or k (axis 2): adds up whole rows.
 void BlurAcrossRows(const std::vector<float>& from, const GridIndex& size, int axis, std::int32_t step,
                     std::vector<float>& to, ThreadTeam& team) {
   const auto length = static_cast<std::size_t>(size[0]);
@@ -71,14 +71,14 @@ void BlurAcrossRows(const std::vector<float>& from, const GridIndex& size, int a
   });
 }
 
-// Of the finest wavelet coefficients.
+// Standard deviation of the noise, from the finest wavelet coefficients.
 double NoiseOf(const std::vector<float>& image, const std::vector<float>& blurred, double gain) {
   constexpr std::size_t kSamples = 4'000'000;
   constexpr double kOfNormal = 0.674489750196;  // median of |x| for a standard deviation of 1
   const std::size_t step = image.size() / kSamples + 1;
   std::vector<float> sizes;
   for (std::size_t v = 0; v < image.size(); v += step) {
-    // Masked background has no noise.
+    // A masked background has no noise.
     if (image[v] != 0) sizes.push_back(std::abs(image[v] - blurred[v]));
   }
   if (sizes.empty()) return 0;
@@ -137,7 +137,8 @@ VolumeImage WaveletFiltered(const VolumeImage& image, const WaveletFilter& filte
     const double gain = NoiseGain(image.size, scale);
     if (scale == 1) noise = NoiseOf(finer, coarser, gain);
     const auto least = static_cast<float>(filter.threshold * noise * gain);
-    // What shrinking takes away is taken off the image, so that what it leaves stays to the last bit.
+    // The shrunk-off part is subtracted from the image, so that unchanged coefficients leave it unchanged to the last
+    // bit.
     team.For(finer.size(), 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         const float w = finer[v] - coarser[v];

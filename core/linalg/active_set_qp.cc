@@ -11,14 +11,14 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Exchanges of whole sets that may fail to lessen the number of wrong signs, before single ones begin.
+// Exchanges of all wrong inequalities that may fail to reduce their number before they are exchanged one at a time.
 constexpr int kPatience = 5;
-// Of the tolerance: signs that are wrong by less are right.
+// Part of the tolerance below which a wrong sign is ignored.
 constexpr double kSignPart = 0.1;
-// Violations above that part of the terms, with the system solved, mean that no v meets all constraints.
+// Violations above this part of the terms, with the system solved, mean that the constraints have no solution.
 constexpr double kInfeasible = 1e-6;
 
-// Unknowns and rows of systems that are factored where MINRES fails.
+// Most unknowns and rows of a system that is factored when MINRES fails.
 constexpr Index kMostFactored = 50000;
 
 double Largest(const VectorXd& x) { return x.size() == 0 ? 0 : x.lpNorm<Eigen::Infinity>(); }
@@ -28,13 +28,13 @@ VectorXd Excess(const ConstraintRows& rows, const VectorXd& v) {
   return rows.count() == 0 ? VectorXd() : rows.G * v - rows.b;
 }
 
-// The largest of the terms that make constraints, for what "zero" means.
+// The largest of the terms of the constraints: the scale against which a residual counts as zero.
 double TermsOf(const ConstraintRows& rows, const VectorXd& v) {
   if (rows.count() == 0) return 0;
   return std::max(Largest(rows.b), LargestTerms(rows.G, v, nullptr));
 }
 
-// Diagonal of G (diag M)^-1 G^T: a multiplier times it is what the multiplier changes its constraint by.
+// Diagonal of G (diag M)^-1 G^T: the change of a constraint per unit of its own multiplier.
 VectorXd Compliance(const QuadraticProgram& problem, const ConstraintRows& rows) {
   const VectorXd inverse = problem.M.diagonal().cwiseInverse();
   VectorXd diagonal = VectorXd::Zero(rows.count());
@@ -69,7 +69,7 @@ KktSystem::Result Solve(const QuadraticProgram& problem, KktSystem& system, cons
   return system.SolveDirect();
 }
 
-// Inequalities on the wrong side: active ones that pull, others that are violated.
+// Inequalities with the wrong sign: active ones with a negative multiplier, inactive ones that are violated.
 std::vector<std::size_t> WrongSigns(const QpSolution& solution, const VectorXd& excess, const VectorXd& compliance,
                                     double zero) {
   std::vector<std::size_t> wrong;
@@ -81,7 +81,7 @@ std::vector<std::size_t> WrongSigns(const QpSolution& solution, const VectorXd& 
   return wrong;
 }
 
-// Which of the wrong ones change sides [Judice & Pires 1994].
+// Chooses which of the wrong inequalities are exchanged [Judice & Pires 1994].
 class Exchange {
  public:
   void Apply(const std::vector<std::size_t>& wrong, std::vector<bool>& active) {
@@ -94,7 +94,7 @@ class Exchange {
     if (patience_ > 0) {
       for (const std::size_t i : wrong) active[i] = !active[i];
     } else {
-      active[wrong.back()] = !active[wrong.back()];  // the last one, always: this comes to an end [Murty 1974]
+      active[wrong.back()] = !active[wrong.back()];  // always the last one, so that the method terminates [Murty 1974]
     }
   }
 
@@ -151,7 +151,7 @@ QpReport SolveQp(const QuadraticProgram& problem, const QpSettings& settings, Qp
     const std::vector<std::size_t> wrong = WrongSigns(solution, excess, compliance, zero);
     if (wrong.empty()) {
       if (result.iterations == 0) {
-        system.TakeOutHair(result);
+        system.RemoveRegularization(result);
         TakeMultipliers(system, result, solution);
       }
       if (result.iterations > 0 && inequalities == 0) {

@@ -9,11 +9,11 @@ namespace fascicle {
 namespace {
 
 constexpr std::int32_t kNone = -1;
-// A coupling of nodes counts as strong above that part of the geometric mean of its two diagonal blocks; of aggregates,
-// which are round already, any does.
+// Nodes are strongly coupled when the coupling exceeds this part of the geometric mean of their diagonal blocks.
+// Between aggregates, which are isotropic already, any coupling is strong.
 constexpr double kStrong = 0.02;
 
-// Points that move: a block each on the finest level, a translation with its rotation on all others.
+// The points of a level: one block each (translation) on the finest level, two (translation, rotation) on all others.
 struct Points {
   std::size_t blocks_each = 1;
   std::size_t count = 0;
@@ -33,7 +33,7 @@ std::vector<std::vector<std::int32_t>> StrongNeighbours(const BlockPattern& patt
   }
   std::vector<std::vector<std::int32_t>> neighbours(points.count);
   for (std::size_t p = 0; p < points.count; ++p) {
-    const std::size_t i = p * points.blocks_each;  // translations tell
+    const std::size_t i = p * points.blocks_each;  // translations decide
     for (std::int32_t k = pattern.begin[i]; k < pattern.begin[i + 1]; ++k) {
       const std::size_t j = pattern.column[k];
       if (j == i || j % points.blocks_each != 0) continue;
@@ -45,8 +45,8 @@ std::vector<std::vector<std::int32_t>> StrongNeighbours(const BlockPattern& patt
   return neighbours;
 }
 
-// The aggregate of each point: first whole neighbourhoods that no aggregate has touched, then what is left goes to the
-// neighbouring aggregate, or makes one of its own.
+// The aggregate of each point. First, whole neighbourhoods that touch no aggregate become aggregates. Each remaining
+// point joins a neighbouring aggregate or forms its own.
 std::vector<std::int32_t> Aggregate(const std::vector<std::vector<std::int32_t>>& neighbours, std::size_t& count) {
   std::vector<std::int32_t> of(neighbours.size(), kNone);
   count = 0;
@@ -81,7 +81,7 @@ std::vector<std::int32_t> Aggregate(const std::vector<std::vector<std::int32_t>>
   return of;
 }
 
-// Centre and radius of each aggregate, as a translation and a rotation.
+// Centre and radius of each aggregate, as a translation block and a rotation block.
 std::vector<RigidBlock> RigidBlocksOf(const std::vector<RigidBlock>& blocks, const Points& points,
                                       const std::vector<std::int32_t>& aggregate, std::size_t count) {
   std::vector<RigidBlock> coarse(2 * count);
@@ -99,7 +99,7 @@ std::vector<RigidBlock> RigidBlocksOf(const std::vector<RigidBlock>& blocks, con
   for (std::size_t a = 0; a < count; ++a) typical = std::max(typical, std::sqrt(squares[a] / size[a]));
   for (std::size_t a = 0; a < count; ++a) {
     coarse[2 * a + 1].position = coarse[2 * a].position;
-    // A single point has no arms; any length will do.
+    // An aggregate of a single point has no extent; any length will do.
     const double radius = std::sqrt(squares[a] / size[a]);
     coarse[2 * a + 1].rotation_scale = radius > 0 ? radius : (typical > 0 ? typical : 1);
   }
@@ -112,7 +112,7 @@ Mat3 CrossProductWith(const Vec3& arm) {
   return cross;
 }
 
-// How block i follows the rigid motion of its aggregate: blocks of the translation and the rotation.
+// How block i moves with the rigid motion of its aggregate: one block for the translation and one for the rotation.
 std::array<Mat3, 2> RigidMotion(const RigidBlock& block, const RigidBlock& rotation, const std::array<bool, 3>& free) {
   std::array<Mat3, 2> motion = {Mat3::Identity(), Mat3::Zero()};
   if (block.rotation_scale > 0) {

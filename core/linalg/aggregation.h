@@ -5,33 +5,32 @@
 
 namespace fascicle {
 
-// Interpolation from the blocks of a coarser level: a row of the pattern for each block of the finer one.
+// Interpolation from a coarser level: one row of the pattern for each block of the finer level.
 struct Prolongation {
   BlockPattern pattern;
   BlockValues values;
-  std::size_t coarse = 0;  // blocks of the coarser level
+  std::size_t coarse = 0;  // number of blocks of the coarser level
 };
 
-// What the three components of a block mean: the translation of a point, or a rotation about it.
+// Meaning of the three components of a block: the translation of a point, or a rotation about it.
 struct RigidBlock {
   Vec3 position = Vec3::Zero();  // [m]
   double rotation_scale = 0;     // length by which rotations are measured [m]; 0 for a translation
 };
 
 // Interpolation by smoothed aggregation with rigid body modes [Vanek, Mandel & Brezina 1996, Algebraic multigrid by
-// smoothed aggregation for second and fourth order elliptic problems, Computing 56]: blocks that are strongly coupled
-// are joined to aggregates, each of which moves as a rigid body does, by a translation and a rotation (two blocks of
-// the coarser level, in this order); one step of damped Jacobi smooths that.
-//   blocks           what the finer level's blocks are; of a level that is made of aggregates, two after each other
-//   belong
-//                    together
-//   inverse_diagonal of the values; largest_eigenvalue: of inverse_diagonal times the matrix, at least
-//   coarse_blocks    receives the coarser level's
+// smoothed aggregation for second and fourth order elliptic problems, Computing 56]: strongly coupled blocks are joined
+// to aggregates. Each aggregate moves as a rigid body, with a translation and a rotation (two blocks of the coarser
+// level, in this order). One step of damped Jacobi smooths the interpolation.
+//   blocks           meaning of the finer level's blocks; on a level made of aggregates the two blocks of an aggregate
+//                    are consecutive
+//   inverse_diagonal of the values; largest_eigenvalue: an upper bound for inverse_diagonal times the matrix
+//   coarse_blocks    receives the meaning of the coarser level's blocks
 Prolongation SmoothedAggregation(const BlockPattern& pattern, const BlockValues& values, const FreeComponents& free,
                                  const std::vector<RigidBlock>& blocks, const BlockValues& inverse_diagonal,
                                  double largest_eigenvalue, std::vector<RigidBlock>& coarse_blocks);
 
-// Galerkin product P^T A P: its pattern once, its values whenever those of A change.
+// Galerkin product P^T A P: the pattern is found once, the values whenever those of A change.
 class GalerkinProduct {
  public:
   GalerkinProduct() = default;

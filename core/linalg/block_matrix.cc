@@ -49,7 +49,8 @@ void IsolatePrescribed(const BlockPattern& pattern, const FreeComponents& free, 
 }
 
 void PatternBuilder::AddRow(std::vector<std::int32_t>& columns) {
-  // Repetitions first: there may be ten of each column, and sorting them takes most of the time.
+  // Duplicates are removed before sorting: a column may occur ten times, and sorting all of them would take most of the
+  // time.
   const auto row = static_cast<std::int32_t>(pattern_.begin.size());
   std::erase_if(columns, [&](std::int32_t column) {
     if (column >= static_cast<std::int32_t>(last_row_.size())) last_row_.resize(column + 1, 0);

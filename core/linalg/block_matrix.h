@@ -9,15 +9,14 @@
 
 namespace fascicle {
 
-// Where a sparse matrix of 3x3 blocks has blocks: those of row i are in columns column[begin[i] .. begin[i + 1]),
-// ascending.
+// Sparsity pattern of a matrix of 3x3 blocks: row i has blocks in columns column[begin[i] .. begin[i + 1]), ascending.
 struct BlockPattern {
   std::vector<std::int32_t> begin = {0};
   std::vector<std::int32_t> column;
 
   std::size_t rows() const { return begin.size() - 1; }
   std::size_t blocks() const { return column.size(); }
-  // The number of block (row, col), which must be there.
+  // Index of block (row, col), which must exist.
   std::int32_t PlaceOf(std::int32_t row, std::int32_t col) const;
 };
 
@@ -25,7 +24,7 @@ struct BlockPattern {
 template <class NodesOf>
 BlockPattern PatternOfElements(std::size_t nodes, std::size_t elements, const NodesOf& nodes_of);
 
-// The transpose of a pattern of `columns` columns, and where each of its blocks stands in the pattern itself.
+// The transpose of a pattern with `columns` columns, and the index of each of its blocks in the original pattern.
 struct TransposedPattern {
   TransposedPattern() = default;
   TransposedPattern(const BlockPattern& pattern, std::size_t columns);
@@ -34,28 +33,28 @@ struct TransposedPattern {
   std::vector<std::int32_t> source;
 };
 
-// Values beside a pattern that is somewhere else.
+// Values of the blocks of a pattern that is stored elsewhere.
 using BlockValues = std::vector<Mat3>;
 
-// product = A x, for every row of the pattern. The same bits for any number of threads.
+// product = A x for every row of the pattern. The same bits for any number of threads.
 void Multiply(const BlockPattern& pattern, const BlockValues& values, const NodalVector& x, ThreadTeam& team,
               NodalVector& product);
 
 // Which components of each node are unknown.
 using FreeComponents = std::vector<std::array<bool, 3>>;
 
-// Makes prescribed components independent of all others: their rows and columns become those of the identity.
+// Decouples prescribed components from all others: replaces their rows and columns by those of the identity.
 void IsolatePrescribed(const BlockPattern& pattern, const FreeComponents& free, ThreadTeam& team, BlockValues& values);
 
-// Builds a pattern row by row from unsorted columns with repetitions.
+// Builds a pattern row by row from unsorted columns with duplicates.
 class PatternBuilder {
  public:
-  void AddRow(std::vector<std::int32_t>& columns);     // leaves them sorted, each once
+  void AddRow(std::vector<std::int32_t>& columns);     // leaves them sorted and unique
   BlockPattern Take() { return std::move(pattern_); }  // once, at the end
 
  private:
   BlockPattern pattern_;
-  std::vector<std::int32_t> last_row_;  // that had each column, from 1
+  std::vector<std::int32_t> last_row_;  // the last row that had each column, counted from 1
 };
 
 template <class NodesOf>

@@ -7,7 +7,7 @@
 
 namespace fascicle {
 
-// Scratch of ConjugateGradient; keeps its memory from call to call.
+// Scratch memory of ConjugateGradient; reused by later calls.
 struct CgWorkspace {
   NodalVector residual, preconditioned, direction, product;
 
@@ -26,17 +26,18 @@ struct CgResult {
 
 // Solves A x = b for symmetric positive definite A by Jacobi-preconditioned conjugate gradients [Shewchuk 1994, B3].
 //   apply             apply(p, q) sets q = A p
-//   inverse_diagonal  1 / A_ii; zero marks a component that is given: it keeps the value it has in x
+//   inverse_diagonal  1 / A_ii; zero marks a prescribed component, which keeps its value in x
 //   x                 start and result
-// Stops when the residual, in the norm of the inverse diagonal, is at most `tolerance` times the larger of those of b
-// and of the start. The same bits for any number of threads; no allocation once the workspace has its size.
+// Stops when the norm of the residual (weighted by the inverse diagonal) is at most `tolerance` times the larger one of
+// the norms of b and of the initial residual. The same bits for any number of threads. Allocates nothing once the
+// workspace has its size.
 template <class Apply>
 CgResult ConjugateGradient(ThreadTeam& team, const Apply& apply, const NodalVector& inverse_diagonal,
                            const NodalVector& b, double tolerance, int max_iterations, NodalVector& x,
                            CgWorkspace& ws) {
   const std::size_t nodes = b.size();
   ws.Resize(nodes);
-  // Named one by one: clang 14 can't capture structured bindings.
+  // Named one by one because clang 14 can't capture structured bindings.
   NodalVector& r = ws.residual;
   NodalVector& z = ws.preconditioned;
   NodalVector& p = ws.direction;

@@ -12,9 +12,9 @@ namespace fascicle {
 namespace {
 
 constexpr int kInitialize = -1, kAnalyze = 1, kFactor = 2, kSolve = 3, kEnd = -2;
-// MUMPS's mark for "all processes", of which there is one.
+// MUMPS's placeholder for the communicator of all processes; there is only one.
 constexpr int kWorld = -987654;
-// Errors after which more workspace helps.
+// Errors that more workspace can cure.
 constexpr int kWorkspaceTooSmall = -9, kIntegerWorkspaceTooSmall = -8;
 constexpr int kMostWorkspacePercent = 2000;
 
@@ -33,11 +33,11 @@ struct DirectSolver::Impl {
     Call(kInitialize);
     for (const int k : {1, 2, 3, 4}) Control(k) = k == 4 ? 0 : -1;  // prints nothing
     Control(14) = 60;                                               // [%] more workspace than estimated
-    // Scaled to a unit diagonal, quasi-definite matrices need no pivoting, which would fill them up.
+    // Scaled to a unit diagonal, quasi-definite matrices need no pivoting, which would increase the fill-in.
     Control(8) = 1;
   }
 
-  // As in the manual, counted from 1.
+  // Control parameters as numbered in the manual, from 1.
   MUMPS_INT& Control(int k) { return mumps.icntl[k - 1]; }
 
   bool Call(int job) {
@@ -87,7 +87,7 @@ DirectSolver::Factored DirectSolver::Factor(std::span<const double> values) {
 
 void DirectSolver::Solve(std::span<double> b) {
   Impl& d = *impl_;
-  FASCICLE_CHECK(static_cast<MUMPS_INT>(b.size()) == d.mumps.n, "a right side of the matrix's size");
+  FASCICLE_CHECK(static_cast<MUMPS_INT>(b.size()) == d.mumps.n, "the right-hand side has the matrix's size");
   d.mumps.rhs = b.data();
   d.mumps.nrhs = 1;
   FASCICLE_CHECK(d.Call(kSolve), "a factored matrix solves");

@@ -7,10 +7,10 @@
 
 namespace fascicle {
 
-// Factorization L D L^T of a sparse symmetric matrix, definite or not, by MUMPS's multifrontal method with pivoting
-// [Amestoy, Duff, L'Excellent & Koster 2001]. The pattern is analyzed once, values may change. One thread at a time for
-// each solver; calls of different solvers wait for each other, because the library keeps state of its own. The same
-// input gives the same bits.
+// Factorization L D L^T of a sparse symmetric matrix, definite or indefinite, by MUMPS's multifrontal method with
+// pivoting [Amestoy, Duff, L'Excellent & Koster 2001]. The pattern is analyzed once; values may change. Not
+// thread-safe. Calls of different solvers wait for each other, because the library has global state. The same input
+// gives the same bits.
 class DirectSolver {
  public:
   DirectSolver();
@@ -18,18 +18,18 @@ class DirectSolver {
   DirectSolver(const DirectSolver&) = delete;
   DirectSolver& operator=(const DirectSolver&) = delete;
 
-  // Entries (rows[k], columns[k]) of one triangle, diagonal included, counted from 0, none twice. False when memory
-  // runs out.
+  // Entries (rows[k], columns[k]) of one triangle, diagonal included, counted from 0, without duplicates. False when
+  // memory runs out.
   bool Analyze(std::int32_t size, std::span<const std::int32_t> rows, std::span<const std::int32_t> columns);
 
   struct Factored {
     bool ok = false;                   // false: singular to working precision, or out of memory
-    std::int32_t negative_pivots = 0;  // number of negative eigenvalues [Sylvester's law of inertia]
+    std::int32_t negative_pivots = 0;  // equals the number of negative eigenvalues [Sylvester's law of inertia]
   };
   // values[k] belongs to the k-th entry of Analyze, which must have succeeded.
   Factored Factor(std::span<const double> values);
 
-  // Replaces b by A^-1 b; after a Factor that was ok.
+  // Replaces b by A^-1 b. Requires a successful Factor.
   void Solve(std::span<double> b);
 
  private:

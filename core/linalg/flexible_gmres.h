@@ -10,31 +10,31 @@
 
 namespace fascicle {
 
-// Iterations between looks at the Ritz values.
+// Iterations between two computations of the Ritz values.
 inline constexpr int kRitzInterval = 8;
 
 struct GmresResult {
   bool converged = false;
   int iterations = 0;
-  double residual = 0;  // norm over that of the right side [1]
-  // Least real part of the Ritz values, which approach eigenvalues of the preconditioned matrix, extreme ones first.
+  double residual = 0;  // its norm over that of the right-hand side [1]
+  // Least real part of the Ritz values, which approach the extreme eigenvalues of the preconditioned matrix first.
   double least_eigenvalue = 0;
 };
 
-// Of the eigenvalues of a small matrix.
+// Least real part of the eigenvalues of a small matrix.
 double LeastRealPart(const Eigen::MatrixXd& matrix);
 
-// Scratch of FlexibleGmres; keeps its memory from call to call.
+// Scratch memory of FlexibleGmres; reused by later calls.
 struct GmresWorkspace {
   std::vector<Eigen::VectorXd> basis, preconditioned;
 };
 
 // Solves A x = b by flexible GMRES without restart, preconditioned from the right [Saad 1993, A flexible inner-outer
 // preconditioned GMRES algorithm, SIAM J. Sci. Comput. 14].
-//   apply(v, Av), precondition(r, z)   neither needs to be symmetric, the second not even the same from call to call
-//   x                                  the result; starts from zero
-// Stops when the norm of the residual is at most `tolerance` times that of b, when a Ritz value turns out negative, or
-// after `max_iterations`, each of which keeps two vectors. The same bits for any number of threads.
+//   apply(v, Av), precondition(r, z)   neither needs to be symmetric; precondition may change from call to call
+//   x                                  the result; the initial guess is zero
+// Stops when the norm of the residual is at most `tolerance` times that of b, when a Ritz value is negative, or after
+// `max_iterations`. Keeps two vectors for each iteration. The same bits for any number of threads.
 template <class Apply, class Precondition>
 GmresResult FlexibleGmres(ThreadTeam& team, const Apply& apply, const Precondition& precondition,
                           const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& x,
@@ -58,7 +58,7 @@ GmresResult FlexibleGmres(ThreadTeam& team, const Apply& apply, const Preconditi
   ws.basis.resize(max_iterations + 1);
   ws.preconditioned.resize(max_iterations);
   ws.basis[0] = b / b_norm;
-  // The Hessenberg matrix, made triangular by rotations as it grows, and what they make of the right side.
+  // The Hessenberg matrix, reduced to triangular form by Givens rotations as it grows, and the rotated right-hand side.
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(max_iterations + 1, max_iterations), H_before = H;
   VectorXd cosine(max_iterations), sine(max_iterations), side = VectorXd::Zero(max_iterations + 1);
   side[0] = b_norm;

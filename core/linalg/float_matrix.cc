@@ -6,11 +6,11 @@
 namespace fascicle {
 namespace {
 
-// Least eigenvalue of a diagonal block relative to its largest.
+// Least admissible eigenvalue of a diagonal block, relative to its largest.
 constexpr double kLeastEigenvalue = 1e-6;
 
-// Whether all eigenvalues of a symmetric block are larger than that: by Sylvester's criterion, and det / trace^2 is
-// below the least of them.
+// Whether all eigenvalues of a symmetric block exceed that bound: by Sylvester's criterion, and because det / trace^2
+// is a lower bound for the least eigenvalue.
 bool IsClearlyPositive(const Mat3& block) {
   const double minor = block(0, 0) * block(1, 1) - block(1, 0) * block(1, 0);
   const double trace = block.trace();

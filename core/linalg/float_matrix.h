@@ -9,7 +9,7 @@
 // Matrices of 3x3 blocks in single precision, for preconditioners.
 namespace fascicle {
 
-using Vec4f = Eigen::Vector4f;  // three components and one that is zero, for whole vector registers
+using Vec4f = Eigen::Vector4f;  // three components and a zero, which fill a vector register
 using FloatField = std::vector<Vec4f>;
 
 struct FloatBlock {
@@ -23,13 +23,13 @@ struct FloatBlock {
   Vec4f TransposedTimes(const Vec4f& x) const { return Vec4f(column[0].dot(x), column[1].dot(x), column[2].dot(x), 0); }
 };
 
-// The inverse of a symmetric block with its eigenvalues' absolute values, none too small.
+// The inverse of a symmetric block whose eigenvalues are replaced by their absolute values and bounded away from zero.
 Mat3 PositiveInverse(const Mat3& block);
 
-// A square matrix and the inverses of its diagonal blocks.
+// A square matrix with the inverses of its diagonal blocks.
 class FloatMatrix {
  public:
-  // The pattern must outlive the matrix, or the next call.
+  // The pattern must outlive the matrix, or the next call of SetValues.
   void SetValues(const BlockPattern& pattern, const BlockValues& values, ThreadTeam& team);
 
   std::size_t rows() const { return inverse_diagonal_.size(); }

@@ -10,12 +10,12 @@
 namespace fascicle {
 namespace {
 
-constexpr double kHair = 1e-12;
+constexpr double kRegularization = 1e-12;
 constexpr int kDirectRefinements = 3;
-// The residual of MINRES is of another norm than that which counts: it solves again for what is left.
+// MINRES measures the residual in another norm than IsGood, so it may have to solve again for the remaining residual.
 constexpr int kMostRefinements = 6;
 
-// Rows that are chosen of all, one below the other.
+// Selected rows of several matrices, stacked.
 class RowStack {
  public:
   explicit RowStack(Eigen::Index columns) : columns_(columns) {}
@@ -86,7 +86,7 @@ KktSystem::KktSystem(const QuadraticProgram& problem, const std::vector<bool>& a
     }
   };
   InRanges(team, static_cast<std::size_t>(G_->rows()), kRowGrain, rows_of_schur);
-  hair_ = kHair * schur_;
+  regularization_ = kRegularization * schur_;
 }
 
 Eigen::VectorXd KktSystem::Side() const {
@@ -95,7 +95,7 @@ Eigen::VectorXd KktSystem::Side() const {
   return side;
 }
 
-void KktSystem::Apply(const Eigen::VectorXd& x, double hair_part, Eigen::VectorXd& y) const {
+void KktSystem::Apply(const Eigen::VectorXd& x, double scale, Eigen::VectorXd& y) const {
   const Eigen::Index n = problem_->p.size(), m = b_.size();
   Eigen::VectorXd product;
   y.resize(n + m);
@@ -105,7 +105,7 @@ void KktSystem::Apply(const Eigen::VectorXd& x, double hair_part, Eigen::VectorX
   y.tail(m) = product;
   if (problem_->E.size() > 0) y.segment(n, volumes_) -= problem_->E * x.segment(n, volumes_);
   const Eigen::Index first = problem_->E.size() > 0 ? volumes_ : 0;
-  y.tail(m - first) -= hair_part * hair_.tail(m - first).cwiseProduct(x.tail(m - first));
+  y.tail(m - first) -= scale * regularization_.tail(m - first).cwiseProduct(x.tail(m - first));
 }
 
 KktSystem::Result KktSystem::SolveDirect() {
@@ -117,7 +117,7 @@ KktSystem::Result KktSystem::SolveDirect() {
     for (RowMatrix::InnerIterator entry(*G_, i); entry; ++entry) lower.Add(n + i, entry.col(), entry.value());
   }
   if (has_E) lower.Add(problem_->E, n, -1);
-  for (Eigen::Index i = has_E ? volumes_ : 0; i < m; ++i) lower.Add(n + i, n + i, -hair_[i]);
+  for (Eigen::Index i = has_E ? volumes_ : 0; i < m; ++i) lower.Add(n + i, n + i, -regularization_[i]);
   Result result;
   if (!lower.Factor(n + m, factors_)) return result;
   result.v = Eigen::VectorXd::Zero(n);
@@ -126,14 +126,14 @@ KktSystem::Result KktSystem::SolveDirect() {
   return result;
 }
 
-void KktSystem::TakeOutHair(Result& result) { Improve(0, result); }
+void KktSystem::RemoveRegularization(Result& result) { Improve(0, result); }
 
-void KktSystem::Improve(double hair_part, Result& result) {
+void KktSystem::Improve(double scale, Result& result) {
   const Eigen::Index n = problem_->p.size(), m = b_.size();
   Eigen::VectorXd x(n + m), product;
   x << result.v, -result.y;
   for (int k = 0; k < kDirectRefinements; ++k) {
-    Apply(x, hair_part, product);
+    Apply(x, scale, product);
     product = Side() - product;
     factors_.Solve({product.data(), static_cast<std::size_t>(product.size())});
     x += product;
@@ -170,7 +170,8 @@ bool KktSystem::IsGood(Result& result, const QpSettings& settings) const {
 // (G M^-1 G^T + C) y = b - G M^-1 p, then v = M^-1 (p + G^T y).
 KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const {
   Result result;
-  const MultiplierPreconditioner preconditioner(*problem_, *G_, volumes_, inverse_mass_, schur_, hair_, team_);
+  const MultiplierPreconditioner preconditioner(*problem_, *G_, volumes_, inverse_mass_, schur_, regularization_,
+                                                team_);
   if (!preconditioner.ok()) return result;
   const RowMatrix E = problem_->E;  // symmetric: the same by rows
   Eigen::VectorXd v, of_volumes;
@@ -210,7 +211,8 @@ KktSystem::Result KktSystem::SolveMultipliers(const QpSettings& settings) const 
 KktSystem::Result KktSystem::SolveWhole(const QpSettings& settings) const {
   const Eigen::Index n = problem_->p.size(), m = b_.size();
   Result result;
-  const MultiplierPreconditioner of_multipliers(*problem_, *G_, volumes_, inverse_mass_, schur_, hair_, team_);
+  const MultiplierPreconditioner of_multipliers(*problem_, *G_, volumes_, inverse_mass_, schur_, regularization_,
+                                                team_);
   if (!of_multipliers.ok()) return result;
   const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     z.resize(n + m);

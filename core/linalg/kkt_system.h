@@ -6,26 +6,27 @@
 
 namespace fascicle {
 
-// The equations of a quadratic program whose active inequalities are equalities,
+// The equations of a quadratic program with its active inequalities taken as equalities,
 //   [ M   G^T ] [ v]   [p]
-//   [ G   -C  ] [-y] = [b],    rows of volumes, equalities and active inequalities, C = E for volumes,
-// C zero else, which are solved as one symmetric system [Fan 2013, 3.5]. Factors are of a system with a hair of the
-// diagonal of G (diag M)^-1 G^T for that zero, so that rows that depend on others do no harm. For this room alone.
+//   [ G   -C  ] [-y] = [b],    rows: volumes, equalities, active inequalities; C = E for volumes and zero elsewhere,
+// solved as one symmetric system [Fan 2013, 5.3]. The factorization is that of a regularized system: a small multiple
+// of the diagonal of G (diag M)^-1 G^T takes the place of the zeros of C, so that linearly dependent rows are harmless.
+// Internal to this room.
 class KktSystem {
  public:
   KktSystem(const QuadraticProgram& problem, const std::vector<bool>& active, ThreadTeam* team);
 
-  // Solutions v, and multipliers y of the rows in their order.
+  // The solution v, and the multipliers y in the order of the rows.
   struct Result {
     bool ok = false;
     int iterations = 0;                        // of MINRES
     double stationarity = 0, feasibility = 0;  // of MINRES, as QpReport has them
     Eigen::VectorXd v, y;
   };
-  // With the hair for C: then multipliers are unique, and their signs tell which inequalities are to be active.
+  // Solves the regularized system. Its multipliers are unique, so their signs tell which inequalities are to be active.
   Result SolveDirect();
-  // What the hair took from the constraints comes back, by the same factors. After SolveDirect.
-  void TakeOutHair(Result& result);
+  // Removes the regularization from the result by iterative refinement with the same factors. Call after SolveDirect.
+  void RemoveRegularization(Result& result);
   Result SolveMinres(const QpSettings& settings) const;
 
   Eigen::Index size() const { return problem_->p.size() + b_.size(); }
@@ -35,26 +36,26 @@ class KktSystem {
 
  private:
   Eigen::VectorXd Side() const;
-  // M v = p + G^T y together with its multipliers, and v of these alone, where M is diagonal.
+  // SolveWhole solves for v and y together; SolveMultipliers for y only, with v eliminated, where M is diagonal.
   Result SolveWhole(const QpSettings& settings) const;
   Result SolveMultipliers(const QpSettings& settings) const;
-  // Whether forces balance and constraints hold to a tolerance; sets how well they do.
+  // Whether forces balance and constraints hold to the tolerance; sets the residuals of the result.
   bool IsGood(Result& result, const QpSettings& settings) const;
-  // hair_part: 1 with the hair, 0 without.
-  void Apply(const Eigen::VectorXd& x, double hair_part, Eigen::VectorXd& y) const;
-  // Refines a solution by the factors.
-  void Improve(double hair_part, Result& result);
+  // Applies the system to x, with `scale` (0 or 1) times the regularization.
+  void Apply(const Eigen::VectorXd& x, double scale, Eigen::VectorXd& y) const;
+  // Iterative refinement with the factors.
+  void Improve(double scale, Result& result);
 
   const QuadraticProgram* problem_;
-  Eigen::Index volumes_;  // the first rows
-  RowMatrix stacked_;     // rows of more than volumes
+  Eigen::Index volumes_;  // number of volume rows, which come first
+  RowMatrix stacked_;     // all rows; empty where there are only volumes
   const RowMatrix* G_;    // m x n
   RowMatrix transposed_;  // G^T
-  ThreadTeam* team_;      // shares the products, if there is one
+  ThreadTeam* team_;      // shares the products; may be null
   Eigen::VectorXd b_;
   Eigen::VectorXd inverse_mass_;  // of diag M
   Eigen::VectorXd schur_;         // diagonal of G (diag M)^-1 G^T
-  Eigen::VectorXd hair_;
+  Eigen::VectorXd regularization_;
   DirectSolver factors_;
 };
 

@@ -9,12 +9,12 @@
 
 namespace fascicle {
 
-// Scratch of LargestEigenvalue; keeps its memory from call to call.
+// Scratch memory of LargestEigenvalue; reused by later calls.
 struct LanczosWorkspace {
   NodalVector previous, current, next, scaled;
 };
 
-// A number in [-0.5, 0.5) that looks random and depends on `index` alone [Steele et al. 2014, SplitMix64].
+// A pseudorandom number in [-0.5, 0.5) that depends on `index` only [Steele et al. 2014, SplitMix64].
 inline double HashedUnit(std::uint64_t index) {
   std::uint64_t z = (index + 1) * 0x9e3779b97f4a7c15u;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -23,11 +23,11 @@ inline double HashedUnit(std::uint64_t index) {
   return static_cast<double>(z >> 11) * 0x1p-53 - 0.5;
 }
 
-// An estimate from above of the largest eigenvalue of W A W, with A symmetric and W diagonal (components with W = 0
-// take no part), by the Lanczos method [Golub & Van Loan 2013, 10.1]: the largest Ritz value plus the bound of its
-// residual. Ends when that bound is below `tolerance` times the value, or after kMaxLanczosSteps. Starts from a vector
-// that depends on the node numbers alone, so the result is a function of A and W. No reorthogonalization: rounding
-// brings copies of an extreme eigenvalue, which do no harm to its value.
+// Upper estimate of the largest eigenvalue of W A W, with A symmetric and W diagonal (components with W = 0 are left
+// out), by the Lanczos method [Golub & Van Loan 2013, 10.1]: the largest Ritz value plus its residual bound. Stops when
+// that bound is below `tolerance` times the value, or after kMaxLanczosSteps. The start vector depends on the node
+// numbers only, so the result is a function of A and W. There is no reorthogonalization: rounding creates copies of an
+// extreme eigenvalue, which do not change its value.
 //   apply  apply(p, q) sets q = A p
 inline constexpr int kMaxLanczosSteps = 40;
 
@@ -39,7 +39,7 @@ double LargestEigenvalue(ThreadTeam& team, const Apply& apply, const NodalVector
   constexpr int kFirstCheck = 8, kCheckEvery = 4;
 
   const std::size_t nodes = W.size();
-  // Named one by one: clang 14 can't capture structured bindings.
+  // Named one by one because clang 14 can't capture structured bindings.
   NodalVector& previous = ws.previous;
   NodalVector& v = ws.current;
   NodalVector& w = ws.next;

@@ -17,7 +17,7 @@ struct LowerTriangle {
     columns.push_back(static_cast<std::int32_t>(column));
     values.push_back(value);
   }
-  // Those of a matrix whose first row and column are `first` of this one.
+  // Adds `factor` times a matrix whose first row and column are row and column `first` of this one.
   void Add(const Eigen::SparseMatrix<double>& matrix, Eigen::Index first, double factor) {
     for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
       for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, column); entry; ++entry) {

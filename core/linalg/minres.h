@@ -13,10 +13,10 @@ struct MinresResult {
   double residual = 0;  // |r| over |b|, both in the norm of the preconditioner [1]
 };
 
-// Solves A x = b for symmetric A, definite or not, by the minimal residual method [Paige & Saunders 1975],
-// preconditioned [Elman, Silvester & Wathen 2014, algorithm 4.1], from x = 0. Ends when sqrt(r . P r) <= tolerance *
-// sqrt(b . P b). Where A is singular and b in its range, a solution with the least residual. The same input gives the
-// same bits; one thread.
+// Solves A x = b for symmetric A, definite or indefinite, by the minimal residual method [Paige & Saunders 1975],
+// preconditioned [Elman, Silvester & Wathen 2014, algorithm 4.1], from x = 0. Stops when sqrt(r . P r) <= tolerance *
+// sqrt(b . P b). If A is singular and b is in its range, finds a solution with the least residual. The same input gives
+// the same bits. Runs on the calling thread.
 //   apply(x, y)  sets y = A x
 //   precondition(r, z)  sets z = P r, P symmetric positive definite
 template <class Apply, class Precondition>
@@ -56,7 +56,7 @@ MinresResult Minres(const Apply& apply, const Precondition& precondition, const 
     eta *= -sine;
     result.residual = std::abs(eta) / start;
     result.converged = result.residual <= tolerance;
-    if (gamma_next == 0) break;  // nothing new is left
+    if (gamma_next == 0) break;  // the Krylov space is exhausted
     std::swap(v_before, v);
     std::swap(v, v_next);
     std::swap(z, z_next);

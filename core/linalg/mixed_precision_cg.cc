@@ -5,12 +5,12 @@
 namespace fascicle {
 namespace {
 
-// What conjugate gradients in single precision gain at a time.
+// Reduction of the residual for which one solve in single precision aims.
 constexpr double kGain = 1e-4;
-// Refinements that gain less than that come to nothing.
+// A refinement that reduces the residual by less than this factor has failed.
 constexpr double kLeastGain = 0.5;
 
-// Sum over the nodes of the numbers of `term(n)`, four at a time.
+// Sum over the nodes of all components of `term(n)`, four at a time.
 template <class Term>
 double Sum(ThreadTeam& team, std::size_t nodes, const Term& term) {
   return team.Sum(nodes, [&](std::size_t begin, std::size_t end) {
@@ -44,10 +44,10 @@ MixedPrecisionCg::Result MixedPrecisionCg::Solve(const BlockPattern& pattern, co
   return result;
 }
 
-// Sets r = b over its norm, which it returns, z = D^-1 r, p = z and x = 0.
+// Sets r = b / norm, z = D^-1 r, p = z and x = 0, and returns the norm, that of D^-1.
 double MixedPrecisionCg::StartFrom(const NodalVector& b, ThreadTeam& team) {
   for (FloatField* field : {&x_, &r_, &z_, &p_, &q_}) field->resize(b.size());
-  // Squares of small forces are no numbers in single precision.
+  // The squares of small forces would underflow in single precision.
   const double largest = std::sqrt(Dot(team, b, b));
   if (!(largest > 0)) return largest;
   const double scale = 1 / largest;
@@ -66,7 +66,7 @@ double MixedPrecisionCg::StartFrom(const NodalVector& b, ThreadTeam& team) {
   return largest * norm;
 }
 
-// Until the norm of r has fallen from 1 to `goal`; false when it does not or A is not positive definite.
+// Iterates until the norm of r has fallen from 1 to `goal`. False when it does not, or when A is not positive definite.
 bool MixedPrecisionCg::Iterate(double goal, int max_iterations, ThreadTeam& team, Result& result) {
   const std::size_t size = x_.size();
   for (double rz = 1; rz > goal * goal;) {

@@ -6,18 +6,18 @@
 namespace fascicle {
 
 // Solves A x = b for a symmetric positive definite matrix by conjugate gradients in single precision, preconditioned by
-// the diagonal blocks D; what is left is found in double and solved for again (iterative refinement, [Higham 2002,
-// Accuracy and Stability of Numerical Algorithms, 12]). For matrices whose spectrum is narrow: the number of iterations
-// is about half the root of the condition of D^-1 A times the logarithm of what is wanted. The same bits for any number
-// of threads; one solution at a time.
+// the diagonal blocks D, with iterative refinement: the residual is computed in double precision and solved for again
+// [Higham 2002, Accuracy and Stability of Numerical Algorithms, 12]. Suits matrices with a narrow spectrum: the number
+// of iterations is about half the square root of the condition number of D^-1 A times the logarithm of the wanted
+// reduction. The same bits for any number of threads; not thread-safe.
 class MixedPrecisionCg {
  public:
   struct Result {
-    bool converged = false;   // the residual's norm, that of D^-1, fell to `tolerance` times that of b
-    bool is_positive = true;  // no direction was met along which A is not
+    bool converged = false;   // the residual, in the norm of D^-1, fell to `tolerance` times that of b
+    bool is_positive = true;  // no direction of non-positive curvature was met
     int iterations = 0;
   };
-  // From x = 0; components that A isolates (IsolatePrescribed) and where b is zero stay zero.
+  // Starts from x = 0. Components that are isolated in A (IsolatePrescribed) and zero in b stay zero.
   Result Solve(const BlockPattern& pattern, const BlockValues& values, const NodalVector& b, double tolerance,
                int max_iterations, ThreadTeam& team, NodalVector& x);
 

@@ -9,20 +9,21 @@ namespace {
 
 using Field = FloatField;
 
-// Levels up to that many blocks are factored.
+// A level with at most this many blocks is factored.
 constexpr std::size_t kCoarsest = 500;
 constexpr std::size_t kMostLevels = 10;
-constexpr int kSmoothing = 3;  // degree of the polynomials
-// Part of the spectrum that they damp: from the largest eigenvalue down to that part of it.
+constexpr int kSmoothing = 3;  // degree of the smoothing polynomials
+// The polynomials damp the part of the spectrum between this multiple of the largest eigenvalue and the eigenvalue
+// itself.
 constexpr float kDamped = 1.0f / 8;
-// Eigenvalues that are no further apart than that need no coarser levels.
+// Spectra with a ratio of the largest to the least eigenvalue below this need no coarser levels.
 constexpr double kMostSpread = 3000;
 constexpr int kPowerIterations = 12;
 constexpr float kEigenvalueMargin = 1.15f;
-// What is added to the coarsest diagonal for rotations that nothing resists.
+// Added to the coarsest diagonal, relative to it, for rotations that have no stiffness.
 constexpr double kRegularization = 1e-9;
 
-// Some vector without a pattern, the same every time.
+// A pseudorandom vector, the same every time.
 Field StartVector(std::size_t size) {
   Field start(size);
   std::uint32_t state = 1;
@@ -62,7 +63,7 @@ struct Multigrid::Level {
     largest_eigenvalue = static_cast<float>(length) * kEigenvalueMargin;
   }
 
-  // x += polynomial in D^-1 A, times D^-1 (b - A x); from_zero: x is zero whatever it holds.
+  // x += q(D^-1 A) D^-1 (b - A x) with a polynomial q; from_zero: x counts as zero, whatever it holds.
   void Smooth(bool from_zero, ThreadTeam& team) {
     const std::size_t size = pattern->rows();
     const float centre = 0.5f * (1 + damped) * largest_eigenvalue, half = 0.5f * (1 - damped) * largest_eigenvalue;
@@ -89,7 +90,7 @@ struct Multigrid::Level {
     }
   }
 
-  // Components that no free one of the finer level follows.
+  // Isolates components that no free component of the finer level depends on.
   void IsolateUnused(BlockValues& values) {
     for (std::size_t i = 0; i < pattern->rows(); ++i) {
       const auto n = static_cast<std::int32_t>(i);
@@ -101,14 +102,14 @@ struct Multigrid::Level {
     }
   }
 
-  const BlockPattern* pattern;  // of the caller or the finer level
+  const BlockPattern* pattern;  // owned by the caller or the finer level
   FreeComponents free;
   std::vector<RigidBlock> blocks;
   FloatMatrix matrix;
   float largest_eigenvalue = 1;
-  float damped = kDamped;  // part of the spectrum, from the largest eigenvalue down
+  float damped = kDamped;  // part of the spectrum that is damped, see kDamped
   Field x, b, r, d, d_next;
-  // To the next coarser level, where there is one.
+  // Interpolation from the next coarser level, where there is one.
   std::optional<Prolongation> prolongation;
   GalerkinProduct galerkin;
   std::vector<FloatBlock> interpolation;
@@ -158,7 +159,7 @@ bool Multigrid::HasCoarser(std::size_t l) const {
   return levels_[l]->prolongation || (levels_[l]->pattern->rows() > kCoarsest && l + 1 < kMostLevels);
 }
 
-// The level below the last one, whose values are given.
+// Adds a level below the last one, whose values are given.
 void Multigrid::AddLevel(const BlockValues& values) {
   Level& level = *levels_.back();
   std::vector<RigidBlock> coarse_blocks;
@@ -171,7 +172,7 @@ void Multigrid::AddLevel(const BlockValues& values) {
     level.prolongation = SmoothedAggregation(*level.pattern, values, level.free, level.blocks, inverse_diagonal,
                                              level.largest_eigenvalue, coarse_blocks);
   } else {
-    // A block of the coarser level is where the one block stands that follows it alone.
+    // A block of the coarser level has the position of the finer block that depends on it alone.
     coarse_blocks.resize(level.prolongation->coarse);
     const BlockPattern& rows = level.prolongation->pattern;
     for (std::size_t i = 0; i < rows.rows(); ++i) {

@@ -14,32 +14,33 @@ namespace fascicle {
 
 // A preconditioner for symmetric matrices of elasticity: one V-cycle of multigrid.
 //
-// Coarser levels are made by Galerkin products P^T A P, the first with an interpolation that the caller may know (from
-// the corners of quadratic elements to all of their nodes), all others by smoothed aggregation with the rigid body
-// modes (aggregation.h); the coarsest is factored. Smoothing is by Chebyshev polynomials of the matrix preconditioned
-// by its 3x3 diagonal blocks [Adams, Brezina, Hu & Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188]:
-// a fixed sequence of products, so the cycle is a symmetric linear operator, and the bits are the same for any number
-// of threads. Levels are kept in single precision but for the coarsest. One thread at a time.
+// Coarser levels are Galerkin products P^T A P. The caller may give the first interpolation (from the corners of
+// quadratic elements to all of their nodes); all others are found by smoothed aggregation with rigid body modes
+// (aggregation.h). The coarsest level is factored. The smoothers are Chebyshev polynomials of the matrix preconditioned
+// by its 3x3 diagonal blocks [Adams, Brezina, Hu & Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188].
+// They are fixed sequences of products, so the cycle is a symmetric linear operator with the same bits for any number
+// of threads. All levels but the coarsest are in single precision. Not thread-safe.
 class Multigrid {
  public:
-  // Nodes of the finest level are at `positions` [m]; the pattern must outlive the multigrid.
+  // `positions` [m] are those of the finest level's nodes. The pattern must outlive the multigrid.
   Multigrid(const BlockPattern& pattern, const NodalVector& positions, const FreeComponents& free,
             std::optional<Prolongation> first);
   ~Multigrid();
 
-  // Values of the finest level, prescribed components isolated. The aggregation is found at the first call after
-  // construction or ForgetAggregation and kept, all numbers are new. False when the coarsest level can't be factored.
-  // `least_eigenvalue`: a bound from below for the matrix preconditioned by its diagonal blocks, 0 where there is none;
-  // where it is near enough to the largest, smoothing alone does, and there are no coarser levels.
+  // Takes the values of the finest level, with prescribed components isolated. The aggregation is found at the first
+  // call after construction or ForgetAggregation and kept; all values are new. False when the coarsest level can't be
+  // factored.
+  // `least_eigenvalue`: a lower bound for the matrix preconditioned by its diagonal blocks, or 0 if there is none.
+  // Where it is close enough to the largest eigenvalue, smoothing alone suffices and there are no coarser levels.
   bool SetUp(const BlockValues& values, ThreadTeam& team, double least_eigenvalue = 0);
 
-  // The next SetUp starts anew: what follows does not depend on what was before.
+  // Makes the next SetUp independent of everything before it.
   void ForgetAggregation();
 
-  // z = M r; both of the finest level's size.
+  // z = M r; both have the finest level's size.
   void Apply(const NodalVector& r, ThreadTeam& team, NodalVector& z);
 
-  // Sizes of all levels, for people: "17300 + 2673 blocks".
+  // Sizes of all levels, for messages: "17300 + 2673 blocks".
   std::string Description() const;
 
  private:

@@ -7,13 +7,13 @@
 namespace fascicle {
 namespace {
 
-// The columns and values of a row, ascending.
+// The columns (ascending) and values of a row.
 struct SparseRow {
   std::vector<int> column;
   std::vector<double> value;
 };
 
-// Adds entries up to a row, without what cancels. Holds a dense row, which is zero between two rows.
+// Sums up entries of a row and drops those that cancel. Holds a dense row, which is zero between two rows.
 class RowSum {
  public:
   explicit RowSum(Eigen::Index columns)
@@ -46,7 +46,7 @@ class RowSum {
   std::vector<int> columns_;
 };
 
-// A matrix by rows in parallel: add(i, sum) adds the entries of row i.
+// A matrix built by rows in parallel: add(i, sum) adds the entries of row i.
 template <class Add>
 RowMatrix ByRows(Eigen::Index count, Eigen::Index columns, ThreadTeam* team, const Add& add) {
   std::vector<SparseRow> rows(static_cast<std::size_t>(count));
@@ -57,7 +57,7 @@ RowMatrix ByRows(Eigen::Index count, Eigen::Index columns, ThreadTeam* team, con
       rows[i] = sum.Take();
     }
   };
-  // As few ranges as threads: each has a dense row of its own.
+  // One range per thread, because each range has a dense row of its own.
   const std::size_t threads = team != nullptr ? static_cast<std::size_t>(team->size()) : 1;
   InRanges(team, rows.size(), (rows.size() + threads - 1) / threads, make);
   RowMatrix matrix(count, columns);
@@ -75,7 +75,7 @@ RowMatrix ByRows(Eigen::Index count, Eigen::Index columns, ThreadTeam* team, con
 
 MultiplierPreconditioner::MultiplierPreconditioner(const QuadraticProgram& problem, const RowMatrix& G,
                                                    Eigen::Index volumes, const Eigen::VectorXd& inverse_mass,
-                                                   const Eigen::VectorXd& schur, const Eigen::VectorXd& hair,
+                                                   const Eigen::VectorXd& schur, const Eigen::VectorXd& regularization,
                                                    ThreadTeam* team)
     : volumes_(volumes),
       others_(G.rows() - volumes),
@@ -85,7 +85,7 @@ MultiplierPreconditioner::MultiplierPreconditioner(const QuadraticProgram& probl
   if (problem.E.size() > 0) of_volumes_ += problem.E.diagonal();
   of_volumes_ = of_volumes_.cwiseInverse().eval();
   if (!groups_.empty()) ok_ = FactorGroups(problem, G, inverse_mass);
-  if (others_ > 0) ok_ &= FactorOthers(G, inverse_mass, hair);
+  if (others_ > 0) ok_ &= FactorOthers(G, inverse_mass, regularization);
 }
 
 bool MultiplierPreconditioner::FactorGroups(const QuadraticProgram& problem, const RowMatrix& G,
@@ -113,18 +113,18 @@ bool MultiplierPreconditioner::FactorGroups(const QuadraticProgram& problem, con
     }
   });
   Eigen::SparseMatrix<double> matrix = product;
-  // A body that nothing holds may have a pressure of its own that changes nothing.
-  const double hair = 1e-9 * matrix.diagonal().maxCoeff();
-  for (Eigen::Index g = 0; g < group_count(); ++g) matrix.coeffRef(g, g) += hair;
+  // The pressure of a body without supports may have a null space.
+  const double regularization = 1e-9 * matrix.diagonal().maxCoeff();
+  for (Eigen::Index g = 0; g < group_count(); ++g) matrix.coeffRef(g, g) += regularization;
   coarse_.compute(matrix);
   return coarse_.info() == Eigen::Success;
 }
 
 bool MultiplierPreconditioner::FactorOthers(const RowMatrix& G, const Eigen::VectorXd& inverse_mass,
-                                            const Eigen::VectorXd& hair) {
+                                            const Eigen::VectorXd& regularization) {
   const RowMatrix rows = G.bottomRows(others_);
   Eigen::SparseMatrix<double> matrix = rows * inverse_mass.asDiagonal() * Eigen::SparseMatrix<double>(rows.transpose());
-  for (Eigen::Index k = 0; k < others_; ++k) matrix.coeffRef(k, k) += hair[volumes_ + k];
+  for (Eigen::Index k = 0; k < others_; ++k) matrix.coeffRef(k, k) += regularization[volumes_ + k];
   LowerTriangle lower;
   lower.Add(matrix, 0, 1);
   return lower.Factor(others_, S_);

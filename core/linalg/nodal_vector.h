@@ -11,7 +11,7 @@ namespace fascicle {
 // Three components for each node: positions, velocities, forces.
 using NodalVector = std::vector<Vec3>;
 
-// Nodes that a thread takes at least at a time.
+// Least number of nodes that a thread takes at a time.
 inline constexpr std::size_t kNodeGrain = 2048;
 
 // Calls body(n) for every node.

@@ -15,7 +15,7 @@ RowMatrix Transposed(const RowMatrix& A, ThreadTeam* team) {
       for (std::size_t part = begin; part < end; ++part) body(part);
     });
   };
-  // Of each part, of each column: its entries, then the place of the next one.
+  // For each part and each column: first the number of entries, then the position of the next one.
   std::vector<std::vector<int>> places(parts);
   for_parts([&](std::size_t part) {
     places[part].assign(static_cast<std::size_t>(A.cols()), 0);

@@ -11,15 +11,15 @@
 namespace fascicle {
 
 using RowMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-inline constexpr std::size_t kRowGrain = 512;  // rows that a thread takes at once
+inline constexpr std::size_t kRowGrain = 512;  // rows that a thread takes at a time
 
-// Calls body(begin, end) on ranges of [0, count), in parallel where there is a team; on all of it at once where not.
+// Calls body(begin, end) on ranges of [0, count): in parallel if there is a team, otherwise once for the whole range.
 template <class Body>
 void InRanges(ThreadTeam* team, std::size_t count, std::size_t grain, const Body& body) {
   team != nullptr ? team->For(count, grain, body) : body(0, count);
 }
 
-// y_i = value(i, (A x)_i), rows in parallel where there is a team; the same bits without.
+// y_i = value(i, (A x)_i), with the rows shared by the team, if there is one. Results have the same bits without it.
 template <class Value>
 void ProductWith(const RowMatrix& A, const Eigen::Ref<const Eigen::VectorXd>& x, ThreadTeam* team, const Value& value,
                  Eigen::VectorXd& y) {
@@ -41,7 +41,7 @@ inline void Product(const RowMatrix& A, const Eigen::Ref<const Eigen::VectorXd>&
       A, x, team, [](Eigen::Index, double sum) { return sum; }, y);
 }
 
-// The largest sum over a row of |A_ij x_j|: what the terms of a constraint amount to.
+// max_i sum_j |A_ij x_j|: the magnitude of the terms of a set of constraints.
 inline double LargestTerms(const RowMatrix& A, const Eigen::VectorXd& x, ThreadTeam* team) {
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(A.rows());
   const auto rows = [&](std::size_t begin, std::size_t end) {
@@ -53,7 +53,7 @@ inline double LargestTerms(const RowMatrix& A, const Eigen::VectorXd& x, ThreadT
   return sums.size() == 0 ? 0 : sums.maxCoeff();
 }
 
-// A^T, each row's entries in the order of A's rows; shared among the threads of a team, if there is one.
+// A^T. The entries of each row keep the order of A's rows. Shared by the team, if there is one.
 RowMatrix Transposed(const RowMatrix& A, ThreadTeam* team);
 
 }  // namespace fascicle

@@ -10,17 +10,17 @@
 
 namespace fascicle {
 
-// What a law may depend on beside the deformation gradient.
+// Arguments of a law besides the deformation gradient.
 struct FibreState {
   Vec3 direction = Vec3::Zero();  // unit rest direction a0; ignored by isotropic laws
   double activation = 0;          // alpha in [0, 1]; ignored by passive laws
-  // For laws that depend on how fast the fibre shortens: its isochoric stretch a step ago [1], and one over the length
-  // of that step [1/s], zero for a fibre that is held.
+  // For laws that depend on the fibre's rate: the isochoric stretch one step ago [1] and the inverse of that step's
+  // length [1/s], zero for an isometric fibre.
   double previous_stretch = 1;
   double inverse_step = 0;
 };
 
-// The same for numbers or Lanes of them.
+// The same for numbers or Lanes.
 template <class T>
 struct Fibre {
   Vector3<T> direction;
@@ -39,14 +39,14 @@ inline Fibre<double> ToNumbers(const FibreState& f) {
   return {{{f.direction[0], f.direction[1], f.direction[2]}}, f.activation, f.previous_stretch, f.inverse_step};
 }
 
-// What every law offers for one F, made of what it is: a class whose members
+// The public functions of a law for one F. They follow from the law's formulas, which are members of the class
 //
 //   template <class T> T EnergyAt(const Matrix3<T>& F, const Fibre<T>& fibre) const;
 //   template <class T> Matrix3<T> StressAt(const Matrix3<T>& F, const Fibre<T>& fibre) const;
 //   template <class T, class Terms> void AddTangentAt(const Matrix3<T>& F, const Fibre<T>& fibre, Terms& terms) const;
 //
-// are its formulas, once for numbers and for many elements side by side (see numbers.h and tangent_terms.h). Defined
-// for the laws of the list in material.cc.
+// and are written once for single numbers and for many elements side by side (see numbers.h and tangent_terms.h).
+// Defined for the laws of the list in material.cc.
 template <class Law>
 class LawFunctions {
  public:
@@ -59,27 +59,27 @@ class LawFunctions {
 struct ParameterInfo {
   const char* name;      // field name in scene.proto
   const char* unit;      // "Pa", "1"
-  double min;            // range
-  bool min_open;         // min itself is not allowed
-  double max;            // range
-  bool max_open;         // max itself is not allowed
-  double default_value;  // NaN: must be given
+  double min;            // smallest value
+  bool min_open;         // whether min itself is excluded
+  double max;            // largest value
+  bool max_open;         // whether max itself is excluded
+  double default_value;  // NaN: required
   const char* meaning;
 };
 inline constexpr double kRequired = std::numeric_limits<double>::quiet_NaN();
 
-// A constitutive law: pure functions of F. Values in SI; W per rest volume.
+// A constitutive law: pure functions of F. Values in SI units; W per rest volume.
 //   kName        name in scene.proto (`neo_hookean`)
-//   kTitle       for people
+//   kTitle       name for messages and tables
 //   kSource      paper and equation
 //   kParameters  std::array<ParameterInfo, n>
-//   kNeedsFibres the law is meaningless without fibre directions
+//   kNeedsFibres whether the law requires fibre directions
 //   VolumeModulus, WithVolumeModulus
-//                the coefficient k of the term k/2 (ln J)^2 that W holds, and the same law with another one, which need
-//                not be positive: a method can take part of that term elsewhere. Laws without the term say 0 and return
-//                themselves.
-// constructed from its parameters' values in the order of kParameters.
-// Where J <= 0 a law that has no meaning there returns non-finite values; it never traps.
+//                the coefficient k of the term k/2 (ln J)^2 of W, and the same law with another k (of any sign), so
+//                that
+//                a method can evaluate part of that term elsewhere. Laws without the term return 0 and themselves.
+// Constructed from the values of its parameters in the order of kParameters.
+// Where J <= 0, a law that is undefined there returns non-finite values; it never traps.
 template <class M>
 concept ConstitutiveModel = requires(const M m, const Mat3& F, const FibreState& fibre,
                                      std::span<const double> values) {

@@ -9,8 +9,8 @@
 
 namespace fascicle {
 
-// W = mu |F - R|^2 + lambda/2 tr(R^T F - I)^2 with R the rotation nearest to F. Finite for every finite F; where two of
-// the singular values (the least taken with the sign of J) sum to zero R is not unique and the tangent is not finite.
+// W = mu |F - R|^2 + lambda/2 tr(R^T F - I)^2 with R the rotation nearest to F. Finite for every finite F. Where two
+// singular values (the least one with the sign of J) add to zero, R is not unique and the tangent is not finite.
 class CorotatedLinear : public LawFunctions<CorotatedLinear> {
  public:
   static constexpr const char* kName = "corotated_linear";

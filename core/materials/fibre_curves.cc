@@ -27,7 +27,8 @@ double ExponentialToeCurve::IntegralOverLengthOf(double x) const {
 }
 
 double ExponentialToeCurve::ToeIntegralOverLength(double x) const {
-  // Over one piece the exponential grows by e^8 at most and 1/s falls by 2/3 at most: round-off for 16 points.
+  // On each piece the exponential grows by at most e^8 and 1/s falls by at most 2/3, so 16 points are exact to
+  // round-off.
   const double strain = x - 1;
   const int pieces = std::max(1, static_cast<int>(std::ceil(std::max(exponent_ * strain / 8, strain / 0.5))));
   const double width = strain / pieces;

@@ -5,12 +5,12 @@
 
 namespace fascicle {
 
-// Curves of the fibre's stress; each gives value, derivative and integral in closed form, except where said. All are
-// pure and thread-safe.
+// Curves of the fibre stress. Each has a value, derivative and integral, in closed form except where noted. Pure
+// functions, thread-safe.
 // [Zajac 1989, Muscle and tendon, Crit. Rev. Biomed. Eng. 17] [Blemker, Pinsky, Delp 2005, J. Biomech. 38]
 
-// Active stress over peak stress as a function of the normalized length r [1]: a hump of height 1 at r = 1 that
-// vanishes outside (0.4, 1.6). Continuous; the slope jumps at 0.6 (3.6 to 3.2) and 1.4, as published.
+// Active stress over peak stress as a function of the normalized length r [1]: height 1 at r = 1, zero outside (0.4,
+// 1.6). Continuous; the slope jumps at 0.6 (3.6 to 3.2) and at 1.4, as published.
 struct ActiveCurve {
   template <class T>
   static T Value(const T& r) {
@@ -24,10 +24,10 @@ struct ActiveCurve {
     const T below = Select(r < 0.6, 18 * (r - 0.4), inner);
     return Select(r <= 0.4, 0, Select(r >= 1.6, 0, below));
   }
-  // Integral from 0 to r.
+  // Integral of the curve from 0 to r.
   template <class T>
   static T Integral(const T& r) {
-    // Integral over one of the outer parabolas, and from 0 to the middle.
+    // Integral of one of the outer parabolas, and of the curve from 0 to 1.
     constexpr double kOuter = 3 * 0.2 * 0.2 * 0.2;
     constexpr double kHalf = kOuter + 0.4 - 4 * 0.4 * 0.4 * 0.4 / 3;
     const T inner = Select(r <= 1.4, kHalf + (r - 1) - 4.0 / 3.0 * Cube<T>(r - 1), 2 * kHalf + 3 * Cube<T>(r - 1.6));
@@ -42,13 +42,13 @@ struct ActiveCurve {
   }
 };
 
-// scale (exp(exponent (x - 1)) - 1) for 1 < x < transition, zero before, and beyond it the straight line that goes on
-// without a jump in value or slope. Continuous; the slope jumps at x = 1 from 0 to scale * exponent, as published.
+// scale (exp(exponent (x - 1)) - 1) for 1 < x < transition, zero below. Above, a straight line that continues value and
+// slope. Continuous; the slope jumps at x = 1 from 0 to scale * exponent, as published.
 class ExponentialToeCurve {
  public:
   // scale >= 0; exponent > 0; transition > 1.
   ExponentialToeCurve(double scale, double exponent, double transition);
-  // With a line of another slope: then the curve's own slope jumps at the transition.
+  // With a given slope of the line; the curve's slope then jumps at the transition.
   ExponentialToeCurve(double scale, double exponent, double transition, double slope);
 
   template <class T>
@@ -61,7 +61,7 @@ class ExponentialToeCurve {
     const T toe = scale_ * exponent_ * Exp(exponent_ * (x - 1));
     return Select(x <= 1, 0, Select(x < transition_, toe, slope_));
   }
-  // Integral from 1 to x.
+  // Integral of the curve from 1 to x.
   template <class T>
   T Integral(const T& x) const {
     const T u = exponent_ * (x - 1);
@@ -70,9 +70,9 @@ class ExponentialToeCurve {
     const T line = integral_ + beyond * (value_ + 0.5 * slope_ * beyond);
     return Select(x <= 1, 0, Select(x < transition_, toe, line));
   }
-  // Integral of Value(s)/s from 1 to x. In the toe this is an exponential integral, exp(-b) (Ei(b x) - Ei(b)) - ln x,
-  // which overflows for a large exponent b and cancels for x near 1. Gauss quadrature of the positive integrand has
-  // neither fault and is exact to round-off.
+  // Integral of Value(s)/s from 1 to x. In the toe this is the exponential integral exp(-b) (Ei(b x) - Ei(b)) - ln x,
+  // which overflows for a large exponent b and suffers cancellation near x = 1. Gauss quadrature of the positive
+  // integrand has neither problem and is exact to round-off.
   template <class T>
   T IntegralOverLength(const T& x) const {
     return Map([&](double s) { return IntegralOverLengthOf(s); }, x);

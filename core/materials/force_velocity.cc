@@ -11,10 +11,10 @@ namespace fascicle {
 namespace {
 
 // Integral of f over u in [begin, end], 0 <= begin, where f is a polynomial of low degree over u + pole. In t = ln(1 +
-// u/pole) it is a sum of exponentials, however near the pole is to the interval or however far the interval reaches.
+// u/pole) the integrand is a sum of exponentials, however close the pole or long the interval.
 template <class Function>
 double IntegralBesidePole(double begin, double end, double pole, const Function& f) {
-  constexpr double kPiece = 3;  // of t: a cubic grows by e^9 at most, round-off for 16 points
+  constexpr double kPiece = 3;  // length of a piece in t: a cubic grows by at most e^9, exact to round-off
   const double first = std::log1p(begin / pole);
   const double length = std::log1p(end / pole) - first;
   const int pieces = std::max(1, static_cast<int>(std::ceil(length / kPiece)));
@@ -33,9 +33,9 @@ double IntegralBesidePole(double begin, double end, double pole, const Function&
 double ForceVelocityCurve::ActiveWork(double from, double to, double velocity_per_length) const {
   if (!std::isfinite(from) || !std::isfinite(to)) return from - to;
   const double direction = to < from ? -1 : 1;
-  const double pole = (direction < 0 ? curvature_ : pole_) / velocity_per_length;  // in lengths from `from`
+  const double pole = (direction < 0 ? curvature_ : pole_) / velocity_per_length;  // as a length from `from`
   double reach = std::abs(to - from);
-  if (direction < 0) reach = std::min(reach, 1 / velocity_per_length);  // faster than that it does not pull
+  if (direction < 0) reach = std::min(reach, 1 / velocity_per_length);  // the active stress is zero at higher speeds
   const auto pull = [&](double distance) {
     const double moved = direction * distance;
     return ActiveCurve::Value(from + moved) * Value(velocity_per_length * moved);

@@ -5,7 +5,7 @@
 
 namespace fascicle {
 
-// Integral of f over [a, b] by the Gauss-Legendre rule of 16 points.
+// Integral of f over [a, b] by the Gauss-Legendre rule with 16 points.
 template <class Function>
 double GaussIntegral(double a, double b, const Function& f) {
   struct Point {

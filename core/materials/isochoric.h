@@ -5,7 +5,7 @@
 #include "core/materials/constitutive_model.h"
 #include "core/materials/tangent_terms.h"
 
-// The nearly incompressible energy that Mooney-Rivlin, muscle and tendon share:
+// The nearly incompressible energy shared by Mooney-Rivlin, muscle and tendon:
 //
 //   W = c1 (I1bar - 3) + c2 (I2bar - 3) + K/2 (ln J)^2 + F2(lambda),  lambda^2 = I4bar = J^(-2/3) |F a0|^2
 //
@@ -13,8 +13,8 @@
 // 2 (c1 + c2) and K. [Weiss 1996, Finite element implementation of incompressible, transversely isotropic
 // hyperelasticity, Comput. Methods Appl. Mech. Eng. 135; Teran 2003, 5]
 //
-// The terms in I1bar and I4bar are linear in C: but for the curvature of F2, their derivatives are those of
-// J^(-2/3) (C : N) with N = c1 I + W4 a0 a0^T and W4 = dF2/d(lambda^2). So the three laws share all but N.
+// The terms in I1bar and I4bar are linear in C. Apart from the curvature of F2, their derivatives are those of J^(-2/3)
+// (C : N) with N = c1 I + W4 a0 a0^T and W4 = dF2/d(lambda^2). So the three laws share everything but N.
 namespace fascicle {
 
 // Coefficients of the matrix that surrounds the fibres.
@@ -24,7 +24,7 @@ struct MatrixModuli {
   double bulk;  // K [Pa]
 };
 
-// What the terms need of one F. Where J <= 0 `log_J` and all that follows from it are not finite.
+// Invariants of one F. Where J <= 0, `log_J` and everything derived from it are not finite.
 template <class T>
 struct IsochoricKinematics {
   explicit IsochoricKinematics(const Matrix3<T>& F) : C(Transpose(F) * F), I1(Trace(C)), cofactor(Cofactor(F)) {
@@ -50,7 +50,7 @@ struct IsochoricKinematics {
   T scale;              // J^(-2/3)
 };
 
-// The energy without the fibres' [J/m^3].
+// The energy without the fibre term [J/m^3].
 template <class T>
 T MatrixEnergy(const MatrixModuli& m, const IsochoricKinematics<T>& k) {
   return m.c1 * (k.scale * k.I1 - 3) + m.c2 * (k.scale * k.scale * k.I2 - 3) + 0.5 * m.bulk * k.log_J * k.log_J;
@@ -68,13 +68,13 @@ Matrix3<T> NearlyIncompressibleStress(const MatrixModuli& m, const Matrix3<T>& F
   const T pressure = m.bulk * k.log_J - (1.0 / 3.0) * (s1 * contraction + 2 * s2 * k.I2);
   return F * S + (pressure * k.inverse_J) * k.cofactor;
 }
-// Without fibres.
+// The stress without the fibre term.
 template <class T>
 Matrix3<T> NearlyIncompressibleStress(const MatrixModuli& m, const Matrix3<T>& F, const IsochoricKinematics<T>& k) {
   return NearlyIncompressibleStress(m, F, k, T(0.0), {T(0.0), T(0.0), T(0.0)});
 }
 
-// Adds d/dF of the stress above for any N, held fixed; symmetric.
+// Adds the derivative by F of the stress above, with N held constant; symmetric.
 template <class T, class Terms>
 void AddNearlyIncompressibleTangent(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const Matrix3<T>& N,
                                     double c2, double bulk, Terms& terms) {
@@ -104,7 +104,7 @@ Matrix3<T> FibreStretchSquaredGradient(const Matrix3<T>& F, const IsochoricKinem
   return (2 * k.scale) * (Outer(a, a0) - (1.0 / 3.0 * Dot(a, a)) * k.InverseTranspose());
 }
 
-// Derivatives of the fibre energy F2 by lambda^2.
+// Derivatives of the fibre energy F2 with respect to lambda^2.
 template <class T>
 struct FibreDerivatives {
   // `slope` = F2'(lambda) and `curvature` = F2''(lambda) at `stretch` = lambda.
@@ -121,7 +121,7 @@ Matrix3<T> FibreWeight(double c1, const T& W4, const Vector3<T>& a0) {
   return PlusDiagonal(ScaledSquare(W4, a0), c1);
 }
 
-// Adds the tangent with fibres: N held fixed, and the curvature of F2.
+// Adds the tangent with fibres: the derivative with N held constant, and the curvature of F2.
 template <class T, class Terms>
 void AddFibreTangent(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const MatrixModuli& m, const Vector3<T>& a0,
                      const FibreDerivatives<T>& d, Terms& terms) {

@@ -8,7 +8,7 @@
 
 namespace fascicle {
 
-// The two small-strain moduli of the laws that are given by Young's modulus and Poisson's ratio.
+// The two small-strain moduli of laws that are parametrized by Young's modulus and Poisson's ratio.
 struct IsotropicModuli {
   static constexpr std::array<ParameterInfo, 2> kParameters = {{
       {"young_modulus", "Pa", 0, true, 1e12, false, kRequired, "Young's modulus at small strain"},

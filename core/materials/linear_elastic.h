@@ -8,8 +8,8 @@
 
 namespace fascicle {
 
-// W = mu e:e + lambda/2 (tr e)^2 with the small strain e = (F + F^T)/2 - I. A rotation strains it: for checks and small
-// deflections only.
+// W = mu e:e + lambda/2 (tr e)^2 with the small strain e = (F + F^T)/2 - I. Not objective, since rotations cause
+// strain: for verification and small deflections only.
 class LinearElastic : public LawFunctions<LinearElastic> {
  public:
   static constexpr const char* kName = "linear_elastic";

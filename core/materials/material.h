@@ -18,12 +18,12 @@
 
 namespace fascicle {
 
-// The closed list of laws. A new law is a header, an entry here and a message in scene.proto of the same name; range
-// checks, the test battery, `fascicle materials` and the tables in the documentation follow from it.
+// The closed list of laws. A new law is a header, an entry here, an instantiation in material.cc and a message of the
+// same name in scene.proto. Range checks, the test battery and `fascicle materials` follow from this list.
 using Material = std::variant<LinearElastic, StVenantKirchhoff, CorotatedLinear, NeoHookean, MooneyRivlin, Muscle,
                               Tendon, TransIsoMooneyRivlin>;
 
-// What the list says of a law, without its type.
+// The static members of a law, independent of its type.
 struct LawInfo {
   const char* name;
   const char* title;
@@ -34,12 +34,12 @@ struct LawInfo {
 };
 
 bool InRange(const ParameterInfo& parameter, double value);
-// As in scene.proto: "(0, 1e+12]".
+// The range in the notation of scene.proto: "(0, 1e+12]".
 std::string RangeText(const ParameterInfo& parameter);
 
 // All laws in the order of the list.
 std::span<const LawInfo> Laws();
-// nullptr when there is no such law.
+// Null when there is no such law.
 const LawInfo* FindLaw(std::string_view name);
 
 }  // namespace fascicle

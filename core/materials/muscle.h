@@ -16,12 +16,12 @@ namespace fascicle {
 //   W = c1 (I1bar - 3) + c2 (I2bar - 3) + K/2 (ln J)^2 + F2(lambda, alpha)
 //   lambda F2' = smax r [alpha f_act(r) f_v(v) + f_pass(r)],  r = lambda / lo,  v = (r - r_before) / (step vmax)
 //
-// lambda is the isochoric fibre stretch, lo the optimal stretch, smax the peak stress, vmax the largest speed of
-// shortening; f_act, f_pass and f_v are ActiveCurve, ExponentialToeCurve and ForceVelocityCurve. Over a step the rate
-// is implicit in F, so the stress still has a potential, the step's own; f_v = 1 where vmax or the step is not given.
-// F2(1, alpha) = 0 for a fibre without rate, so that W = 0 at rest for every activation. Departs from the letter of
-// [Teran 2003, 5]: U = K/2 (ln J)^2, and W4 = dW/d(lambda^2) where the paper's W_lambda reads as dF2/dlambda; see
-// README.md. Not finite where J <= 0.
+// lambda is the isochoric fibre stretch, lo the optimal stretch, smax the peak stress, vmax the maximum shortening
+// velocity; f_act, f_pass and f_v are ActiveCurve, ExponentialToeCurve and ForceVelocityCurve. The rate over a step is
+// implicit in F, so the stress still has a potential, that of the step; f_v = 1 where vmax or the step is zero. F2(1,
+// alpha) = 0 for an isometric fibre, so that W = 0 at rest for every activation. Departs from [Teran 2003, 5] in two
+// points: U = K/2 (ln J)^2, and W4 = dW/d(lambda^2), where the paper's W_lambda reads as dF2/dlambda; see README.md.
+// Not finite where J <= 0.
 class Muscle : public LawFunctions<Muscle> {
  public:
   static constexpr const char* kName = "muscle";
@@ -42,7 +42,7 @@ class Muscle : public LawFunctions<Muscle> {
   }};
   static constexpr bool kNeedsFibres = true;
 
-  // Values that are left off at the end take their defaults.
+  // Trailing values may be omitted and take their defaults.
   explicit Muscle(std::span<const double> values)
       : moduli_{values[0], values[1], values[2]},
         peak_stress_(values[3]),
@@ -87,7 +87,7 @@ class Muscle : public LawFunctions<Muscle> {
     return law;
   }
 
-  // Cauchy stress that a held fibre adds along itself at isochoric stretch lambda: lambda F2'(lambda, alpha) [Pa].
+  // Cauchy stress along an isometric fibre at isochoric stretch lambda: lambda F2'(lambda, alpha) [Pa].
   double FibreStress(double stretch, double activation) const {
     return stretch * Slope(stretch, Fibre<double>{{}, activation, 1, 0});
   }
@@ -97,10 +97,10 @@ class Muscle : public LawFunctions<Muscle> {
     return index < values.size() ? values[index] : kParameters[index].default_value;
   }
 
-  // Normalized velocity for a unit of normalized length gained over the step; 0 where no rate counts.
+  // Normalized velocity per unit of normalized length gained over the step; 0 where the rate is ignored.
   double VelocityPerLength(double inverse_step) const { return max_velocity_ > 0 ? inverse_step / max_velocity_ : 0; }
-  // Integral of f_act f_v up to r; f_v counts over the step only, so that the integral is that of a held fibre before
-  // it.
+  // Integral of f_act f_v up to r. f_v acts during the step only; before the step the integral is that of an isometric
+  // fibre.
   template <class T>
   T ActiveWork(const T& r, const Fibre<T>& fibre) const {
     const double rate = VelocityPerLength(fibre.inverse_step);
@@ -109,7 +109,7 @@ class Muscle : public LawFunctions<Muscle> {
     const auto work = [&](double from, double to) { return force_velocity_.ActiveWork(from, to, rate); };
     return ActiveCurve::Integral(before) + Map(work, before, r);
   }
-  // f_act f_v.
+  // The product f_act f_v.
   template <class T>
   T ActivePull(const T& r, const Fibre<T>& fibre) const {
     const double rate = VelocityPerLength(fibre.inverse_step);
@@ -117,7 +117,7 @@ class Muscle : public LawFunctions<Muscle> {
     const T v = rate * (r - fibre.previous_stretch * length_per_stretch_);
     return ActiveCurve::Value(r) * force_velocity_.Value(v);
   }
-  // Its derivative by r, to which the rate adds, as it is never negative.
+  // Its derivative by r. The rate contributes a non-negative term.
   template <class T>
   T ActiveStiffness(const T& r, const Fibre<T>& fibre) const {
     const double rate = VelocityPerLength(fibre.inverse_step);

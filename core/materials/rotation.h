@@ -7,12 +7,13 @@
 
 namespace fascicle {
 
-// The rotation nearest to F, det R = +1, by singular values; also for det F <= 0. NaN where F is not finite.
+// The rotation nearest to F, det R = +1, by singular value decomposition; also for det F <= 0. NaN where F is not
+// finite.
 Mat3 NearestRotationBySvd(const Mat3& F);
-// The same on nine numbers, column by column.
+// The same for nine numbers in column-major order.
 void NearestRotationBySvd(const double* F, double* R);
 
-// For one number and for many: sets R to the rotation by singular values where `todo` says so.
+// For one number and for Lanes: sets R to the rotation by singular value decomposition where `todo` is true.
 inline void TakeRotationBySvd(bool todo, const Matrix3<double>& F, Matrix3<double>& R) {
   if (todo) NearestRotationBySvd(F.m, R.m);
 }
@@ -32,13 +33,13 @@ bool AnyOf(const Mask& mask) {
   return mask.Any();
 }
 
-// The rotation nearest to F (its polar factor where det F > 0): R maximizes tr(R^T F) over the rotations.
-// Newton's iteration with Frobenius scaling for what is safely invertible, singular values for the rest.
+// The rotation nearest to F (the polar factor where det F > 0): R maximizes tr(R^T F) over all rotations. Newton's
+// iteration with Frobenius scaling where F is well-conditioned, singular value decomposition elsewhere.
 // [Higham 1986, Computing the polar decomposition - with applications, SIAM J. Sci. Stat. Comput. 7]
 template <class T>
 Matrix3<T> NearestRotation(const Matrix3<T>& F) {
   constexpr double kSafelyInvertible = 1e-6;  // least J relative to |F|^3
-  constexpr double kConverged = 1e-18;        // squared change; convergence is quadratic, so the next one is nil
+  constexpr double kConverged = 1e-18;        // squared change; the next one is below round-off (quadratic convergence)
   constexpr int kMaxIterations = 20;          // six are usual
   Matrix3<T> R = F;
   const T size = SquaredNorm(F);

@@ -7,13 +7,13 @@
 
 namespace fascicle {
 
-// As NearestPositive below, by eigenvalues, whatever the matrix.
+// Like NearestPositive below, by eigenvalues for every matrix.
 Mat9 NearestPositiveByEigenvalues(const Mat9& tangent, double floor);
 
-// The matrix nearest to a symmetric one, in the Frobenius norm, without an eigenvalue below `floor` >= 0: lower ones
-// are raised to it. A tangent projected so gives Newton's method a direction of descent. One that is there already, as
-// a Cholesky factorization tells, is returned as it is; so is one that is not finite. [Higham 1988, Computing a nearest
-// symmetric positive semidefinite matrix, Linear Algebra Appl. 103]
+// The matrix nearest to a symmetric one, in the Frobenius norm, that has no eigenvalue below `floor` >= 0: lower
+// eigenvalues are raised to it. With a tangent projected like this, Newton's method has a direction of descent. A
+// matrix that already qualifies, by a Cholesky factorization, is returned unchanged; so is one that is not finite.
+// [Higham 1988, Computing a nearest symmetric positive semidefinite matrix, Linear Algebra Appl. 103]
 inline Mat9 NearestPositive(const Mat9& tangent, double floor = 0) {
   Mat9 raised = tangent;
   raised.diagonal().array() -= floor;

@@ -9,7 +9,7 @@
 namespace fascicle {
 
 // W = mu G:G + lambda/2 (tr G)^2 with the Green strain G = (F^T F - I)/2. Softens and collapses under strong
-// compression: its stress vanishes again as J goes to zero.
+// compression: the stress vanishes as J goes to zero.
 class StVenantKirchhoff : public LawFunctions<StVenantKirchhoff> {
  public:
   static constexpr const char* kName = "st_venant_kirchhoff";

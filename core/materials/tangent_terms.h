@@ -3,8 +3,9 @@
 
 #include "core/base/matrix3.h"
 
-// The tangent H = dP/dF of every law is a sum of terms of a few kinds, and a law says which. Two classes take them in:
-// one sums up the matrix, the other its product with one dF. Matrices are vectors of nine, column by column.
+// The tangent H = dP/dF of every law is a sum of terms of a few kinds; the law lists them. Of the two classes here that
+// receive the terms, one sums up the matrix, the other its product with one dF. Matrices are vectors of nine in
+// column-major order.
 //
 //   Diagonal(s)        s I
 //   Square(s, a)       s a a^T
@@ -22,7 +23,7 @@ class TangentMatrix {
     for (T& entry : h_) entry = T(0.0);
   }
   static constexpr int kEntries = 45;
-  // Place of (row, column), row <= column.
+  // Index of entry (row, column), row <= column.
   static constexpr int At(int row, int column) { return 9 * row - row * (row - 1) / 2 + column - row; }
   const T& operator[](int place) const { return h_[place]; }
   void Set(int place, const T& value) { h_[place] = value; }
@@ -103,7 +104,7 @@ class TangentProduct {
   void Left(const Matrix3<T>& M) { dP_ = dP_ + M * dF_; }
   void Transposed(const T& s, const Matrix3<T>& A) { dP_ = dP_ + s * (A * (Transpose(dF_) * A)); }
   void CofactorTerm(const T& s, const Matrix3<T>& F) {
-    // cof is quadratic: its change is cof(F + dF) - cof F - cof dF.
+    // cof is quadratic: the change of the cofactor is cof(F + dF) - cof F - cof dF.
     Matrix3<T> change;
     for (int j = 0; j < 3; ++j) {
       const int k = (j + 1) % 3, l = (j + 2) % 3;

@@ -9,7 +9,7 @@
 
 namespace fascicle {
 
-// Tendon and aponeurosis: the matrix of `Muscle` with a passive fibre of its own.
+// Tendon and aponeurosis: the matrix of `Muscle` with a passive fibre curve of its own.
 //
 //   W = c1 (I1bar - 3) + c2 (I2bar - 3) + K/2 (ln J)^2 + F2(lambda)
 //   lambda F2' = L1 (exp(L2 (lambda - 1)) - 1) for 1 < lambda < transition, then a straight line; 0 for lambda <= 1
@@ -65,7 +65,7 @@ class Tendon : public LawFunctions<Tendon> {
     return law;
   }
 
-  // Cauchy stress that the fibre adds along itself at isochoric stretch lambda: lambda F2'(lambda) [Pa].
+  // Cauchy stress along the fibre at isochoric stretch lambda: lambda F2'(lambda) [Pa].
   double FibreStress(double stretch) const { return curve_.Value(stretch); }
 
  private:

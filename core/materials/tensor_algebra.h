@@ -3,7 +3,7 @@
 
 #include "core/base/types.h"
 
-// 3x3 algebra that the laws share. Matrices become vectors of nine in Eigen's column-major order (see types.h).
+// 3x3 algebra shared by the laws. Matrices become vectors of nine in Eigen's column-major order (see types.h).
 namespace fascicle {
 
 using Vec9 = Eigen::Matrix<double, 9, 1>;

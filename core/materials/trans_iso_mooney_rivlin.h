@@ -9,15 +9,15 @@
 
 namespace fascicle {
 
-// Transversely isotropic Mooney-Rivlin, with an active stress that knows no length.
+// Transversely isotropic Mooney-Rivlin with an active stress that does not depend on length.
 //
 //   W = c1 (I1bar - 3) + c2 (I2bar - 3) + K/2 (ln J)^2 + F2(lambda) + T0 alpha (|F a0|^2 - 1)/2
 //   lambda F2' = c3 (exp(c4 (lambda - 1)) - 1) for 1 < lambda < lam_max, c5 lambda + c6 beyond; 0 for lambda <= 1
 //
-// lambda is the isochoric fibre stretch; c6 follows from the continuity of the stress, whose slope jumps at lam_max
-// unless c5 is that of the exponential. The active part is the second Piola-Kirchhoff stress T0 alpha a0 a0^T: of the
-// whole stretch, not of the isochoric one. Parameters are named as in FEBio, whose material of this name with its
-// uniaxial active contraction this is. Not finite where J <= 0.
+// lambda is the isochoric fibre stretch. c6 follows from the continuity of the stress; its slope jumps at lam_max
+// unless c5 is the slope of the exponential there. The active part is the second Piola-Kirchhoff stress T0 alpha a0
+// a0^T, which refers to the total stretch, not to the isochoric one. Parameters are named as in FEBio, whose material
+// of this name with its uniaxial active contraction this is. Not finite where J <= 0.
 class TransIsoMooneyRivlin : public LawFunctions<TransIsoMooneyRivlin> {
  public:
   static constexpr const char* kName = "trans_iso_mooney_rivlin";

@@ -8,8 +8,8 @@
 namespace fascicle {
 namespace {
 
-// The fibre in F = diag(l, l, stretch), at a velocity that does not depend on l: a step so long that F makes next to no
-// difference to its rate.
+// The fibre in F = diag(l, l, stretch) at a velocity that does not depend on l: the step is so long that F hardly
+// changes the rate.
 FibreState FibreAt(const Contraction& contraction, double l, double stretch) {
   constexpr double kInverseStep = 1e-4;  // [1/s]
   if (contraction.velocity == 0) return {Vec3::UnitZ(), contraction.activation};
@@ -17,7 +17,7 @@ FibreState FibreAt(const Contraction& contraction, double l, double stretch) {
   return {Vec3::UnitZ(), contraction.activation, isochoric - contraction.velocity / kInverseStep, kInverseStep};
 }
 
-// The lateral stress P_xx = P_yy of F = diag(l, l, stretch) and its derivative by l.
+// The lateral stress P_xx = P_yy of F = diag(l, l, stretch) and its derivative with respect to l.
 struct Lateral {
   double stress, slope;
 };
@@ -30,7 +30,7 @@ Lateral LateralStress(const Law& law, const Contraction& contraction, double l, 
   return {law.Stress(F, fibre)(0, 0), tangent(0, 0) + tangent(0, 4)};
 }
 
-// The l without lateral stress nearest to `start`, by Newton's method kept inside a bracket.
+// The zero of the lateral stress nearest to `start`, by Newton's method within a bracket.
 template <class Law>
 std::optional<double> FreeLateralStretch(const Law& law, const Contraction& contraction, double start, double stretch) {
   constexpr double kGrowth = 1.05;

@@ -8,25 +8,25 @@
 
 namespace fascicle {
 
-// One point of a tension test along z, which is also the fibre direction, with free sides: F = diag(l, l, stretch) with
-// the lateral stretch l at which the lateral stress vanishes.
+// One point of a uniaxial tension test along z, which is also the fibre direction. The sides are free: F = diag(l, l,
+// stretch), with the lateral stretch l for which the lateral stress vanishes.
 struct UniaxialPoint {
   double stretch = 0;          // along z [1]
   double lateral_stretch = 0;  // l [1]
   double volume_ratio = 0;     // J = l^2 stretch [1]
   double cauchy_stress = 0;    // sigma_zz, force per deformed area [Pa]
   double nominal_stress = 0;   // P_zz, force per rest area [Pa]
-  // False where no lateral stretch without lateral stress was found; all but `stretch` are NaN then.
+  // Whether such a lateral stretch was found. If not, all members but `stretch` are NaN.
   bool converged = false;
 };
 
-// What the muscle does meanwhile.
+// The state of the muscle during the test.
 struct Contraction {
   double activation = 0;  // in [0, 1]
   double velocity = 0;    // rate of the isochoric fibre stretch [1/s], negative while it shortens
 };
 
-// stretch > 0. Thread-safe, as all of this room.
+// Requires stretch > 0. Thread-safe, like everything in this room.
 UniaxialPoint UniaxialTension(const Material& material, const Contraction& contraction, double stretch);
 inline UniaxialPoint UniaxialTension(const Material& material, double activation, double stretch) {
   return UniaxialTension(material, Contraction{activation}, stretch);

@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t kMaxPoints = 10'000;
 
-// These add up to less than 1e-4: points left out, the arcs between two steps, and what is left when it rests. An arc
-// is (step/tau)^2 / 2 at most where an activation begins to rise, and, where the excitation rises in a time T < tau,
-// (step/T)^2 / 5 at most.
+// Three errors add up to less than 1e-4: points left out, the arcs between two steps, and the remaining distance where
+// the activation counts as at rest. An arc is at most (step/tau)^2 / 2 where an activation begins to rise, and at most
+// (step/T)^2 / 5 where the excitation rises within a time T < tau.
 constexpr double kLeftOut = 5e-5;
 constexpr double kStepsPerTimeConstant = 256;
 constexpr double kStepsPerInterval = 128;
@@ -26,12 +26,12 @@ double TimeConstant(double u, double a, const ActivationDynamics& dynamics) {
   return u > a ? dynamics.activation_time * slowing : dynamics.deactivation_time / slowing;
 }
 
-// The smaller of both: where the excitation stands still at the activation, it may be about to turn either way.
+// The smaller time constant: where a constant excitation equals the activation, the activation may go either way.
 double LeastTimeConstant(double a, const ActivationDynamics& dynamics) {
   return std::min(TimeConstant(1, a, dynamics), TimeConstant(0, a, dynamics));
 }
 
-// A step of the classical Runge-Kutta method of fourth order.
+// One step of the classical fourth-order Runge-Kutta method.
 double Stepped(const Curve& excitation, const ActivationDynamics& dynamics, double time, double a, double step) {
   const auto rate = [&](double offset, double value) {
     const double u = excitation.At(time + offset);
@@ -44,8 +44,8 @@ double Stepped(const Curve& excitation, const ActivationDynamics& dynamics, doub
   return std::clamp(a + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4), 0.0, 1.0);
 }
 
-// The largest step from `time` that keeps within `limit`, and, where excitation and activation cross, that ends there:
-// the time constant jumps.
+// The largest step from `time` that respects `limit` and ends where excitation and activation cross, because the time
+// constant jumps there.
 double StepBefore(const Curve& excitation, const ActivationDynamics& dynamics, double time, double a, double limit) {
   constexpr double kClose = 1e-7;
   const double ahead = excitation.At(time) - a;
@@ -59,8 +59,8 @@ double StepBefore(const Curve& excitation, const ActivationDynamics& dynamics, d
   return step;
 }
 
-// Follows the excitation, which has no bend in between, from `begin` to `end` or, where it is held, until the
-// activation rests. Returns the activation then.
+// Integrates from `begin` to `end`, between which the excitation is linear. Where the excitation is constant, stops
+// once the activation is at rest. Returns the final activation.
 double Follow(const Curve& excitation, const ActivationDynamics& dynamics, double begin, double end, double a,
               LineFitter& fitter) {
   const bool held = excitation.At(begin) == excitation.At(end);
@@ -96,8 +96,8 @@ Curve ActivationOf(const Curve& excitation, const ActivationDynamics& dynamics, 
   Curve activation = fitter.Finish();
   if (activation.times.size() <= kMaxPoints) return activation;
   problems.Add({},
-               "its activation changes so often that it takes " + std::to_string(activation.times.size()) +
-                   " points to follow it",
+               "its activation changes so often that a curve needs " + std::to_string(activation.times.size()) +
+                   " points for it",
                "at most 10,000: shorten the scene, or let the excitation change less often");
   return Curve::Constant(dynamics.initial_activation);
 }

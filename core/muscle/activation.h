@@ -6,7 +6,7 @@
 
 namespace fascicle {
 
-// How a muscle's activation a follows its excitation u, both in [0, 1]:
+// First-order activation dynamics: a muscle's activation a follows its excitation u, both in [0, 1]:
 //
 //   da/dt = (u - a) / tau,   tau = activation_time (0.5 + 1.5 a)      where u > a
 //                                  deactivation_time / (0.5 + 1.5 a)  elsewhere
@@ -19,9 +19,9 @@ struct ActivationDynamics {
   double initial_activation = 0;     // at time 0
 };
 
-// The activation from time 0 until it has come to rest after the excitation, at most until `duration` [s], as straight
-// lines that are nowhere more than 1e-4 from the solution. A problem (path empty) where that takes more than 10,000
-// points, as many as a curve of a scene may have; the curve is constant then.
+// The activation from time 0 until it is at rest after the excitation's last change, at most until `duration` [s]. The
+// curve is piecewise linear and within 1e-4 of the solution. Adds a problem (with an empty path) and returns a constant
+// curve if more than 10,000 points were needed, the most that a curve of a scene may have.
 Curve ActivationOf(const Curve& excitation, const ActivationDynamics& dynamics, double duration, Problems& problems);
 
 }  // namespace fascicle

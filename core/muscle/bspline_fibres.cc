@@ -11,7 +11,7 @@ namespace fascicle {
 
 BsplineFibreField BsplineFibres(const TetMesh& mesh, const BsplineLocator& locator, ThreadTeam& team,
                                 Problems& problems) {
-  constexpr double kFlat = 1e-12;  // of the gradient's norm
+  constexpr double kFlat = 1e-12;  // relative to the gradient's norm
   std::vector<Vec3> centroids;
   centroids.reserve(mesh.tetrahedra.size());
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) centroids.push_back(Centroid(mesh, e));

@@ -12,16 +12,17 @@ namespace fascicle {
 
 struct BsplineFibreField {
   FibreField fibres;
-  // Tetrahedra whose centroid is not in the solid and has the fibre of the nearest point, and how far the farthest is.
+  // Tetrahedra with their centroid outside of the solid, which take the fibre of the nearest point, and the largest
+  // such distance.
   std::size_t outside = 0;
   double farthest = 0;  // [m]
-  // Tetrahedra at whose centroid the solid is turned inside out: its fibres cross there.
+  // Tetrahedra at whose centroid the solid has a non-positive Jacobian: its fibres cross there.
   std::size_t folded = 0;
 };
 
-// Unit derivative of the solid along w at the centroids of the tetrahedra [Teran 2003, 6]. Where it vanishes the
-// direction is taken from the neighbours. The same bits for any number of threads. A problem (no fibres): more than
-// half of the centroids are outside, or a direction is nowhere to be found.
+// Unit derivative of the solid along w at the centroids of the tetrahedra [Teran 2003, 6]. Where it vanishes, the
+// direction is taken from the neighbours. The same bits for any number of threads. Adds a problem and returns no fibres
+// if more than half of the centroids are outside, or if no direction can be determined.
 BsplineFibreField BsplineFibres(const TetMesh& mesh, const BsplineLocator& locator, ThreadTeam& team,
                                 Problems& problems);
 

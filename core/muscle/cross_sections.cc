@@ -13,7 +13,7 @@ struct Piece {
   Vec3 centroid;  // [m]
 };
 
-// Tetrahedra in which the potential rises, from the origin to the insertion.
+// Groups of tetrahedra in the order of their potential, from the origin to the insertion.
 std::vector<Piece> PiecesAlong(const TetMesh& mesh, const std::vector<double>& potential) {
   std::vector<Piece> pieces;
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
@@ -68,7 +68,7 @@ void CrossSections::Cut(const TetMesh& mesh, const std::vector<double>& potentia
   }
 }
 
-// Slices are slanted and ragged, their middles jump: means of three neighbours, ends kept.
+// Slices are slanted and ragged, so their centroids jump: averages three neighbours; the ends stay.
 void CrossSections::Smooth() {
   constexpr int kPasses = 3;
   for (int pass = 0; pass < kPasses; ++pass) {
@@ -87,7 +87,7 @@ void CrossSections::LayFrames() {
     if (s > 0) slice.length = slices_[s - 1].length + (slice.center - slices_[s - 1].center).norm();
     const std::size_t before = s == 0 ? 0 : s - 1, after = std::min(s + 1, slices_.size() - 1);
     const Vec3 tangent = (slices_[after].center - slices_[before].center).stableNormalized();
-    // The axis of the slice before, without its part along the middle line: it never turns about it.
+    // The previous slice's axis, projected to be normal to the middle line: the axes do not twist about it.
     first = (first - first.dot(tangent) * tangent).stableNormalized();
     if (!(first.norm() > 0.5)) first = tangent.unitOrthogonal();
     Eigen::Matrix<double, 2, 3> axes;
@@ -117,7 +117,7 @@ double CrossSections::Along(double potential) const {
 Eigen::Vector2d CrossSections::Across(const Vec3& X, double potential) const {
   const auto [before, beyond] = Find(potential);
   const Slice &a = slices_[before], &b = slices_[before + 1];
-  // Beyond the last slices the middle line goes on, its frames do not change.
+  // Beyond the outermost slices the middle line continues straight with unchanged frames.
   const double fraction = std::clamp(beyond, 0.0, 1.0);
   return ((1 - fraction) * a.across + fraction * b.across) * (X - a.center - beyond * (b.center - a.center));
 }

@@ -9,16 +9,16 @@
 
 namespace fascicle {
 
-// A muscle cut into slices along its harmonic potential: a middle line, and what lies across it.
+// A muscle cut into slices along its harmonic potential: a middle line and coordinates across it.
 class CrossSections {
  public:
-  // `potential` at the nodes, in [0, 1]. Nothing for a mesh too short to be cut in two.
+  // `potential` has one value for each node, in [0, 1]. Returns nothing if the mesh is too short to be cut in two.
   static std::optional<CrossSections> Make(const TetMesh& mesh, const std::vector<double>& potential);
 
-  // Length of the middle line up to a potential, from 0 at potential 0 to 1 at potential 1.
+  // Length of the middle line up to a potential, normalized to 1 at potential 1.
   double Along(double potential) const;
-  // Where X lies across the middle line, in axes that don't turn about it, divided by the slice's standard deviation in
-  // every direction: an elliptic cross-section becomes a circle.
+  // Position of X across the middle line, in axes that do not twist about it, divided by the standard deviation of the
+  // slice in each direction: an elliptic cross-section becomes a circle.
   Eigen::Vector2d Across(const Vec3& X, double potential) const;
 
  private:
@@ -29,7 +29,7 @@ class CrossSections {
     double length = 0;                   // of the middle line [m], from the first slice
     Eigen::Matrix<double, 2, 3> across;  // [1/m]
   };
-  // Between two slices, or beyond them.
+  // A place between two slices or beyond the outermost ones.
   struct Place {
     std::size_t before;
     double fraction;

@@ -7,8 +7,8 @@
 
 namespace fascicle {
 
-// Gives tetrahedra without a direction (zero) the mean of their face neighbours', layer by layer. Returns how many have
-// none left.
+// Gives tetrahedra without a direction (zero) the mean of their face neighbours' directions, layer by layer. Returns
+// the number of tetrahedra that remain without one.
 std::size_t FillFromNeighbours(const TetMesh& mesh, FibreField& fibres);
 
 }  // namespace fascicle

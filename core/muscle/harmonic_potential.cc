@@ -31,8 +31,8 @@ std::optional<std::vector<Part>> MarkNodes(std::size_t node_count, std::span<con
   mark(origin, Part::kOrigin);
   mark(insertion, Part::kInsertion);
   const std::size_t before = problems.count();
-  if (origin.empty()) problems.Add({}, "the fibres' origin holds no node");
-  if (insertion.empty()) problems.Add({}, "the fibres' insertion holds no node");
+  if (origin.empty()) problems.Add({}, "the fibres' origin contains no node");
+  if (insertion.empty()) problems.Add({}, "the fibres' insertion contains no node");
   if (missing > 0) problems.Add({}, std::to_string(missing) + " nodes of origin and insertion are not in the mesh");
   if (shared > 0) {
     problems.Add({}, std::to_string(shared) + " nodes belong to the fibres' origin and to their insertion",
@@ -42,7 +42,7 @@ std::optional<std::vector<Part>> MarkNodes(std::size_t node_count, std::span<con
   return parts;
 }
 
-// The harmonic potential at the nodes.
+// Solves for the potential at the nodes.
 std::optional<std::vector<double>> SolvePotential(const TetMesh& mesh, const std::vector<Part>& parts) {
   std::vector<bool> fixed;
   Eigen::VectorXd given = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parts.size()));
@@ -55,9 +55,9 @@ std::optional<std::vector<double>> SolvePotential(const TetMesh& mesh, const std
   return std::vector<double>(potential->data(), potential->data() + potential->size());
 }
 
-// Unit gradients of the potential; zero where it is flat.
+// Unit gradients of the potential; zero where the gradient is negligible.
 FibreField GradientDirections(const TetMesh& mesh, const std::vector<double>& potential) {
-  constexpr double kFlat = 1e-7;  // relative to the steepest; the solver's error is well below
+  constexpr double kFlat = 1e-7;  // relative to the largest gradient; the solver's error is well below
   FibreField gradients;
   gradients.reserve(mesh.tetrahedra.size());
   double steepest = 0;

@@ -11,13 +11,13 @@
 
 namespace fascicle {
 
-// What lies between a muscle's two attachments.
+// The harmonic potential between a muscle's two attachments.
 struct HarmonicPotential {
   std::vector<double> values;  // at the nodes: exactly 0 on the origin, exactly 1 on the insertion
-  FibreField directions;       // of the gradient in each tetrahedron, as HarmonicFibres
+  FibreField directions;       // of the gradient in each tetrahedron, like HarmonicFibres
 };
 
-// Nothing, with the problems that HarmonicFibres names, where there is none.
+// Returns nothing and adds the problems listed at HarmonicFibres if there is no such potential.
 std::optional<HarmonicPotential> SolveHarmonicPotential(const TetMesh& mesh, std::span<const std::int32_t> origin,
                                                         std::span<const std::int32_t> insertion, Problems& problems);
 

@@ -18,9 +18,9 @@ struct LinearElement {
 
 LinearElement MakeLinearElement(const TetMesh& mesh, std::size_t tetrahedron);
 
-// laplace(phi) = 0 with linear finite elements, phi given at the nodes `fixed`, no flux elsewhere. `values` has one
-// column for each potential and holds what is given; conjugate gradients to a relative residual of 1e-12, in sequence:
-// the same bits on every run. Nothing where these fail, as on flat tetrahedra.
+// Solves laplace(phi) = 0 with linear finite elements, phi prescribed at the nodes `fixed`, no flux elsewhere. `values`
+// has one column for each potential and contains the prescribed values. Conjugate gradients to a relative residual of
+// 1e-12 on one thread: the same bits on every run. Returns nothing if they fail, as with flat tetrahedra.
 std::optional<Eigen::MatrixXd> SolveLaplace(const TetMesh& mesh, const std::vector<bool>& fixed,
                                             Eigen::MatrixXd values);
 

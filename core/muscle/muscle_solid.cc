@@ -15,9 +15,9 @@
 namespace fascicle {
 namespace {
 
-constexpr double kMostMissed = 0.05;  // rms distance of a usable fit, of the body's diagonal; muscles have 0.005
+constexpr double kMostMissed = 0.05;  // largest rms distance of a fit, relative to the diagonal; muscles have 0.005
 
-// Whether a potential is the same, that of a region, at all of a cell's nodes.
+// Whether all nodes of a cell have the potential of one region (0 or 1).
 template <class Cell>
 bool InsideOfARegion(const Cell& cell, const std::vector<double>& potential) {
   const auto all = [&](double value) {
@@ -27,7 +27,7 @@ bool InsideOfARegion(const Cell& cell, const std::vector<double>& potential) {
   return all(0) || all(1);
 }
 
-// Nodes of the surface between the regions.
+// Nodes of the boundary between the regions.
 std::vector<bool> LateralNodes(const TetMesh& mesh, const std::vector<double>& potential) {
   std::vector<bool> lateral(mesh.nodes.size(), false);
   for (const Triangle& triangle : BoundaryTriangles(mesh)) {
@@ -37,7 +37,7 @@ std::vector<bool> LateralNodes(const TetMesh& mesh, const std::vector<double>& p
   return lateral;
 }
 
-// Nodes of tetrahedra between the regions: blocks of nodes that are all in one region have no length.
+// Nodes of tetrahedra between the regions; a block of nodes within one region has no length.
 std::vector<bool> NodesBetween(const TetMesh& mesh, const std::vector<double>& potential) {
   std::vector<bool> between(mesh.nodes.size(), false);
   for (const Tetrahedron& tetrahedron : mesh.tetrahedra) {
@@ -47,7 +47,7 @@ std::vector<bool> NodesBetween(const TetMesh& mesh, const std::vector<double>& p
   return between;
 }
 
-// u and v at the nodes.
+// Parameters u and v of the nodes.
 std::optional<Eigen::MatrixXd> ParametersAcross(const TetMesh& mesh, const std::vector<double>& potential,
                                                 const CrossSections& sections) {
   const std::vector<bool> lateral = LateralNodes(mesh, potential);
@@ -84,7 +84,7 @@ std::string Rounded(double value) {
   return text.str();
 }
 
-// At most kMost samples, evenly chosen: more cost memory and change nothing.
+// Keeps at most kMost evenly spaced samples: more would need memory and change nothing.
 void Thin(std::vector<SolidSample>& samples) {
   constexpr std::size_t kMost = 100'000;
   const std::size_t stride = (samples.size() + kMost - 1) / kMost;
@@ -117,8 +117,9 @@ std::optional<SolidFit> FitMuscleSolid(const TetMesh& mesh, std::span<const std:
     problems.Add({}, "no B-spline solid could be fitted to the mesh",
                  "choose regions at the two ends of the muscle, with a surface between them");
   } else if (fit->rms > kMostMissed * Diagonal(mesh)) {
-    problems.Add({}, "the fitted B-spline solid misses the mesh: its nodes are " + Rounded(fit->rms) + " m off (rms)",
-                 "refine the mesh along the muscle, or choose regions at its two ends");
+    problems.Add(
+        {}, "the fitted B-spline solid is not close to the mesh: its nodes are " + Rounded(fit->rms) + " m off (rms)",
+        "refine the mesh along the muscle, or choose regions at its two ends");
     fit.reset();
   }
   return fit;

@@ -18,13 +18,14 @@ struct MuscleSolidOptions {
   double smoothing = 1e-3;                   // see FitBsplineSolid
 };
 
-// A B-spline solid on [0, 1]^3 fitted to the nodes of a muscle, w from the origin to the insertion. Parameters of
-// nodes:
+// A B-spline solid on [0, 1]^3 fitted to the nodes of a muscle, with w from the origin to the insertion. Parameters of
+// the nodes:
 //   w      length of the middle line up to the node's slice along the harmonic potential between both regions
-//   u, v   harmonic inside; on the surface between the regions the circle about (1/2, 1/2), by the angle at the middle
-//          line of the slice's cross-section scaled round
-// so that lines of constant (u, v) follow the surface. A disc has no corners, the square's are free: no fibre passes
-// there. Problems (nothing is returned): those of HarmonicFibres, no fit, or one that misses the nodes.
+//   u, v   on the lateral surface: the circle around (1/2, 1/2), by the angle about the middle line in the slice's
+//          cross-section, scaled to be round; inside: harmonic
+// so that lines of constant (u, v) follow the surface. The corners of the (u, v) square lie outside of the circle and
+// carry no fibres. Adds problems and returns nothing in the cases of HarmonicFibres, if there is no fit, or if the fit
+// is not close to the nodes.
 std::optional<SolidFit> FitMuscleSolid(const TetMesh& mesh, std::span<const std::int32_t> origin,
                                        std::span<const std::int32_t> insertion, const MuscleSolidOptions& options,
                                        Problems& problems);

@@ -6,7 +6,7 @@
 namespace fascicle {
 namespace {
 
-// Which way the fibre of a tetrahedron leans: 1 towards the normal, -1 against it, 0 not at all.
+// The direction in which the fibre of a tetrahedron is tilted: 1 towards the normal, -1 away from it, 0 not at all.
 double Side(const TetMesh& mesh, std::size_t tetrahedron, const Pennation& pennation) {
   if (!pennation.mirror_point) return 1;
   const double distance = (Centroid(mesh, tetrahedron) - *pennation.mirror_point).dot(pennation.normal);
@@ -31,7 +31,7 @@ void Pennate(const TetMesh& mesh, const Pennation& pennation, FibreField& fibres
     }
   }
   if (along > 0) {
-    problems.Add("normal", "the fibres of " + std::to_string(along) + " tetrahedra lie along it",
+    problems.Add("normal", "the fibres of " + std::to_string(along) + " tetrahedra are parallel to it",
                  "give a direction across the fibres");
   }
 }

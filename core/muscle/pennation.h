@@ -8,18 +8,18 @@
 
 namespace fascicle {
 
-// How the fibres of a pennate muscle lie at an angle to its line of action.
+// The angle of a pennate muscle's fibres to its line of action.
 struct Pennation {
   double angle = 0;  // [rad]
-  Vec3 normal;       // direction towards which fibres lean; any length but zero
-  // A point of the plane across `normal` in which the fibres of a bipennate muscle meet [m]: beyond it fibres lean
-  // towards `normal`, before it against it. All lean towards `normal` when absent.
+  Vec3 normal;       // direction towards which fibres are tilted; any non-zero length
+  // A point of the plane normal to `normal` at which the fibres of a bipennate muscle meet [m]. Fibres beyond the plane
+  // are tilted towards `normal`, fibres before it away from it. Without it, all are tilted towards `normal`.
   std::optional<Vec3> mirror_point;
 };
 
-// Turns every fibre a by the angle about a x n, with n the normal or, before the mirror plane, its opposite. A problem
-// where fibres lie along the normal: they have no side to lean to. Tetrahedra whose centroid is in the mirror plane
-// keep their fibre.
+// Rotates every fibre a by the angle about a x n, where n is the normal or, before the mirror plane, its opposite. Adds
+// a problem where fibres are parallel to the normal, since the direction of tilt is undefined. Tetrahedra whose
+// centroid is in the mirror plane keep their fibre.
 void Pennate(const TetMesh& mesh, const Pennation& pennation, FibreField& fibres, Problems& problems);
 
 }  // namespace fascicle

@@ -13,14 +13,14 @@ namespace fascicle {
 namespace {
 
 constexpr std::size_t kMaxPoints = 10'000;
-constexpr double kTolerance = 1e-4;  // of the peak force, of lines; as much again may be left between samples
-constexpr int kSamples = 512;        // between two points of the curves
+constexpr double kTolerance = 1e-4;  // of the curve, relative to the peak force; as much again between samples
+constexpr int kSamples = 512;        // between two points of the input curves
 
 double ContractileLength(const SternMuscle& muscle) {
   return muscle.contractile_fraction * LengthOf(muscle, muscle.optimal_angle);
 }
 
-// The times between which neither curve has a bend.
+// The times between which both curves are smooth.
 std::vector<double> Bends(const Curve& angle, const Curve& activation, double duration) {
   std::vector<double> times = {0, duration};
   for (const Curve* curve : {&angle, &activation}) {
@@ -45,10 +45,10 @@ double ForceOf(const SternMuscle& muscle, double angle, double rate, double acti
   const double contractile = ContractileLength(muscle);
   const double length = LengthOf(muscle, angle);
   const double stretch = (length - (optimal - contractile)) / contractile;
-  // dL/dt, of which the contractile part takes all. At L = 0 both ends meet, and nothing pulls.
+  // dL/dt, all of which the contractile part takes. At L = 0 both ends coincide and the force is zero.
   if (!(length > 0)) return 0;
   const double speed = muscle.origin_distance * muscle.insertion_distance * std::sin(angle) * rate / length;
-  const double largest_rate = muscle.hill_rate / muscle.hill_curvature;  // of shortening: b/a [lengths/s]
+  const double largest_rate = muscle.hill_rate / muscle.hill_curvature;  // maximum shortening rate: b/a [lengths/s]
   const ForceVelocityCurve force_velocity(muscle.hill_curvature, muscle.eccentric_force);
   return muscle.peak_force * ActiveCurve::Value(stretch) * force_velocity.Value(speed / contractile / largest_rate) *
          activation;
@@ -59,7 +59,7 @@ Curve ForceOverTime(const SternMuscle& muscle, const Curve& angle, const Curve& 
   LineFitter fitter(kTolerance * muscle.peak_force);
   const std::vector<double> bends = Bends(angle, activation, duration);
   for (std::size_t i = 0; i + 1 < bends.size(); ++i) {
-    // The rate of the angle, and so the force, may jump at a bend: both sides get a point.
+    // The rate of the angle, and so the force, may jump at a bend: there is a point on both sides of it.
     const double begin = bends[i], end = bends[i + 1], gap = 1e-9 * (end - begin);
     for (int k = 0; k <= kSamples; ++k) {
       const double time = std::clamp(begin + (end - begin) * k / kSamples, begin, end - gap);
@@ -68,9 +68,9 @@ Curve ForceOverTime(const SternMuscle& muscle, const Curve& angle, const Curve& 
   }
   Curve force = fitter.Finish();
   if (force.times.size() <= kMaxPoints) return force;
-  problems.Add(
-      {}, "the force changes so often that it takes " + std::to_string(force.times.size()) + " points to follow it",
-      "at most 10,000: shorten the scene, or give the curves fewer points");
+  problems.Add({},
+               "the force changes so often that a curve needs " + std::to_string(force.times.size()) + " points for it",
+               "at most 10,000: shorten the scene, or give the curves fewer points");
   return Curve::Constant(0);
 }
 

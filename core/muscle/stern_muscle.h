@@ -6,34 +6,34 @@
 
 namespace fascicle {
 
-// A muscle of parallel fibres that crosses one joint, between points at distances B and C from it.
+// A muscle with parallel fibres across one joint, attached at distances B and C from the joint.
 struct SternMuscle {
   double origin_distance = 0;       // B > 0 [m]
   double insertion_distance = 0;    // C > 0 [m]
   double peak_force = 0;            // P0 at the length L0 > 0 [N]
-  double optimal_angle = 0;         // angle of the joint at L0, in (0, pi] [rad]
-  double contractile_fraction = 1;  // Y in (0, 1]: part of the muscle's length at L0 that contracts, the rest is tendon
+  double optimal_angle = 0;         // joint angle at L0, in (0, pi] [rad]
+  double contractile_fraction = 1;  // Y in (0, 1]: contractile part of the muscle's length at L0; the rest is tendon
   double hill_curvature = 0.25;     // Hill's a over P0 > 0
   double hill_rate = 2.5;           // Hill's b = j > 0 [contractile lengths at L0 per second]
-  double eccentric_force = 1.4;     // plateau of the force of lengthening over P0 > 1
+  double eccentric_force = 1.4;     // plateau of the lengthening force over P0 > 1
 };
 
-// Distance of the two attachments, L = sqrt(B^2 + C^2 - 2 B C cos(angle)) [m].
+// Distance between the attachments, L = sqrt(B^2 + C^2 - 2 B C cos(angle)) [m].
 double LengthOf(const SternMuscle& muscle, double angle);
 
-// Pull of the muscle [N] at an angle of the joint [rad] that opens at `rate` [rad/s] (which lengthens the muscle), and
-// at an activation alpha in [0, 1]:
+// Force of the muscle [N] at a joint angle [rad] that opens at `rate` [rad/s] (which lengthens the muscle) and at an
+// activation alpha in [0, 1]:
 //
 //   P = P0(l) { (1/a + 1) / [1 + v / (j Y Kl)] - 1 } a alpha,   v = B C sin(angle) shortening / (L (B + C))
 //
 // [Stern 1974, Computer modelling of gross muscle dynamics, J. Biomech. 7; Zhu, Chen & Kaufman 1998, eq. 1,
-// misprinted], which is Hill's hyperbola in the velocity of the contractile part; L = Ki (B + C), Kl = Ki at the
-// optimal angle. P0(l) is peak_force times the ActiveCurve of the contractile part's length over that at L0, the
-// tendon's length being constant. Lengthening follows ForceVelocityCurve, to which Stern's formula has no limit.
+// misprinted]. This is Hill's hyperbola in the velocity of the contractile part; L = Ki (B + C), Kl = Ki at the optimal
+// angle. P0(l) is peak_force times the ActiveCurve of the contractile length relative to that at L0, with a tendon of
+// constant length. Lengthening follows ForceVelocityCurve, because Stern's formula is unbounded there.
 double ForceOf(const SternMuscle& muscle, double angle, double rate, double activation);
 
-// That force [N] over time, from 0 to `duration` [s], as straight lines that are nowhere more than 2e-4 of peak_force
-// from it. A problem (path empty) where that takes more than 10,000 points; the curve is 0 then.
+// That force [N] over time, from 0 to `duration` [s], as a piecewise linear curve within 2e-4 of peak_force. Adds a
+// problem (with an empty path) and returns a zero curve if more than 10,000 points were needed.
 Curve ForceOverTime(const SternMuscle& muscle, const Curve& angle, const Curve& activation, double duration,
                     Problems& problems);
 

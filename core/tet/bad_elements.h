@@ -6,10 +6,10 @@
 
 namespace fascicle {
 
-// Elements in which J <= 0 or the stress is not finite, in the first body that has any.
+// Elements with J <= 0 or a stress that is not finite, in the first body that has any.
 BadElements FindBadElements(const TetModel& model, const FibreDrive& drive, const NodalVector& x);
 
-// The elements around a node.
+// The elements that contain a node.
 BadElements FindElementsAt(const TetModel& model, std::size_t node);
 
 // The element with the smallest height, which limits the stable step.

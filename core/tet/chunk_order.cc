@@ -7,11 +7,12 @@
 namespace fascicle {
 namespace {
 
-// Fewer elements are cut smaller, down to that, so that threads have so many chunks to share.
+// Small models use smaller chunks, down to kSmallChunk elements, so that there are at least kEnoughChunks for the
+// threads.
 constexpr std::size_t kSmallChunk = 1024;
 constexpr std::size_t kEnoughChunks = 16;
 
-// Sorts elements so that the first `count` of them lie lower than the rest along the longest side of their box.
+// Partially sorts elements along the longest side of their bounding box so that the first `count` come before the rest.
 void Bisect(std::span<std::int32_t> elements, std::span<const Vec3> middles, std::size_t count) {
   Vec3 low = middles[elements[0]], high = low;
   for (const std::int32_t e : elements) {
@@ -25,7 +26,7 @@ void Bisect(std::span<std::int32_t> elements, std::span<const Vec3> middles, std
       [&](std::int32_t a, std::int32_t b) { return std::pair(middles[a][axis], a) < std::pair(middles[b][axis], b); });
 }
 
-// Halves, and halves of these, down to a block.
+// Bisects recursively, down to the size of a block.
 void SortByPlace(std::span<std::int32_t> elements, std::span<const Vec3> middles) {
   if (elements.size() <= kBlock) return;
   const std::size_t half = elements.size() / 2;
@@ -34,8 +35,8 @@ void SortByPlace(std::span<std::int32_t> elements, std::span<const Vec3> middles
   SortByPlace(elements.subspan(half), middles);
 }
 
-// Deals the elements of a chunk out: lane k of its blocks goes through the k-th part of them. Of the last block, which
-// may not be full, the first lanes are taken.
+// Distributes the elements of a chunk: lane k of the blocks processes the k-th part of them. If the last block is not
+// full, its first lanes are used.
 void DealToLanes(std::span<std::int32_t> elements) {
   const std::vector<std::int32_t> sorted(elements.begin(), elements.end());
   const std::size_t blocks = (sorted.size() + kBlock - 1) / kBlock;

@@ -3,13 +3,13 @@
 
 #include "core/tet/forces.h"
 
-// What loops over chunks share.
+// Functions shared by the loops over chunks.
 namespace fascicle {
 
 inline const double* Numbers(const NodalVector& values) { return values.data()->data(); }
 inline double* Numbers(NodalVector& values) { return values.data()->data(); }
 
-// Calls visitor(kernels of the model's element and number type).
+// Calls visitor(kernels for the model's element and number type).
 template <class Visitor>
 void VisitKernels(const TetModel& model, const Kernels& kernels, const Visitor& visitor) {
   const bool linear = model.order() == ElementOrder::kLinear;
@@ -22,7 +22,7 @@ void VisitKernels(const TetModel& model, const Kernels& kernels, const Visitor& 
   });
 }
 
-// A chunk's elements and law; what acts on it is left to the caller.
+// A task with a chunk's elements and law; the caller adds the loads and results.
 template <class S>
 ChunkTask<S> TaskOf(const TetModel& model, const Chunk& chunk, const Sharing& sharing) {
   const ElementChunks& chunks = model.chunks();
@@ -42,7 +42,7 @@ ChunkTask<S> TaskOf(const TetModel& model, const Chunk& chunk, const Sharing& sh
   return task;
 }
 
-// What the laws of a task are told of the fibres.
+// The fibre arguments of the laws of a task.
 template <class S>
 void SetDrive(const TetModel& model, const FibreDrive& drive, ChunkTask<S>& task) {
   task.activation = drive.activation.data();

@@ -8,7 +8,7 @@
 
 namespace fascicle {
 
-// What acts on the bodies from outside at one time.
+// External actions on the bodies at one time.
 struct TetControls {
   double time = 0;                   // [s]
   std::vector<double> activation;    // of each curve in TetModel::activations() [1]
@@ -20,7 +20,7 @@ struct TetControls {
   void Set(const TetModel& model, double at_time);
 };
 
-// Puts the components that supports prescribe to their place, or velocity, at the time of the controls.
+// Sets prescribed components to their position, or velocity, at the time of the controls.
 void PrescribePositions(const TetModel& model, const TetControls& controls, NodalVector& positions);
 void PrescribeVelocities(const TetModel& model, const TetControls& controls, NodalVector& velocities);
 

@@ -31,7 +31,8 @@ struct NodalForces {
   }
 };
 
-// Difference from now to a little later: a linear curve has no rate but at its points, and there the one after counts.
+// Difference quotient from now to slightly later: at a point of a piecewise linear curve, the slope after the point
+// counts.
 Vec3 PrescribedAcceleration(const Motion& motion, const RigidMotion& now, double time, double interval, const Vec3& X) {
   if (interval <= 0) return Vec3::Zero();
   return (MotionAt(motion, time + interval).VelocityOf(X) - now.VelocityOf(X)) / interval;

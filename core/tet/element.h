@@ -10,22 +10,22 @@
 #include "core/linalg/nodal_vector.h"
 #include "core/tet/shape_functions.h"
 
-// The arithmetic of one element [Teran 2003, 3 and 4].
+// Shape functions and geometry of one element [Teran 2003, 3 and 4].
 //
-// Both elements are made of linear tetrahedra: what happens at a quadrature point of the quadratic element is what
-// happens in a linear tetrahedron whose corners are fixed combinations of the element's ten nodes, because
+// Both elements reduce to linear tetrahedra: a quadrature point of the quadratic element behaves like a linear
+// tetrahedron whose corners are fixed combinations of the element's ten nodes, because
 //   F = sum_a x_a (x) grad N_a = sum_c y_c (x) g_c,   y_c = (4 L_c - 1) x_c + sum_{j != c} 4 L_j x_cj,
-// with L the barycentric coordinates of the point, g_c their gradients in that tetrahedron at rest and
-// x_cj the node in the middle of the edge from c to j. So all laws and loops are written for a linear tetrahedron.
+// with L the barycentric coordinates of the point, g_c their rest gradients in that tetrahedron, and x_cj the mid-edge
+// node between c and j. So all laws and loops are written for a linear tetrahedron.
 namespace fascicle {
 
-// The values at the corners of one such tetrahedron.
+// Values at the corners of one such tetrahedron.
 using CornerValues = std::array<Vec3, 4>;
 
 struct LinearElement : LinearShape {
   // Positions (or other values) of the corners of the linear tetrahedron at point q.
   static const CornerValues& Corners(const std::array<Vec3, 4>& nodes, int /*q*/) { return nodes; }
-  // Adds to nodes what acts on the corners: the transpose of Corners.
+  // Adds the transpose of Corners: forces on the corners become forces on the nodes.
   static void AddCorners(const CornerValues& corners, int /*q*/, std::array<Vec3, 4>& nodes) {
     for (int c = 0; c < 4; ++c) nodes[c] += corners[c];
   }
@@ -44,7 +44,7 @@ struct QuadraticElement : QuadraticShape {
   }
 };
 
-// [a1 - a0, a2 - a0, a3 - a0] of the values a at the corners: Dm of rest positions, Ds of positions, their rates of
+// [a1 - a0, a2 - a0, a3 - a0] of values a at the corners: Dm for rest positions, Ds for positions, the rate of Ds for
 // velocities.
 inline Mat3 EdgeMatrix(const NodalVector& values, const Tetrahedron& corners) {
   const Vec3& origin = values[corners[0]];
@@ -63,8 +63,8 @@ inline Mat3 EdgeMatrix(const CornerValues& corners) {
 
 inline double Determinant(const Mat3& F) { return F.col(0).dot(F.col(1).cross(F.col(2))); }
 
-// Second Piola-Kirchhoff viscous stress S_v = 2 mu Edot + lambda tr(Edot) I, Edot = sym(F^T Fdot): zero in any rigid
-// motion, and S_v : Edot >= 0.
+// Second Piola-Kirchhoff viscous stress S_v = 2 mu Edot + lambda tr(Edot) I, Edot = sym(F^T Fdot). It vanishes in rigid
+// motions, and S_v : Edot >= 0.
 struct ViscousStress {
   ViscousStress(const Mat3& F, const Mat3& F_rate, double mu, double lambda) {
     const Mat3 product = F.transpose() * F_rate;
@@ -76,7 +76,7 @@ struct ViscousStress {
   }
 
   Mat3 S;        // [Pa]
-  double power;  // dissipated, S_v : Edot [W/m^3]
+  double power;  // dissipation, S_v : Edot [W/m^3]
 };
 
 // [f1 f2 f3] = P Bm3 = -V P Dm^-T, f0 = -(f1 + f2 + f3) [Teran 2003, 4.1].

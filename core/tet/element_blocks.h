@@ -6,37 +6,37 @@
 #include <span>
 #include <vector>
 
-// How the elements lie in memory for the loops over them: in chunks that fit the cache, each cut into blocks of
-// kBlock elements whose numbers stand side by side, so that a vector instruction takes as many elements at once as it
-// has lanes. A chunk's elements have one law. See README.md.
+// Memory layout of the elements for the loops over them: chunks that fit the cache, each divided into blocks of kBlock
+// elements whose values are adjacent, so that a vector instruction processes as many elements as it has lanes. All
+// elements of a chunk have the same law. See README.md.
 namespace fascicle {
 
-// Elements of a block: a whole number of the widest vectors, of float too.
+// Elements per block: a multiple of the widest vector's lanes, for float, too.
 inline constexpr int kBlock = 16;
-// A chunk ends before it has more. Its nodes' values then lie in the cache.
+// Most elements of a chunk; the values of its nodes then fit the cache.
 inline constexpr int kChunkElements = 4096;
 inline constexpr int kChunkNodes = 1536;
 
-// A point of the elements of a block at rest. The elements that the last block of a chunk lacks are those of the one
-// before, without volume.
+// Rest data of one quadrature point for the elements of a block. Unused lanes of a chunk's last block repeat the last
+// element with zero volume.
 template <class S>
 struct alignas(64) RestPoint {
   S Dm_inverse[9][kBlock];  // column by column [1/m]
   S volume[kBlock];         // [m^3]
 };
 
-// What the laws of the elements of a block are told of their fibres.
+// Fibre arguments of the laws for the elements of a block.
 template <class S>
 struct alignas(64) BlockFibres {
   S direction[3][kBlock];           // a0
-  S activation_scale[kBlock];       // the part of the curve's value that an element makes its own
-  std::int32_t activation[kBlock];  // curve
+  S activation_scale[kBlock];       // factor on the activation curve for each element
+  std::int32_t activation[kBlock];  // index of the activation curve
 };
 
 template <class S>
 struct BlockArrays {
-  std::vector<RestPoint<S>> points;    // of point q of block b: points[points of an element * b + q]
-  std::vector<BlockFibres<S>> fibres;  // of each block
+  std::vector<RestPoint<S>> points;    // point q of block b is points[points of an element * b + q]
+  std::vector<BlockFibres<S>> fibres;  // one for each block
 };
 
 struct Chunk {
@@ -46,28 +46,28 @@ struct Chunk {
   std::size_t node_begin = 0, node_end = 0;  // in ElementChunks::nodes
 };
 
-// Where sums over chunks go that each chunk has for some of many places (nodes, patches): to the place itself where no
-// other chunk has part in it, else to a slot of the chunk's own, and those are added up in the order of the chunks. So
-// the sums are the same bits for any number of threads.
+// Target of sums over chunks at places (nodes, patches) that several chunks may share. If only one chunk contributes to
+// a place, its sum goes there directly. Otherwise each chunk writes to a slot of its own, and the slots are added up in
+// the order of the chunks. So sums have the same bits for any number of threads.
 struct Sharing {
   static constexpr std::int32_t kNone = INT32_MAX;  // no place
 
-  // of_local: the place of each sum, chunk by chunk, no place twice in a chunk; kNone for none.
+  // of_local: the place of each sum, chunk by chunk, without duplicates within a chunk; kNone where there is none.
   Sharing() = default;
   Sharing(std::span<const std::int32_t> of_local, std::size_t places);
 
-  std::vector<std::int32_t> target;  // of each sum: its place, or ~slot, or kNone
-  // Slots of place shared[i]: slots[begin[i] .. begin[i + 1]), ascending. Places without any sum are here too.
+  std::vector<std::int32_t> target;  // for each sum: its place, or ~slot, or kNone
+  // Place shared[i] has slots[begin[i] .. begin[i + 1]), ascending. Places without any sum are included.
   std::vector<std::int32_t> shared, begin, slots;
 };
 
 struct ElementChunks {
   std::vector<Chunk> chunks;
-  std::vector<std::int32_t> nodes;  // of each chunk, ascending
-  // In its chunk's nodes: node a of lane k of block b is local[(nodes of an element * b + a) * kBlock + k].
+  std::vector<std::int32_t> nodes;  // nodes of each chunk, ascending
+  // Index within the chunk's nodes: node a of lane k of block b is local[(nodes of an element * b + a) * kBlock + k].
   std::vector<std::uint16_t> local;
-  std::vector<std::int32_t> slot;   // of each element: kBlock * block + lane
-  std::vector<std::int32_t> patch;  // of each entry of `nodes`; Sharing::kNone without
+  std::vector<std::int32_t> slot;   // for each element: kBlock * block + lane
+  std::vector<std::int32_t> patch;  // for each entry of `nodes`; Sharing::kNone without a patch
   Sharing node_sums, patch_sums;
 };
 

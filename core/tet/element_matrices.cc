@@ -30,7 +30,7 @@ const ElementKernels<double>& KernelsOf(const TetModel& model, const ForceWorksp
   return model.order() == ElementOrder::kLinear ? workspace.kernels->linear : workspace.kernels->quadratic;
 }
 
-// The kernels' forces under UntanglingLaw, element by element.
+// As the kernels' forces, but with UntanglingLaw and element by element.
 template <class Element>
 ChunkReport UntanglingForces(const TetModel& model, const NodalVector& x, const Chunk& chunk, double* force,
                              double* slot_sums) {
@@ -69,11 +69,11 @@ ChunkReport UntanglingForces(const TetModel& model, const NodalVector& x, const 
   return report;
 }
 
-// Adds the matrix of a point to those of its element's pairs of nodes.
+// Adds the matrix of a point to the blocks of its element's pairs of nodes.
 template <class Element>
 void AddPoint(const Mat9& H, const Eigen::Matrix<double, 3, Element::kNodes>& G, double volume, Mat3* pairs) {
   for (int b = 0; b < Element::kNodes; ++b) {
-    // Change of P with each component of node b.
+    // Derivative of P with respect to each component of node b.
     Eigen::Matrix<double, 9, 3> change = G(0, b) * H.leftCols<3>();
     change += G(1, b) * H.middleCols<3>(3);
     change += G(2, b) * H.rightCols<3>();
@@ -85,7 +85,7 @@ void AddPoint(const Mat9& H, const Eigen::Matrix<double, 3, Element::kNodes>& G,
   }
 }
 
-// The kernels' stiffness, element by element, with the tangent that tangent_at(element, point, F) gives.
+// As the kernels' stiffness, but element by element and with the tangent tangent_at(element, point, F).
 template <class Element, class TangentAt>
 void AddStiffness(const TetModel& model, const NodalVector& x, double projection, const Chunk& chunk,
                   const ChunkBlocks& blocks, const TangentAt& tangent_at) {
@@ -120,7 +120,7 @@ void AddUntanglingStiffness(const TetModel& model, const NodalVector& x, double 
                         [](std::size_t, int, const Mat3& F) { return UntanglingLaw::Tangent(F); });
 }
 
-// Under the laws of the elements. Projections are rare; the kernels have none.
+// With the laws of the elements. Kernels do not project tangents, since projections are rare.
 template <class Element>
 void AddProjectedStiffness(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
                            std::span<const double> acting, double projection, const Chunk& chunk,

@@ -19,7 +19,7 @@ std::vector<double> AtNodes(const TetBody& body, OutputField field, const NodalV
   return values;
 }
 
-// The mean over the points of each element of a body, in the order of its mesh.
+// Values of the elements of a body, in the order of its mesh, averaged over the points of each.
 template <bool kStress>
 std::vector<double> OverElements(const TetModel& model, std::size_t body_index, OutputField field,
                                  const FibreDrive& drive, const NodalVector& x, ThreadTeam& team) {

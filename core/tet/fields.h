@@ -8,9 +8,9 @@
 
 namespace fascicle {
 
-// Values of a field over the mesh nodes (velocity) or elements (all others: the mean over their points) of one body,
-// component fastest (stresses xx yy zz xy yz xz), as in scene.proto Field. Stresses are elastic and active, without the
-// viscous part.
+// Values of a field at the mesh nodes (velocity) or elements (all others: averaged over quadrature points) of one body,
+// component fastest (stresses xx yy zz xy yz xz), as in scene.proto Field. Stresses include the elastic and active
+// parts, not the viscous one.
 std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body, OutputField field, const FibreDrive& drive,
                                   const TetState& state, ThreadTeam& team);
 

@@ -3,7 +3,7 @@
 namespace fascicle {
 namespace {
 
-// Calls visit(contact node, depth) for every node that is in the floor.
+// Calls visit(contact node, depth) for every node below a floor's surface.
 template <class Visit>
 void ForNodesIn(const TetModel& model, const Floor& floor, const NodalVector& x, const Visit& visit) {
   for (const ContactNode& contact : model.contact_nodes()) {

@@ -5,12 +5,13 @@
 
 #include "core/tet/model.h"
 
-// Floors push nodes of the bodies' surfaces back by a force that grows with how deep they are:
-//   f = k_n d n,   energy k_n d^2 / 2,   d = -(x - point).n where that is positive,
-// n the floor's normal and k_n of TetModel::contact_nodes(). No friction, so floors keep the bodies' energy.
+// Floors: penalty forces on surface nodes below a plane,
+//   f = k_n d n,   energy k_n d^2 / 2,   d = -(x - point).n where positive,
+// with the floor's normal n and the stiffness k_n of TetModel::contact_nodes(). Without friction, so energy is
+// conserved.
 namespace fascicle {
 
-// Adds the force of all floors on every node [N].
+// Adds the force of all floors to every node [N].
 void AddFloorForce(const TetModel& model, const NodalVector& x, NodalVector& force);
 
 // Force of each floor on all bodies [N].
@@ -19,7 +20,7 @@ std::vector<Vec3> FloorForces(const TetModel& model, const NodalVector& x);
 // Energy stored in all contacts [J].
 double FloorEnergy(const TetModel& model, const NodalVector& x);
 
-// Calls visit(node, stiffness) with the 3x3 derivative of minus the force [N/m] of every node that a floor pushes at x.
+// Calls visit(node, stiffness) for every node in contact at x, with the 3x3 derivative of minus the force [N/m].
 template <class Visit>
 void ForFloorStiffness(const TetModel& model, const NodalVector& x, const Visit& visit) {
   for (const Floor& floor : model.scene().floors) {
@@ -32,8 +33,8 @@ void ForFloorStiffness(const TetModel& model, const NodalVector& x, const Visit&
   }
 }
 
-// product += K p with K that of all floors and contact nodes, whether they touch or not: a bound for whatever comes
-// into contact until the stable step is found again.
+// product += K p, where K contains all floors and contact nodes, in contact or not: an upper bound for anything that
+// may come into contact before the stable step is found again.
 void AddFloorStiffness(const TetModel& model, const NodalVector& p, NodalVector& product);
 
 }  // namespace fascicle

@@ -10,7 +10,7 @@
 namespace fascicle {
 namespace {
 
-// What acts on the elements; null pointers for what does not.
+// Inputs and outputs of a loop over elements; null pointers for unused ones.
 struct Action {
   bool elastic = true;
   const FibreDrive* drive = nullptr;
@@ -64,8 +64,8 @@ ForceReport AllForces(const TetModel& model, const Action& action, ThreadTeam& t
   return total;
 }
 
-// What one corner of rest shape gradient g contributes to the diagonal of -D, for unit volume: twice the dissipation
-// of unit velocity of that corner along each axis i, where Edot = sym(F_i x g) with F_i row i of F.
+// Contribution of a corner with rest shape gradient g to the diagonal of -D, per unit volume: twice the dissipation of
+// a unit velocity of that corner along each axis i, where Edot = sym(F_i x g) with F_i row i of F.
 Vec3 CornerDiagonal(const Mat3& F, const Vec3& g, double mu, double lambda) {
   const Vec3 rate = F * g;  // F_i . g for each i
   Vec3 diagonal;
@@ -92,7 +92,8 @@ void AddDiagonal(const TetModel& model, const TetBody& body, const NodalVector& 
   }
 }
 
-// An element's share of the patches' energy [J]: the energy density of each, times the volume at its corner.
+// An element's share of the patches' energy [J]: the energy density of each patch times the volume of the element's
+// corner.
 template <class Element>
 double PatchEnergyOf(const TetModel& model, const ForceWorkspace& workspace, std::size_t e) {
   const VolumePatches& patches = model.patches();

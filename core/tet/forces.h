@@ -8,15 +8,15 @@
 #include "core/tet/kernels.h"
 #include "core/tet/model.h"
 
-// Loops over the elements, chunk by chunk: the law is fixed for a chunk, nothing is allocated after the first call, and
-// results are the same bits for any number of threads and every instruction set: the order in which a chunk adds up its
-// elements and a node its chunks is fixed.
+// Loops over the elements, chunk by chunk. The law is fixed within a chunk, and nothing is allocated after the first
+// call. Results have the same bits for any number of threads and every instruction set, because the order in which a
+// chunk adds up its elements, and a node its chunks, is fixed.
 //   x, v   positions [m] and velocities [m/s] of all nodes
 namespace fascicle {
 
-// What acts in the fibres beside their stretch.
+// Arguments of the fibre terms besides the stretch.
 struct FibreDrive {
-  // Held fibres, from any array of activations: that is what it is for. NOLINTBEGIN(google-explicit-constructor)
+  // Isometric fibres, converted from any array of activations. NOLINTBEGIN(google-explicit-constructor)
   template <class Activations>
   requires std::convertible_to<const Activations&, std::span<const double>> FibreDrive(const Activations& of_curves)
       : activation(of_curves) {}
@@ -25,23 +25,24 @@ struct FibreDrive {
       : activation(of_curves), previous(positions_before), inverse_step(one_over_step) {}
   FibreDrive() = default;
 
-  std::span<const double> activation;     // of each curve in TetModel::activations() [1]
-  const NodalVector* previous = nullptr;  // positions a step ago [m], for laws that depend on rate; else held
-  double inverse_step = 0;                // one over the length of that step [1/s]
+  std::span<const double> activation;     // value of each curve in TetModel::activations() [1]
+  const NodalVector* previous = nullptr;  // positions one step ago [m], for laws that depend on rate; null: isometric
+  double inverse_step = 0;                // inverse of that step's length [1/s]
 };
 
-// Scratch of the functions below; keeps its memory from call to call.
+// Scratch memory of the functions below; reused by later calls.
 struct ForceWorkspace {
   const Kernels* kernels = &KernelsFor(PreferredInstructionSet());
-  std::vector<double> slot_sums;     // of shared nodes or patches, see Sharing
-  std::vector<ChunkReport> reports;  // of each chunk
-  std::vector<Mat3> slot_blocks;     // of AssembleStiffness
-  // Of each patch: theta before and after smoothing [1], U'(theta) and what of it acts on elements, W U'(theta) [Pa].
+  std::vector<double> slot_sums;     // for shared nodes or patches, see Sharing
+  std::vector<ChunkReport> reports;  // one for each chunk
+  std::vector<Mat3> slot_blocks;     // for AssembleStiffness
+  // For each patch: theta before and after smoothing [1], the pressure U'(theta), and W U'(theta), which acts on
+  // elements [Pa].
   std::vector<double> raw_ratio, ratio, own_pressure, pressure;
 };
 
 struct ForceReport {
-  bool valid = true;            // false where J <= 0 in an element or a patch, or a stress is not finite
+  bool valid = true;            // false if J <= 0 in an element or a patch, or if a stress is not finite
   double dissipated_power = 0;  // by viscous stress [W]
   double smallest_ratio = 1;    // least J of all elements, at most 1
 };
@@ -55,19 +56,19 @@ ForceReport ElasticAndViscousForce(const TetModel& model, const FibreDrive& driv
                                    const NodalVector& v, ThreadTeam& team, ForceWorkspace& workspace,
                                    NodalVector& force);
 
-// The viscous force D v alone: linear in v, symmetric, negative semidefinite.
+// The viscous force D v only: linear in v, symmetric, negative semidefinite.
 void ViscousForce(const TetModel& model, const NodalVector& x, const NodalVector& v, ThreadTeam& team,
                   ForceWorkspace& workspace, NodalVector& force);
 
-// The diagonal of -D [kg/s], not negative.
+// The diagonal of -D [kg/s], non-negative.
 void ViscousDiagonal(const TetModel& model, const NodalVector& x, ThreadTeam& team, ForceWorkspace& workspace,
                      NodalVector& diagonal);
 
-// Elastic energy of one body [J]. With patches, the part of each that lies in this body.
+// Elastic energy of one body [J], including each patch's part within this body.
 double ElasticEnergy(const TetModel& model, std::size_t body, const FibreDrive& drive, const NodalVector& x,
                      ThreadTeam& team);
 
-// Volume ratio theta and pressure U'(theta) of every patch into the workspace; false where a ratio is not positive.
+// Computes volume ratio theta and pressure U'(theta) of every patch in the workspace; false if a ratio is not positive.
 bool UpdatePatches(const TetModel& model, const NodalVector& x, ThreadTeam& team, ForceWorkspace& workspace);
 
 }  // namespace fascicle

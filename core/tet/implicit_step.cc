@@ -1,4 +1,4 @@
-// Steps that solve for the positions at their end: backward Euler, Newmark, BDF2 and quasi-static.
+// Implicit steps, which solve for the positions at their end: backward Euler, Newmark, BDF2 and quasi-static.
 #include <algorithm>
 #include <cmath>
 
@@ -8,20 +8,20 @@
 namespace fascicle {
 namespace {
 
-// An easy step may be followed by one twice as long.
+// After a step with at most this many iterations the next one may be twice as long.
 constexpr int kEasyIterations = 10;
-// A run that needs steps shorter than that part of its duration goes nowhere.
+// A run fails when it needs steps shorter than this part of its duration.
 constexpr double kShortestStep = 0x1p-12;
 
-// How a scheme expresses the velocity and the force of inertia at the end of a step by the positions there:
-// v = rate (x - v_centre), M a = inertia M (x - a_centre).
+// Velocity and inertia force at the end of a step as functions of the positions there: v = rate (x - v_centre), M a =
+// inertia M (x - a_centre).
 struct Scheme {
   double rate = 0;     // [1/s]
   double inertia = 0;  // [1/s^2]
   NodalVector v_centre, a_centre;
 };
 
-// c0 x + c1 x_n + c2 x_{n-1} over dt is the rate at the end of the step; the step before had dt / ratio.
+// The rate at the end of a step is (c0 x + c1 x_n + c2 x_{n-1}) / dt. The previous step had length dt / ratio.
 struct BackwardDifference {
   double c0 = 1, c1 = -1, c2 = 0;
 };
@@ -112,10 +112,10 @@ StepReport TetSolver::StepImplicit(const TetState& now, double dt, TetState& nex
   potential_.previous = &now.positions;
   potential_.viscous_rate = is_static || !model_.has_strain_damping() ? 0 : 1 / dt;
   Scheme scheme;
-  NodalVector continued = now.positions;  // as if free components kept their acceleration
+  NodalVector continued = now.positions;  // extrapolated, as if free components kept their acceleration
   if (!is_static) {
     scheme = SchemeOf(method_.stepping, now, dt);
-    // Mass damping a M v joins inertia: m (x - c) = M [inertia (x - a_centre) + a rate (x - v_centre)].
+    // Mass damping a M v is combined with inertia: m (x - c) = M [inertia (x - a_centre) + a rate (x - v_centre)].
     potential_.inertia.resize(model_.nodes());
     potential_.inertia_centre.resize(model_.nodes());
     for (std::size_t n = 0; n < model_.nodes(); ++n) {

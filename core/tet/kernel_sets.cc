@@ -5,7 +5,7 @@
 namespace fascicle {
 
 const Kernels& KernelsFor(InstructionSet set) {
-  FASCICLE_CHECK(IsAvailable(set), "kernels of an instruction set that this machine lacks");
+  FASCICLE_CHECK(IsAvailable(set), "this machine lacks the kernels' instruction set");
 #if defined(__x86_64__)
   if (set == InstructionSet::kAvx2) return kAvx2Kernels;
   if (set == InstructionSet::kAvx512) return kAvx512Kernels;

@@ -3,7 +3,7 @@
 
 #include "core/tet/kernels.h"
 
-// The kernels of each set, one file each.
+// The kernels for each instruction set, one file each.
 namespace fascicle {
 
 extern const Kernels kBaselineKernels;

@@ -8,18 +8,18 @@
 #include "core/tet/kernels.h"
 #include "core/tet/shape_functions.h"
 
-// What kernels.h declares, for one type of Lanes. Included by one file for each instruction set, and by nothing else:
-// all functions here are templates on that type, so that no two sets share any (a test looks at the object files).
-// Nothing of Eigen or the standard library is called.
+// Implements kernels.h for one type of Lanes. Included by exactly one file for each instruction set. All functions here
+// are templates on the Lanes type, so that two sets share none of them (a test inspects the object files). Calls
+// nothing of Eigen or the standard library.
 namespace fascicle {
 
-// A block's values of one kind at one point of its elements.
+// Values of one kind at one point of a block's elements.
 template <class S>
 struct alignas(64) BlockMatrix {
   S m[9][kBlock];
 };
 
-// What a law is told of the points of a block.
+// Arguments of a law at the points of a block.
 template <class S>
 struct alignas(64) PointBlock {
   BlockMatrix<S> F;
@@ -62,7 +62,7 @@ struct LawOnBlocks {
     return {LoadVector<L>(at.fibres->direction, lane), L::Load(&at.activation[lane]),
             L::Load(&at.previous_stretch[lane]), at.inverse_step};
   }
-  // Inlined to the last call: vectors stay in registers.
+  // Inlined completely, so that vectors stay in registers.
   [[gnu::flatten]] static void Stress(const void* law, const PointBlock<S>& at, BlockMatrix<S>& P) {
     for (int k = 0; k < kBlock; k += L::kLanes) {
       StoreMatrix(static_cast<const Law*>(law)->StressAt(LoadMatrix<L>(at.F.m, k), FibreOf(at, k)), k, P.m);
@@ -98,9 +98,9 @@ struct LawList<L, std::variant<Laws...>> {
   static constexpr LawKernels<typename L::Scalar> kKernels[] = {LawOnBlocks<L, Laws>::kKernels...};
 };
 
-// Rows (x, y, z, w) of four numbers into vectors of x, y, z and w, and back. As many rows at once as a vector has lanes
-// (but four at least): what is stored here is loaded elsewhere as whole vectors, and a load that spans several stores
-// waits until they have left the processor.
+// Transposes rows (x, y, z, w) of four numbers to vectors of x, y, z and w, and back, as many rows at once as a vector
+// has lanes (but at least four). What is stored here is loaded elsewhere as whole vectors; a load that spans several
+// stores would stall until they have left the store buffer.
 template <class L>
 struct Rows {
   using S = typename L::Scalar;
@@ -142,7 +142,7 @@ struct Rows {
     }
   }
 
-  // Numbers a, b, c, d of each group of four of x, 4 to 7 being those of y.
+  // Numbers a, b, c, d of each group of four of x; 4 to 7 select those of y.
   template <int a, int b, int c, int d, int... lane>
   static Wide Mix(const Wide& x, const Wide& y, std::integer_sequence<int, lane...>) {
     constexpr int kFrom[4] = {a, b, c, d};
@@ -154,7 +154,7 @@ struct Rows {
     return Mix<a, b, c, d>(x, y, std::make_integer_sequence<int, kWidth>());
   }
 
-  // Of each group of four.
+  // Transposes each group of four.
   static void Transpose(Wide r[4]) {
     if constexpr (sizeof(S) == 8) {
       const Wide a = Mix<0, 4, 2, 6>(r[0], r[1]), b = Mix<1, 5, 3, 7>(r[0], r[1]);
@@ -191,7 +191,7 @@ struct ChunkKernels {
     S at[kNodes][4][kBlock];
   };
 
-  // `values` of the chunk's nodes less `origin`; as the fourth number that of the node's patch, if any.
+  // `values` of the chunk's nodes minus `origin`; the fourth number is that of the node's patch, if any.
   static void LoadRows(const ChunkTask<S>& task, const double* values, const double* origin, const double* of_patch,
                        NodeRows& rows) {
     for (std::size_t i = 0; i < task.node_count; ++i) {
@@ -203,7 +203,7 @@ struct ChunkKernels {
       R::Store(row, rows.at + 4 * i);
     }
   }
-  // Positions of a chunk count from its first node: in float, they lose no digits to the distance from the origin.
+  // Positions of a chunk are relative to its first node: in float, no digits are lost to the distance from the origin.
   static void LoadPositions(const ChunkTask<S>& task, const double* x, const double* of_patch, NodeRows& rows) {
     constexpr double kZero[3] = {0, 0, 0};
     LoadRows(task, x, sizeof(S) == 4 ? x + 3 * task.nodes[0] : kZero, of_patch, rows);
@@ -224,7 +224,7 @@ struct ChunkKernels {
       }
     }
   }
-  // Adds components 0 to 2, element by element and node by node whatever the number of lanes.
+  // Adds components 0 to 2, element by element and node by node, independently of the number of lanes.
   static void Scatter(const NodeValues& values, const std::uint16_t* local, NodeRows& rows) {
     for (int k = 0; k < kBlock; k += R::kWidth) {
       Wide r[kNodes][4];
@@ -274,7 +274,7 @@ struct ChunkKernels {
     return Edges(values, q, k) * LoadMatrix<L>(rest.Dm_inverse, k);
   }
 
-  // Adds what corner c at point q contributes, component i, to the nodes.
+  // Adds the contribution of corner c at point q, component i, to the nodes.
   static void AddCorner(const L& value, int q, int c, int i, int k, NodeValues& nodes) {
     const auto add = [&](int a, const L& part) { (L::Load(&nodes.at[a][i][k]) + part).Store(&nodes.at[a][i][k]); };
     if constexpr (kNodes == 4) {
@@ -287,7 +287,7 @@ struct ChunkKernels {
       }
     }
   }
-  // [f1 f2 f3] = -V P Dm^-T, f0 = -(f1 + f2 + f3), onto the nodes.
+  // Adds the corner forces [f1 f2 f3] = -V P Dm^-T, f0 = -(f1 + f2 + f3), to the nodes.
   static void AddForces(const Matrix3<L>& P, const RestPoint<S>& rest, int q, int k, NodeValues& nodes) {
     const Matrix3<L> f = (-L::Load(&rest.volume[k]) * P) * ::fascicle::Transpose(LoadMatrix<L>(rest.Dm_inverse, k));
     for (int i = 0; i < 3; ++i) {
@@ -316,7 +316,7 @@ struct ChunkKernels {
     return sum;
   }
 
-  // Asks for a block that comes later while this one is worked on: the memory of a busy machine is far away.
+  // Prefetches a later block while this one is processed, to hide the latency of memory.
   static constexpr int kBlocksAhead = 3;
   static void Prefetch(const ChunkTask<S>& task, std::size_t b) {
     if (b * kBlock >= task.elements) return;
@@ -328,7 +328,7 @@ struct ChunkKernels {
     fetch(task.local + b * kNodes * kBlock, kNodes * kBlock * sizeof(std::uint16_t));
   }
 
-  // Others are told nothing of them, which spares the way from memory.
+  // Laws without fibres do not read them, which saves memory bandwidth.
   static bool HasFibres(const ChunkTask<S>& task) {
     return task.law != nullptr && LawList<L, Material>::kKernels[task.law_kind].needs_fibres;
   }
@@ -360,7 +360,7 @@ struct ChunkKernels {
     }
   }
 
-  // The strain E of viscous stress.
+  // The strain E of the viscous stress.
   static Matrix3<L> StrainOf(const ChunkTask<S>& task, const Matrix3<L>& F, const NodeValues& other,
                              const RestPoint<S>& rest, int q, int k) {
     const Matrix3<L> G = Gradient(other, rest, q, k);
@@ -371,7 +371,7 @@ struct ChunkKernels {
     return PlusDiagonal(2 * task.mu * E, task.lambda * Trace(E));
   }
 
-  // Sums of a chunk by the lane of the block, so that their order does not depend on how many lanes a vector has.
+  // Sums of a chunk by the lane of the block, so that their order does not depend on the number of lanes of a vector.
   struct alignas(64) LaneSums {
     S at[kBlock] = {};
     void Add(int k, const L& value) { (L::Load(&at[k]) + value).Store(&at[k]); }
@@ -396,8 +396,8 @@ struct ChunkKernels {
     LaneSums power, energy, squares, not_finite;
     alignas(64) S smallest[kBlock];
     for (S& s : smallest) s = 1;
-    // Of two blocks: the next one's F are made before the forces of this one are added up, which have to wait for its
-    // law.
+    // Two blocks are in flight: F of the next block is computed before the forces of this one, which wait for its law,
+    // are added up.
     NodeValues positions[2], previous[2], rates[2];
     PointBlock<S> points[2][kPoints];
     BlockMatrix<S> P[kPoints];
@@ -484,7 +484,7 @@ struct ChunkKernels {
     }
   }
 
-  // Sums of the chunk to where they go; whether all are finite.
+  // Writes the chunk's sums to their targets; returns whether all are finite.
   static bool WriteVectors(const ChunkTask<S>& task, const NodeRows& sums) {
     double check = 0;
     for (std::size_t i = 0; i < task.node_count; ++i) {
@@ -505,7 +505,7 @@ struct ChunkKernels {
     }
   }
 
-  // Adds the corner volumes that `at_point(q, lane)` (of points, parts of volume) makes.
+  // Adds the corner volumes from `at_point(q, lane)`, the volume at each point.
   template <class AtPoint>
   static void AddCornerVolumes(const AtPoint& at_point, const std::uint16_t* local, int elements, S* sums) {
     alignas(64) S volumes[4][kBlock];
@@ -530,7 +530,7 @@ struct ChunkKernels {
     const std::size_t left = task.elements - b * kBlock;
     return left < kBlock ? static_cast<int>(left) : kBlock;
   }
-  // A point's part of the volume is det Ds / 6 times its weight.
+  // The volume at a point is det Ds / 6 times its weight.
   static constexpr double kVolumePerEdges = 1.0 / (6 * kPoints);
 
   [[gnu::flatten]] static void CornerVolumes(const ChunkTask<S>& task) {
@@ -567,8 +567,8 @@ struct ChunkKernels {
     WriteNumbers(task, sums);
   }
 
-  // F (I + e a0 a0^T) with a small e: where a fibre curve has a kink, at rest above all, the tangent is taken on its
-  // stiffer side.
+  // F (I + e a0 a0^T) with a small e > 0. At a kink of a fibre curve, especially at rest, this selects the tangent of
+  // the stiffer side.
   static Matrix3<L> PerturbAlongFibre(const Matrix3<L>& F, const Vector3<L>& a0) {
     constexpr double kPerturbation = sizeof(S) == 4 ? 1e-6 : 1e-7;
     return F + kPerturbation * ::fascicle::Outer(F * a0, a0);
@@ -614,7 +614,7 @@ struct ChunkKernels {
     WriteVectors(task, sums);
   }
 
-  // How a node's value enters the corners of the linear tetrahedra: of a corner node one, of the middle of an edge two.
+  // Weight of a node in the corners of the linear tetrahedra: a corner node enters one corner, a mid-edge node two.
   struct Parts {
     int count = 0;
     int corner[2] = {};
@@ -643,7 +643,7 @@ struct ChunkKernels {
     S of[kPairs][9][kBlock];
   };
 
-  // H of a point under the whole potential.
+  // The tangent H of a point under the whole potential.
   static TangentMatrix<L> TangentAt(const ChunkTask<S>& task, const S (*H)[kBlock], const Matrix3<L>& F,
                                     const NodeValues& positions, const NodeValues& previous, const RestPoint<S>& rest,
                                     int q, int k) {
@@ -659,11 +659,11 @@ struct ChunkKernels {
     return terms;
   }
 
-  // The blocks of the linear tetrahedron of one point: of corners c >= d at PairOf(c, d).
+  // The blocks of the linear tetrahedron of one point, for corners c >= d at PairOf(c, d).
   static void SetCornerBlocks(const TangentMatrix<L>& H, const L& volume, const Matrix3<L>& Dm_inverse,
                               Matrix3<L> (&blocks)[10]) {
     for (int d = 1; d < 4; ++d) {
-      // Change of P with each component of corner d.
+      // Derivative of P with respect to each component of corner d.
       Matrix3<L> change[3];
       for (int j = 0; j < 3; ++j) {
         for (int i = 0; i < 3; ++i) {
@@ -744,7 +744,7 @@ struct ChunkKernels {
   }
 
   // Adds a block's matrices to those of the chunk, nine numbers as four, four and one, pair by pair and element by
-  // element whatever the number of lanes. Elements that a block lacks have no volume.
+  // element, independently of the number of lanes. Unused lanes have zero volume.
   using Four = Rows<Lanes<S, typename L::Tag, 4>>;
   static void AddToChunk(MatrixEntries& entries, std::size_t b, const ChunkBlocks& chunk) {
     for (int pair = 0; pair < kPairs; ++pair) {

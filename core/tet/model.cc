@@ -10,7 +10,7 @@
 namespace fascicle {
 namespace {
 
-// Where in `targets` each of `count` numbers occurs: places[begin[n] .. begin[n + 1]), ascending.
+// Where each of `count` numbers occurs in `targets`: places[begin[n] .. begin[n + 1]), ascending.
 void Invert(std::span<const std::int32_t> targets, std::size_t count, std::vector<std::int32_t>& begin,
             std::vector<std::int32_t>& places) {
   begin.assign(count + 1, 0);
@@ -25,7 +25,7 @@ void Invert(std::span<const std::int32_t> targets, std::size_t count, std::vecto
   }
 }
 
-// 0 for that of the whole body, k for the k-th of the others.
+// Index of an element's part: 0 for the value of the whole body, k for the k-th of the others.
 template <class Value>
 std::int32_t PartOf(const Parts<Value>& parts, std::size_t tet) {
   return parts.of.empty() ? 0 : parts.of[tet];
@@ -37,10 +37,10 @@ const Material& MaterialOf(const Body& body, std::size_t tet) {
   return k == 0 ? body.material : materials.more[k - 1];
 }
 
-// What is left to an element of its volume modulus when the rest acts on patches. All of it up to a Poisson's ratio of
-// 0.3, which does not lock; beyond, a part of what may crush the element by itself: its shear modulus, and the stress
-// that its fibres have at rest when active, which may be a hundred times that. Quadratic elements bear ten times as
-// much of it before they stiffen, and need it: each of their points may be crushed by itself.
+// The part of the volume modulus that remains with the elements when the rest acts on patches. Up to a Poisson's ratio
+// of 0.3, which does not lock, all of it. Beyond, a multiple of the stresses that may crush a single element: its shear
+// modulus and the active stress of its fibres at rest, which may be a hundred times larger. Quadratic elements tolerate
+// a ten times larger multiple before they stiffen, and need it, because each of their points may be crushed separately.
 template <class Law>
 double ElementVolumeModulus(const Law& law, ElementOrder order) {
   constexpr double kDoesNotLock = 1.5;
@@ -51,7 +51,7 @@ double ElementVolumeModulus(const Law& law, ElementOrder order) {
   return std::min(modulus, kept * (shear + active_stress));
 }
 
-// Whether the active stress of any law depends on how fast the fibre shortens.
+// Whether the active stress of any law depends on the fibre's rate.
 template <class Law>
 bool DependsOnRate(const Law& law) {
   if constexpr (Law::kNeedsFibres) {
@@ -92,7 +92,7 @@ TetModel::TetModel(const Scene& scene) : scene_(&scene) {
     SetBlocks<double>();
   }
   building_ = {};
-  // What grew one by one has room for as much again.
+  // Vectors that grew element by element have excess capacity.
   const auto shrink = [](auto&... vectors) { (vectors.shrink_to_fit(), ...); };
   shrink(rest_positions_, tetrahedra_, edge_nodes_, source_tetrahedron_, law_of_, mass_, mass_damping_);
   shrink(patches_.of_element, patches_.rest_volume, patches_.modulus, patches_.row, patches_.neighbour,
@@ -124,8 +124,8 @@ void TetModel::AddBody(const Body& body) {
   bodies_.push_back(entry);
 }
 
-// The nodes of the mesh, and for quadratic elements one in the middle of every edge, in the order in which elements
-// first name them.
+// Adds the nodes of the mesh and, for quadratic elements, a mid-edge node for every edge, in the order in which
+// elements first refer to them.
 void TetModel::AddNodes(const Body& body, TetBody& entry) {
   const TetMesh& mesh = body.tet().mesh;
   entry.node_begin = nodes();
@@ -153,7 +153,7 @@ void TetModel::AddNodes(const Body& body, TetBody& entry) {
   mass_damping_.resize(entry.node_end, entry.mass_damping);
 }
 
-// Sorts the elements of each law into chunks; they are sorted by law already.
+// Divides the elements of each law, which are contiguous already, into chunks.
 template <class LawOf>
 void TetModel::SortIntoChunks(const TetMesh& mesh, const TetBody& entry, const LawOf& law,
                               std::span<std::int32_t> sorted) {
@@ -236,7 +236,7 @@ void TetModel::AddElements(const Body& body, TetBody& entry) {
   }
 }
 
-// The laws of a group, and the patches that take over what its elements give away of their volume modulus.
+// Fills in the laws of a group, and the patches that receive part of its elements' volume modulus.
 void TetModel::FillGroup(const Body& body, TetGroup& group) {
   const bool nodal = scene_->tet.volume == VolumeForm::kNodal;
   std::vector<double> given(group.tet_end - group.tet_begin, 0.0);
@@ -264,7 +264,7 @@ void TetModel::FillGroup(const Body& body, TetGroup& group) {
   AddPatches(group, given);
 }
 
-// Dm^-1 and V of the points of an element; the sum of V.
+// Dm^-1 and V at the points of an element; returns the sum of V.
 template <class Element>
 double TetModel::AddPoints(std::size_t tet) {
   const auto element_nodes = NodesOf<Element>(tet);
@@ -274,7 +274,7 @@ double TetModel::AddPoints(std::size_t tet) {
   for (int q = 0; q < Element::kPoints; ++q) {
     const Mat3 Dm = EdgeMatrix(Element::Corners(X, q));
     const double volume = Element::kPointWeight * Dm.determinant() / 6;
-    FASCICLE_CHECK(volume > 0, "meshes are checked before they are simulated");
+    FASCICLE_CHECK(volume > 0, "an element of a checked mesh has positive volume");
     building_.Dm_inverse.push_back(Dm.inverse());
     building_.rest_volume.push_back(volume);
     sum += volume;
@@ -313,7 +313,8 @@ void TetModel::AddPatches(const TetGroup& group, std::span<const double> given) 
   for (std::size_t n = first; n < patches_.size(); ++n) patches_.modulus[n] /= patches_.rest_volume[n];
 }
 
-// Rows of W: theta from the corners' patches to the mean of each element, and back with the elements' volumes.
+// Sets the rows of W: theta from the corners' patches to the mean of each element, and back, weighted by the elements'
+// volumes.
 void TetModel::SetSmoothing() {
   std::vector<std::map<std::int32_t, double>> rows(patches_.size());
   for (std::size_t e = 0; e < tetrahedra(); ++e) {
@@ -333,13 +334,13 @@ void TetModel::SetSmoothing() {
   }
 }
 
-// Where the elements of a chunk and their nodes are.
+// Finds the blocks and local node numbers of a chunk's elements.
 template <class Element>
 void TetModel::AddLocalNumbers(const Chunk& chunk, std::span<const std::int32_t> local_of) {
   chunks_.local.resize(Element::kNodes * kBlock * chunk.block_end);
   chunks_.patch.resize(chunk.node_end, Sharing::kNone);
   for (std::size_t slot = kBlock * chunk.block_begin; slot < kBlock * chunk.block_end; ++slot) {
-    // The last block's free lanes repeat the last element.
+    // Unused lanes of the last block repeat the last element.
     const std::size_t e = std::min(chunk.tet_begin + slot - kBlock * chunk.block_begin, chunk.tet_end - 1);
     if (e == chunks_.slot.size()) chunks_.slot.push_back(static_cast<std::int32_t>(slot));
     const auto element_nodes = NodesOf<Element>(e);
@@ -353,7 +354,7 @@ void TetModel::AddLocalNumbers(const Chunk& chunk, std::span<const std::int32_t>
   }
 }
 
-// Numbers the nodes of each chunk, ascending.
+// Lists the nodes of each chunk, ascending.
 void TetModel::SetChunks() {
   VisitElement([&]<class Element>(Element) {
     std::vector<std::int32_t> local_of(nodes(), -1);
@@ -376,7 +377,7 @@ void TetModel::SetChunks() {
         }
       }
       chunk.node_end = chunks_.nodes.size();
-      FASCICLE_CHECK(chunk.node_end - chunk.node_begin <= kChunkNodes, "chunks are cut within their limits");
+      FASCICLE_CHECK(chunk.node_end - chunk.node_begin <= kChunkNodes, "a chunk respects its limits");
       const auto first = chunks_.nodes.begin() + static_cast<std::ptrdiff_t>(chunk.node_begin);
       std::sort(first, chunks_.nodes.end());
       for (std::size_t i = chunk.node_begin; i < chunk.node_end; ++i) {
@@ -454,9 +455,9 @@ Vec3 TetModel::Fibres::operator[](std::size_t tet) const {
   });
 }
 
-// The nodes of a region, ascending: those of the mesh, and of quadratic elements the middles of edges both of whose
-// ends belong to it and that lie in the surface or in an element of which all corners do. (An edge through the body
-// from one side of a region to another is not part of it.)
+// The nodes of a region, ascending: those of the mesh and, for quadratic elements, mid-edge nodes. A mid-edge node
+// belongs to the region if both ends of its edge do and the edge lies on the boundary or in an element all of whose
+// corners belong to the region. (An edge through the body between two sides of a region does not.)
 std::vector<std::int32_t> TetModel::NodesOfRegion(const Region& region, const TetBody& body) const {
   const auto first = static_cast<std::int32_t>(body.node_begin);
   std::vector<std::int32_t> nodes;
@@ -479,8 +480,8 @@ std::vector<std::int32_t> TetModel::NodesOfRegion(const Region& region, const Te
   return nodes;
 }
 
-// What loads on a region act on: of quadratic elements, where the shares of corners in a face integrate to zero, faces
-// go to the middles of their edges.
+// What loads on a region act on. With quadratic elements a face acts on its mid-edge nodes, because the corner functions
+// integrate to zero.
 LoadedRegion TetModel::LoadedRegionIn(const Region& region, const TetBody& body) const {
   const auto first = static_cast<std::int32_t>(body.node_begin);
   LoadedRegion loaded;
@@ -534,7 +535,7 @@ void TetModel::AddContactNodes(const TetBody& body) {
     const Triangle n = {first + t[0], first + t[1], first + t[2]};
     const Vec3& X0 = rest_positions_[n[0]];
     const double area = 0.5 * (rest_positions_[n[1]] - X0).cross(rest_positions_[n[2]] - X0).norm();
-    // The shares of quadratic triangles that integrate exactly leave corners without area: those could be pushed in.
+    // The consistent weights of quadratic triangles are zero at corners, which could then penetrate the floor.
     const double corner = order() == ElementOrder::kLinear ? 1. / 3 : 1. / 12;
     for (int c = 0; c < 3; ++c) {
       areas[n[c]] += corner * area;

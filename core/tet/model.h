@@ -18,7 +18,7 @@
 
 namespace fascicle {
 
-// One node of one element has the number nodes of an element * element + node.
+// Index nodes of an element * element + node: one node of one element.
 using ElementNodeIndex = std::int32_t;
 
 // Laws of one kind: std::variant<std::vector<LinearElastic>, ...>.
@@ -26,13 +26,13 @@ template <class... Laws>
 std::variant<std::vector<Laws>...> LawTableOf(const std::variant<Laws...>&);
 using LawTable = decltype(LawTableOf(std::declval<Material>()));
 
-// A body's share of the model's arrays. Nodes: those of its mesh in their order, then those in the middle of edges.
+// A body's ranges in the model's arrays. Nodes: those of its mesh in their order, then mid-edge nodes.
 struct TetBody {
   const Body* source = nullptr;
   std::size_t node_begin = 0, node_end = 0;
   std::size_t mesh_node_end = 0;
   std::size_t tet_begin = 0, tet_end = 0;
-  std::size_t activation = 0;  // index of its own one in activations()
+  std::size_t activation = 0;  // index of the body's own curve in activations()
   // Viscous stress S_v = 2 damping_mu Edot + damping_lambda tr(Edot) I [Pa s].
   double damping_mu = 0, damping_lambda = 0;
   double mass_damping = 0;  // [1/s]
@@ -40,41 +40,42 @@ struct TetBody {
   bool HasStrainDamping() const { return damping_mu != 0 || damping_lambda != 0; }
 };
 
-// Elements of one body whose laws are of one kind, so that a loop over them is compiled for that kind.
+// Elements of one body whose laws are of the same kind, so that a loop over them can be compiled for that kind.
 struct TetGroup {
   std::size_t body = 0;
   std::size_t tet_begin = 0, tet_end = 0;
-  LawTable laws;  // that of an element is laws[law_of()[element]]
+  LawTable laws;  // the law of an element is laws[law_of()[element]]
 };
 
-// A load as forces on nodes at scale 1.
+// A load as nodal forces at scale 1.
 struct NodalLoad {
   const Curve* scale = nullptr;
   std::vector<std::int32_t> nodes;  // ascending
   std::vector<Vec3> forces;         // [N]
 };
 
-// A region whose motion is prescribed.
+// A region with prescribed motion.
 struct Support {
   const Constraint* source = nullptr;
   std::int32_t body = 0;
   std::vector<std::int32_t> nodes;  // ascending
-  // Which components of each node are this support's; where two supports share one, it belongs to the first.
+  // The components of each node that belong to this support. A component prescribed by two supports belongs to the
+  // first.
   std::vector<std::array<bool, 3>> owned;
 };
 
-// A node of the surface, and how hard floors push it back [N/m].
+// A surface node and its contact stiffness [N/m].
 struct ContactNode {
   std::int32_t node = 0;
   double stiffness = 0;
 };
 
-// A scene made ready for stepping: nodes and elements of all bodies in common arrays, and what does not change. Indices
-// count through all bodies. The elements of a body are sorted by the kind of their law, then by the law, and those of
-// one law so that neighbours in space are neighbours in memory. Immutable; may be shared between threads.
+// A scene prepared for stepping: nodes and elements of all bodies in common arrays, and everything that stays constant.
+// Indices count through all bodies. The elements of a body are sorted by kind of law, then by law, and within a law so
+// that neighbours in space are neighbours in memory. Immutable; may be shared between threads.
 class TetModel {
  public:
-  // The scene must have passed CheckScene and must outlive the model.
+  // CheckScene must have accepted the scene, which must outlive the model.
   explicit TetModel(const Scene& scene);
 
   const Scene& scene() const { return *scene_; }
@@ -83,7 +84,7 @@ class TetModel {
   std::size_t tetrahedra() const { return tetrahedra_.size(); }
 
   const NodalVector& rest_positions() const { return rest_positions_; }  // X [m]
-  // X, moved by the bodies' initial displacements [m].
+  // X plus the bodies' initial displacements [m].
   NodalVector InitialPositions() const;
   const std::vector<Tetrahedron>& corners() const { return tetrahedra_; }
   ElementOrder order() const { return scene_->tet.element; }
@@ -92,7 +93,7 @@ class TetModel {
   decltype(auto) VisitElement(const Visitor& visitor) const {
     return order() == ElementOrder::kLinear ? visitor(LinearElement{}) : visitor(QuadraticElement{});
   }
-  // The nodes of an element: its corners, then the middles of its edges.
+  // The nodes of an element: its corners, then its mid-edge nodes.
   template <class Element>
   std::array<std::int32_t, Element::kNodes> NodesOf(std::size_t tet) const {
     if constexpr (Element::kNodes == 4) {
@@ -108,14 +109,14 @@ class TetModel {
   int points_per_element() const { return order() == ElementOrder::kLinear ? 1 : 4; }
   const std::vector<TetGroup>& groups() const { return groups_; }
   const std::vector<std::int32_t>& law_of() const { return law_of_; }
-  // The number of each element in its body's mesh.
+  // Number of each element in its body's mesh.
   const std::vector<std::int32_t>& source_tetrahedron() const { return source_tetrahedron_; }
   const VolumePatches& patches() const { return patches_; }
 
-  // Curves of activation of all bodies, and what each element makes of its one.
+  // Activation curves of all bodies, and for each element its curve and factor.
   const std::vector<const Curve*>& activations() const { return activations_; }
   double ActivationOf(std::size_t tet, std::span<const double> activations) const;
-  // The elements as the loops over them see them.
+  // The elements in the layout of the loops over them.
   const ElementChunks& chunks() const { return chunks_; }
   template <class S>
   const BlockArrays<S>& blocks() const {
@@ -127,8 +128,8 @@ class TetModel {
     return std::visit(visitor, blocks_);
   }
 
-  // Of point q of an element, at points of an element * element + q: Dm^-1 [1/m], and its part V of the volume [m^3].
-  // These and the fibres are read from the blocks, one by one.
+  // For point q of an element, at index points of an element * element + q: Dm^-1 [1/m], and its volume V [m^3]. These
+  // and the fibres are read from the blocks one at a time.
   struct DmInverses {
     const TetModel& model;
     Mat3 operator[](std::size_t point) const;
@@ -154,7 +155,7 @@ class TetModel {
     return volume;
   }
   const std::vector<double>& mass() const { return mass_; }  // lumped: see Element::kMassShare [kg]
-  // 1/m [1/kg], and zero for components whose motion is prescribed.
+  // 1/m [1/kg]; zero for prescribed components.
   const NodalVector& inverse_mass() const { return inverse_mass_; }
   // Rayleigh damping of each node: mass_damping of its body [1/s].
   const std::vector<double>& mass_damping() const { return mass_damping_; }
@@ -162,21 +163,22 @@ class TetModel {
   // Bm3 = -V Dm^-T, so that [f1 f2 f3] = P Bm3 [Teran 2003, 4.1].
   Mat3 Bm3(std::size_t point) const { return -rest_volume()[point] * Dm_inverse()[point].transpose(); }
 
-  // Where node n is one of an element: node_uses()[node_use_begin()[n] .. node_use_begin()[n + 1]), ascending.
+  // The occurrences of node n in elements: node_uses()[node_use_begin()[n] .. node_use_begin()[n + 1]), ascending.
   const std::vector<std::int32_t>& node_use_begin() const { return node_use_begin_; }
   const std::vector<ElementNodeIndex>& node_uses() const { return node_uses_; }
 
   const std::vector<NodalLoad>& loads() const { return loads_; }
   const std::vector<Support>& supports() const { return supports_; }
-  // What floors may touch, ascending in node; empty without floors. A node's stiffness is that of the layer of elements
-  // above it: M A / h, with M the longitudinal modulus of its body's material, A the node's share of the surface and h
-  // = mass / (density A). So contact is no harder to step than the elements are, and the depth falls with their size.
+  // Nodes that may touch floors, in ascending order; empty without floors. The contact stiffness of a node is that of
+  // the layer of elements above it: M A / h, with M the longitudinal modulus of its body's material, A the node's share
+  // of the surface and h = mass / (density A). So contact does not reduce the stable step below that of the elements,
+  // and the penetration depth decreases with the element size.
   const std::vector<ContactNode>& contact_nodes() const { return contact_nodes_; }
   bool has_gravity() const { return scene_->gravity.acceleration != Vec3::Zero(); }
   bool has_damping() const { return has_mass_damping_ || has_strain_damping_; }
   bool has_mass_damping() const { return has_mass_damping_; }
   bool has_strain_damping() const { return has_strain_damping_; }
-  // Whether any law depends on how fast its fibres shorten.
+  // Whether any law depends on the rate of its fibres.
   bool depends_on_rate() const { return depends_on_rate_; }
 
  private:
@@ -206,12 +208,12 @@ class TetModel {
   std::vector<TetGroup> groups_;
   NodalVector rest_positions_;
   std::vector<Tetrahedron> tetrahedra_;
-  std::vector<std::array<std::int32_t, 6>> edge_nodes_;  // quadratic elements only
-  // During construction only.
+  std::vector<std::array<std::int32_t, 6>> edge_nodes_;  // for quadratic elements
+  // Used during construction only.
   struct Building {
-    // The node in the middle of the edge between two nodes, the lower first.
+    // The mid-edge node of the edge between two nodes, the lower one first.
     std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
-    // Of each point and of each element.
+    // For each point and each element.
     std::vector<Mat3> Dm_inverse;
     std::vector<double> rest_volume;
     std::vector<Vec3> fibres;

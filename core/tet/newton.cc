@@ -10,19 +10,20 @@ namespace {
 // Sufficient decrease [Nocedal & Wright 2006, 3.1].
 constexpr double kArmijo = 1e-4;
 constexpr double kShortestPart = 1.0 / 1024;
-// Least part of a projection that is worth another factorization.
+// Smallest part of a projection that is worth another factorization.
 constexpr double kLeastProjection = 1.0 / 16;
-// rho of the augmented Lagrangian as part of the patch's modulus, where the Lagrangian falls without it.
+// Smallest rho of the augmented Lagrangian, relative to the patch's modulus, where the Lagrangian falls without
+// augmentation.
 constexpr double kLeastAugmentation = 0.01;
-// Untangling ends near rest once every J is above that, or else at rest.
+// Once every J exceeds this, untangling ends at a loose force tolerance; until then, only in equilibrium.
 constexpr double kUntangled = 0.3;
 constexpr double kUntangledForce = 0.01;
 constexpr double kUntanglingTolerance = 1e-6;
 constexpr int kMaxUntangling = 200;
 constexpr double kUntanglingHold = 1e-3;
 
-// Whether the corners of every element are the right way round, also where a quadratic element hides a fold from its
-// points.
+// Whether every element has a positive Jacobian at its corners, too: a quadratic element may be folded there although
+// its quadrature points are not.
 bool AllUpright(const TetModel& model, const NodalVector& x) {
   return std::all_of(model.corners().begin(), model.corners().end(),
                      [&](const Tetrahedron& tet) { return Determinant(EdgeMatrix(x, tet)) > 0; });
@@ -41,14 +42,14 @@ NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const No
   const NodalVector x_start = x;
   const std::vector<double> pressure_start = pressure;
   Iterate(potential, target, options, x, pressure, result);
-  // Only a factorization tells for sure what is a minimum.
+  // Only a factorization decides with certainty whether the matrix is that of a minimum.
   if (result.end == NewtonResult::End::kNotConverged && system_.SolveDirectly()) {
     x = x_start;
     pressure = pressure_start;
     Iterate(potential, target, options, x, pressure, result);
   }
-  // A start that is tangled, or a motion that no valid part of the linear answer follows, may have a place to go all
-  // the same: from where it is in order, and if that is no good, from rest.
+  // The start may be tangled, or no valid part of the linear prediction exists. Retries from an untangled start, then
+  // from rest.
   for (int attempt = 0; attempt < 2 && result.end == NewtonResult::End::kInvalid; ++attempt) {
     if (attempt == 1) x = model_.rest_positions();
     const bool untangled = Untangle(target, options.stop, x, result);
@@ -116,8 +117,8 @@ void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVec
   }
 }
 
-// Brings prescribed components to their place and all elements to a positive volume by projected Newton on
-// UntanglingLaw, which lowers its energy at every step. False when some element stays inverted.
+// Moves prescribed components to their targets and gives all elements positive volume by projected Newton on
+// UntanglingLaw, whose energy decreases in every step. False if an element stays inverted.
 bool NewtonSolver::Untangle(const NodalVector& target, const std::stop_token& stop, NodalVector& x,
                             NewtonResult& result) {
   IncrementalPotential potential;
@@ -125,7 +126,7 @@ bool NewtonSolver::Untangle(const NodalVector& target, const std::stop_token& st
   const NodalVector no_load(x.size(), Vec3::Zero());
   potential.load = &no_load;
   const std::vector<double> no_pressure(model_.patches().size(), 0.0);
-  // A gentle hold on where each iteration starts, for bodies that nothing else holds.
+  // A weak spring to the start of each iteration, for bodies without supports.
   potential.inertia.assign(x.size(), 0.0);
   for (std::size_t n = 0; n < x.size(); ++n) {
     potential.inertia[n] = kUntanglingHold * std::cbrt(model_.mass()[n] / model_.bodies()[0].source->density);
@@ -161,7 +162,8 @@ bool NewtonSolver::Untangle(const NodalVector& target, const std::stop_token& st
   return system_.Evaluate(potential, x, no_pressure, team_, force_).smallest_ratio > 0 && AllUpright(model_, x);
 }
 
-// The part of the step with tangents projected so that was taken; 0, and nothing has moved, when none is of use.
+// Takes a step with tangents projected to the given degree; returns the fraction of the step, or 0 without any motion
+// if there is no acceptable one.
 double NewtonSolver::TakeStep(const IncrementalPotential& potential, double projection, bool same_point,
                               bool prescribed_move, NodalVector& x, std::vector<double>& pressure) {
   const NewtonSystem::StepOptions options{.projection = projection, .tolerance = forcing_, .same_point = same_point};
@@ -174,7 +176,7 @@ double NewtonSolver::TakeStep(const IncrementalPotential& potential, double proj
   }
   std::swap(x, trial_);
   for (std::size_t n = 0; n < pressure.size(); ++n) pressure[n] += part * dp_[n];
-  // The line search was there, with the pressures of a whole step.
+  // The line search has evaluated this point already, with the pressures of a whole step.
   is_evaluated_ = !prescribed_move && (part == 1 || pressure.empty());
   if (is_evaluated_) {
     now_ = trial_now_;
@@ -189,7 +191,7 @@ void NewtonSolver::Move(const NodalVector& x, double part) {
   ForNodes(team_, x.size(), [&](std::size_t n) { trial_[n] = x[n] + part * dx_[n]; });
 }
 
-// p', theta' and the present theta of every patch.
+// Computes p', theta' and the current theta of every patch.
 void NewtonSolver::LookAhead(std::span<const double> pressure) {
   const VolumePatches& patches = model_.patches();
   ratio_ = system_.ratios();
@@ -214,13 +216,13 @@ double NewtonSolver::PatchMerit(std::span<const double> ratio, double augmentati
   return merit;
 }
 
-// The largest part of the step, halving it, that is valid and, once prescribed components have arrived, lowers the
-// augmented Lagrangian enough; 0 when there is none.
+// The largest fraction of the step, found by halving, that is valid and, once prescribed components have reached their
+// targets, decreases the augmented Lagrangian sufficiently; 0 if there is none.
 double NewtonSolver::LineSearch(const IncrementalPotential& potential, const NodalVector& x, bool prescribed_move) {
   const VolumePatches& patches = model_.patches();
   double augmentation = 0, slope = 0;
   if (!prescribed_move) {
-    // Slope of the Lagrangian, in whose force p' stands for p, and of the augmentation for rho = k.
+    // Slope of the Lagrangian, with p' in place of p in its force, and slope of the augmentation for rho = k.
     if (!patches.empty()) system_.Evaluate(potential, x, pressure_ahead_, team_, trial_force_);
     const NodalVector& force = patches.empty() ? force_ : trial_force_;
     double lagrangian = 0, volume = 0;
@@ -245,8 +247,8 @@ double NewtonSolver::LineSearch(const IncrementalPotential& potential, const Nod
     if (prescribed_move) return part;
     const double trial_merit = trial_now_.energy + PatchMerit(system_.ratios(), augmentation);
     if (trial_merit <= merit + kArmijo * part * slope) return part;
-    // Where rounding hides the difference of the energies, which may be sums of much larger parts, their slopes tell
-    // [Hager & Zhang 2005, 4.1].
+    // Energies may be sums of much larger terms. Where rounding hides their difference, slopes decide [Hager & Zhang
+    // 2005, 4.1].
     const double rounding = now_.energy_rounding + 1e-13 * (std::abs(now_.energy) + std::abs(merit)) +
                             1e-8 * now_.force_scale * step_length;
     if (trial_merit <= merit + rounding && SlopeAt(augmentation) <= (2 * kArmijo - 1) * slope) return part;
@@ -266,7 +268,7 @@ double NewtonSolver::SlopeAt(double augmentation) const {
   return slope;
 }
 
-// What is left of the way to the prescribed components; whether there is any.
+// Computes the remaining displacement of prescribed components; returns whether there is any.
 bool NewtonSolver::FindRemaining(const NodalVector& target, const NodalVector& x) {
   remaining_.assign(x.size(), Vec3::Zero());
   bool any = false;
@@ -288,7 +290,7 @@ void NewtonSolver::PlacePrescribed(const NodalVector& target, NodalVector& x) co
   }
 }
 
-// Norm of the force on unknown components over that of all element forces.
+// Norm of the force on unknown components relative to that of all element forces.
 double NewtonSolver::RelativeForce(NewtonResult& result) const {
   double squares = 0, largest = 0;
   for (std::size_t n = 0; n < force_.size(); ++n) {
@@ -302,8 +304,8 @@ double NewtonSolver::RelativeForce(NewtonResult& result) const {
   return result.residual;
 }
 
-// As accurate as what is left to be gained, where linear systems are solved iteratively [Eisenstat & Walker 1996,
-// Choosing the forcing terms in an inexact Newton method, SIAM J. Sci. Comput. 17, choice 2].
+// Tolerance of iterative linear solves, chosen by the progress of Newton's method [Eisenstat & Walker 1996, Choosing
+// the forcing terms in an inexact Newton method, SIAM J. Sci. Comput. 17, choice 2].
 void NewtonSolver::ChooseForcing(double residual, double residual_before, double tolerance) {
   constexpr double kGamma = 0.1, kMost = 0.01, kLeast = 1e-6;
   const double gain = residual_before > 0 ? residual / residual_before : 1;
@@ -311,7 +313,7 @@ void NewtonSolver::ChooseForcing(double residual, double residual_before, double
   forcing_ = std::min(kMost, std::max({kGamma * gain * gain, useful, kLeast}));
 }
 
-// Whether p is U'(theta), measured by the forces that the difference makes.
+// Whether p equals U'(theta), measured by the forces that the difference causes.
 bool NewtonSolver::PressuresAgree(std::span<const double> pressure, double tolerance) const {
   const VolumePatches& patches = model_.patches();
   double squares = 0;

@@ -9,9 +9,9 @@
 namespace fascicle {
 
 struct NewtonOptions {
-  double tolerance = 1e-8;  // of the force, relative to the norm of all element forces
+  double tolerance = 1e-8;  // for the force, relative to the norm of all element forces
   int max_iterations = 50;
-  std::stop_token stop;  // looked at before every iteration
+  std::stop_token stop;  // checked before every iteration
 };
 
 struct NewtonResult {
@@ -19,33 +19,32 @@ struct NewtonResult {
   End end = End::kNotConverged;
   int iterations = 0;    // factorizations
   double residual = 0;   // largest |force| on an unknown component over the norm of all element forces [1]
-  std::size_t node = 0;  // where
+  std::size_t node = 0;  // the node where it occurs
   LinearSolves solves;
 };
 
-// Finds a stationary point of an IncrementalPotential, a minimum wherever there is one nearby.
+// Finds a stationary point of an IncrementalPotential, and a minimum if there is one nearby.
 //
-// Newton's method on positions and pressures (NewtonSystem). A step is cut until it leaves no element inverted and
-// lowers the augmented Lagrangian
+// Newton's method on positions and pressures (NewtonSystem). A step is shortened until it inverts no element and
+// decreases the augmented Lagrangian
 //   L(x) = Phi without patches + sum V_n [p'_n theta_n + rho_n/2 (theta_n - theta'_n)^2],   p' = p + dp,
-// theta' the volume ratio that goes with p' to first order: its slope along dx is -dx.A dx - sum rho V dtheta^2, so it
-// falls wherever A is positive definite [Nocedal & Wright 2006, 18.3]. The exact tangent comes first; where its
-// inertia is not that of a minimum, it is moved towards the projected one, no further than it takes: that one alone is
-// far stiffer, and creeps. Components that are prescribed move with the first iterations, as the linear system says the
-// rest of the body would follow. A start with inverted elements, or a prescribed motion that inverts some, is first
-// brought in order with UntanglingLaw. One thread at a time.
+// where theta' is the volume ratio that corresponds to p' to first order. The slope of L along dx is -dx.A dx - sum rho
+// V dtheta^2, so L decreases wherever A is positive definite [Nocedal & Wright 2006, 18.3]. The exact tangent is tried
+// first. If its inertia is not that of a minimum, it is blended with the projected tangent, as little as necessary,
+// because the projected one is far stiffer and converges slowly. Prescribed components move in the first iterations;
+// the rest of the body follows by the linear system. A start with inverted elements, or a prescribed motion that
+// inverts some, is first repaired with UntanglingLaw. Not thread-safe.
 class NewtonSolver {
  public:
-  // Model, team and profile must outlive the solver. Stages are timed in `profile` where there is one.
+  // Model, team and profile must outlive the solver. Stages are timed in `profile`, which may be null.
   NewtonSolver(const TetModel& model, ThreadTeam& team, Profile* profile = nullptr);
 
-  // x is where to start and the result; its prescribed components go to those of `target`. `pressure` likewise (one for
-  // each patch). On anything but kConverged both are where the iteration ended.
+  // x is the start and the result; its prescribed components move to those of `target`. The same for `pressure` (one
+  // value for each patch). If the result is not kConverged, both are those of the last iteration.
   NewtonResult Solve(const IncrementalPotential& potential, const NodalVector& target, const NewtonOptions& options,
                      NodalVector& x, std::vector<double>& pressure);
 
-  // To be called before Solve: x becomes `guess` where that is nearer to a solution, that is valid with a smaller
-  // force.
+  // Call before Solve: sets x to `guess` if the guess is valid and has a smaller force.
   void StartNearer(const IncrementalPotential& potential, const NodalVector& guess, std::span<const double> pressure,
                    NodalVector& x);
 
@@ -70,10 +69,10 @@ class NewtonSolver {
   ThreadTeam& team_;
   NewtonSystem system_;
   NodalVector force_, trial_, trial_force_, dx_, remaining_;
-  std::vector<double> dp_, pressure_ahead_, ratio_, ratio_ahead_;  // of each patch
+  std::vector<double> dp_, pressure_ahead_, ratio_, ratio_ahead_;  // for each patch
   NewtonSystem::Evaluation now_, trial_now_;
-  bool is_evaluated_ = false;  // now_ and force_ are those of where the next iteration starts
-  double forcing_ = 0;         // tolerance of the next linear solution
+  bool is_evaluated_ = false;  // whether now_ and force_ belong to the start of the next iteration
+  double forcing_ = 0;         // tolerance of the next linear solve
 };
 
 }  // namespace fascicle

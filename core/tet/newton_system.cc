@@ -10,11 +10,11 @@
 namespace fascicle {
 namespace {
 
-// Larger systems are solved iteratively.
+// Systems with more unknowns are solved iteratively.
 constexpr std::size_t kMostDirectUnknowns = 6000;
-// Up to that size a step whose iterations come to nothing is made again with factorizations.
+// Up to this size, a step whose iterative solves fail is repeated with factorizations.
 constexpr std::size_t kMostFallbackUnknowns = 60000;
-// So many failures of the iteration, and the rest of the step in time is solved directly.
+// After this many failures of the iterative solver, the rest of the time step uses factorizations.
 constexpr int kMostFailures = 2;
 
 double ModulusOf(const TetModel& model, const TetGroup& group) {
@@ -22,7 +22,7 @@ double ModulusOf(const TetModel& model, const TetGroup& group) {
                     model.bodies()[group.body].source->material);
 }
 
-// What rounding does to the elastic energy [J]: at every point a small difference of terms of the modulus' size.
+// Rounding error of the elastic energy [J]: at every point a small difference of terms of the modulus' size.
 double EnergyRounding(const TetModel& model) {
   double sum = 0;
   for (const TetGroup& group : model.groups()) {
@@ -35,7 +35,7 @@ double EnergyRounding(const TetModel& model) {
   return std::numeric_limits<double>::epsilon() * sum;
 }
 
-// Element forces at a strain of 1e-5: a body at rest has none to compare with.
+// Element forces at a strain of 1e-5, as a scale for bodies at rest, which have no forces.
 double ForceFloor(const TetModel& model) {
   constexpr double kSmallStrain = 1e-5;
   double squares = 0;
@@ -130,7 +130,7 @@ bool NewtonSystem::FindStep(const IncrementalPotential& potential, const NodalVe
   return true;
 }
 
-// Matrix and right side with exact tangents.
+// Assembles the matrix and the right-hand side with exact tangents.
 void NewtonSystem::Assemble(const IncrementalPotential& potential, const NodalVector& x,
                             std::span<const double> pressure, const NodalVector& force, const NodalVector& prescribed,
                             ThreadTeam& team) {
@@ -141,7 +141,7 @@ void NewtonSystem::Assemble(const IncrementalPotential& potential, const NodalVe
   projection_ = 0;
   has_projected_ = false;
   SaddleMatrix& matrix = assembly_.matrix();
-  // What the prescribed change leaves.
+  // The right-hand side after subtracting the prescribed change.
   side_.assign(model_.nodes(), Vec3::Zero());
   volume_side_.assign(patches.size(), 0.0);
   if (std::any_of(prescribed.begin(), prescribed.end(), [](const Vec3& d) { return d != Vec3::Zero(); })) {
@@ -158,7 +158,7 @@ void NewtonSystem::Assemble(const IncrementalPotential& potential, const NodalVe
   matrix.IsolatePrescribed(team);
 }
 
-// Moves the matrix to another part of the projection.
+// Changes the projected part of the matrix.
 void NewtonSystem::Project(const IncrementalPotential& potential, const NodalVector& x, double projection,
                            const NodalVector& prescribed, ThreadTeam& team) {
   const StageTimer timer(profile_, "projection");
@@ -195,7 +195,7 @@ bool NewtonSystem::Solve(double tolerance, ThreadTeam& team, NodalVector& dx, st
     ++solves_.iterative;
     solves_.iterations += result.iterations;
     if (result.ok && result.is_minimum) return true;
-    // Wholly projected, it is that of a minimum whatever the Ritz values say.
+    // A completely projected matrix is that of a minimum, whatever the Ritz values.
     if (!result.is_minimum && projection_ < 1) return false;
     is_iterative_ = ++solves_.not_converged < kMostFailures;
   }
@@ -207,7 +207,7 @@ bool NewtonSystem::Solve(double tolerance, ThreadTeam& team, NodalVector& dx, st
   return true;
 }
 
-// The pressures that act on elements.
+// Computes the pressures that act on elements.
 void NewtonSystem::Smooth(const IncrementalPotential& potential, std::span<const double> pressure) {
   acting_.assign(pressure.size(), 0.0);
   if (potential.untangling) return;

@@ -6,63 +6,63 @@
 
 namespace fascicle {
 
-// How the linear systems of one step in time were solved.
+// Statistics of the linear solves of one time step.
 struct LinearSolves {
   int direct = 0, iterative = 0;  // number of systems
-  int iterations = 0;             // of GMRES, all systems
-  int not_converged = 0;          // iterative ones that were then factored
+  int iterations = 0;             // of GMRES, over all systems
+  int not_converged = 0;          // iterative solves that failed and were factored
 };
 
-// The linear system of one Newton iteration on IncrementalPotential: SaddleMatrix with f the force -dPhi/dx with p in
-// place of U'(theta),
+// The linear system of one Newton iteration on IncrementalPotential: a SaddleMatrix, with f the force -dPhi/dx where p
+// replaces U'(theta),
 //
 //   [ A   B^T ] [dx]   [ f                ]
 //   [ B   -C  ] [dp] = [ C (p - U'(theta)) ]
 //
-// Eliminating dp gives Newton's equation of Phi, but p is free to differ from U'(theta) on the way, which spares the
-// stiff volume energy's detours. All bits are the same for any number of threads.
+// Eliminating dp gives Newton's equation of Phi. But during the iteration p may differ from U'(theta), which avoids the
+// long path along the stiff volume energy. The same bits for any number of threads.
 class NewtonSystem {
  public:
-  // Finds the pattern; model and profile must outlive the system.
+  // Finds the sparsity pattern. Model and profile must outlive the system.
   explicit NewtonSystem(const TetModel& model, Profile* profile = nullptr);
 
-  // Force f on all nodes (unknown and prescribed) and the merit function's parts at x with pressures p.
+  // Force f on all nodes (unknown and prescribed) and the terms of the merit function at x with pressures p.
   struct Evaluation {
     double smallest_ratio = 1;   // least J of all points
-    double rounding = 0;         // of the force of inertia, a small difference of positions times a large number [N]
-    bool valid = false;          // J > 0 at all points, theta > 0, all finite
+    double rounding = 0;         // rounding error of the inertia force [N]
+    bool valid = false;          // whether J > 0 at all points, theta > 0, and everything is finite
     double energy = 0;           // Phi without patches [J]
-    double energy_rounding = 0;  // of elastic energies, small differences of larger terms [J]
-    double force_scale = 0;      // norm of all element forces and loads [N]: what f is small against
+    double energy_rounding = 0;  // rounding error of the elastic energies, small differences of larger terms [J]
+    double force_scale = 0;      // norm of all element forces and loads [N], the scale for f
   };
   Evaluation Evaluate(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
                       ThreadTeam& team, NodalVector& force);
   // theta of each patch at the x of the last Evaluate.
   const std::vector<double>& ratios() const { return forces_.ratio; }
 
-  // How to solve.
+  // How to solve for a step.
   struct StepOptions {
-    // In [0, 1]: the part of every point's tangent that its projection to a positive semidefinite one replaces.
+    // In [0, 1]: degree of blending every point's tangent with its projection to a positive semidefinite one.
     double projection = 0;
-    double tolerance = 1e-3;  // of an iterative solution, relative to the right side
-    bool same_point = false;  // x, pressure, force and prescribed are those of the last call
+    double tolerance = 1e-3;  // of an iterative solve, relative to the right-hand side
+    bool same_point = false;  // whether x, pressure, force and prescribed are those of the last call
   };
-  // The step from x and p, theta from the last Evaluate at that x: `force` as from there; `prescribed` the change of
-  // prescribed components, which dx takes over. False when it is not a step towards a minimum: when the matrix can't be
-  // factored or its inertia is not that of a minimum or, where it is solved iteratively, when its
-  // Ritz values say so.
+  // The step from x and p, with theta and `force` from the last Evaluate at that x. `prescribed` is the change of
+  // prescribed components, which dx adopts. False if it is not a step towards a minimum: the matrix can't be factored,
+  // its inertia is not that of a minimum or, for iterative solves, its Ritz values show that.
   bool FindStep(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
                 const StepOptions& options, const NodalVector& force, const NodalVector& prescribed, ThreadTeam& team,
                 NodalVector& dx, std::vector<double>& dp);
 
-  // To be called before the first FindStep of a step in time: nothing of those before it is left, so that a run that
-  // goes on from a checkpoint makes the same bits.
+  // Call before the first FindStep of a time step. Discards everything from earlier steps, so that a run resumed from a
+  // checkpoint has the same bits.
   void StartStep();
 
-  // Has the systems of this step in time solved directly from here on. False when they are already, or too large.
+  // Switches to direct solves for the rest of this time step. False if that is already so, or if the systems are too
+  // large.
   bool SolveDirectly();
 
-  // How the linear systems since StartStep were solved.
+  // Statistics of the linear solves since StartStep.
   const LinearSolves& solves() const { return solves_; }
 
  private:
@@ -71,7 +71,7 @@ class NewtonSystem {
   const TetModel& model_;
   Profile* const profile_;
   SaddleAssembly assembly_;
-  // The first that is needed of each.
+  // Each is created when it is first needed.
   std::unique_ptr<DirectSaddleSolver> direct_;
   std::unique_ptr<IterativeSaddleSolver> iterative_;
   std::size_t unknowns_ = 0;
@@ -79,16 +79,16 @@ class NewtonSystem {
   ForceWorkspace forces_;
   double force_floor_ = 0;      // [N]
   double energy_rounding_ = 0;  // [J]
-  std::vector<double> acting_;  // W p of each patch [Pa]
+  std::vector<double> acting_;  // W p for each patch [Pa]
   void Assemble(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
                 const NodalVector& force, const NodalVector& prescribed, ThreadTeam& team);
   void Project(const IncrementalPotential& potential, const NodalVector& x, double projection,
                const NodalVector& prescribed, ThreadTeam& team);
   bool Solve(double tolerance, ThreadTeam& team, NodalVector& dx, std::vector<double>& dp);
 
-  double projection_ = 0;              // that is in the matrix
-  bool has_projected_ = false;         // at this point
-  NodalVector side_, projected_side_;  // right side, and what a whole projection takes from it [N]
+  double projection_ = 0;              // degree of projection of the current matrix
+  bool has_projected_ = false;         // whether the projection at this point is assembled
+  NodalVector side_, projected_side_;  // right-hand side, and the change by complete projection [N]
   std::vector<double> volume_side_;    // [m^3]
   LinearSolves solves_;
 };

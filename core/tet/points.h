@@ -6,7 +6,7 @@
 
 #include "core/tet/forces.h"
 
-// What loops over elements and their quadrature points share.
+// Functions shared by loops over elements and their quadrature points.
 namespace fascicle {
 
 // The values at the nodes of an element.
@@ -18,13 +18,13 @@ std::array<Vec3, Element::kNodes> ValuesOf(const TetModel& model, std::size_t te
   return at;
 }
 
-// Gradient of values at point q by rest position: F of positions, Fdot of velocities.
+// Gradient of nodal values at point q with respect to rest position: F for positions, Fdot for velocities.
 template <class Element>
 Mat3 GradientAt(const TetModel& model, std::size_t tet, const std::array<Vec3, Element::kNodes>& values, int q) {
   return EdgeMatrix(Element::Corners(values, q)) * model.Dm_inverse()[Element::kPoints * tet + q];
 }
 
-// Rest gradients of an element's shape functions at point q, a column for each node [1/m].
+// Rest gradients of an element's shape functions at point q, one column for each node [1/m].
 template <class Element>
 Eigen::Matrix<double, 3, Element::kNodes> ShapeGradients(const TetModel& model, std::size_t tet, int q) {
   Eigen::Matrix<double, 3, 4> g;
@@ -49,7 +49,7 @@ double PatchPressure(const VolumePatches& patches, std::span<const double> press
   return sum;
 }
 
-// What the law of an element is told of its fibre.
+// The fibre arguments of an element's law.
 template <class Element>
 FibreState FibreAt(const TetModel& model, std::size_t tet, const FibreDrive& drive, int q) {
   FibreState fibre{model.fibres()[tet], model.ActivationOf(tet, drive.activation)};
@@ -61,14 +61,14 @@ FibreState FibreAt(const TetModel& model, std::size_t tet, const FibreDrive& dri
   return fibre;
 }
 
-// The least of all values in whatever order they come; NaN counts as less than any.
+// Atomic minimum, independent of the order of calls; NaN counts as less than any number.
 inline void TakeLeast(std::atomic<double>& least, double value) {
   double now = least.load(std::memory_order_relaxed);
   while (!(value >= now) && !std::isnan(now) && !least.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
   }
 }
 
-// Elements that a thread takes at least at a time.
+// Least number of elements that a thread takes at a time.
 inline constexpr std::size_t kElementGrain = 512;
 
 // Calls visit(law, element) for every element of a group, in parallel.

@@ -5,26 +5,26 @@
 
 namespace fascicle {
 
-// The function of the positions x at the end of a step whose stationary point the step looks for:
+// The potential of a step: a function of the positions x at its end. The step finds a stationary point of
 //
 //   Phi(x) = sum V W(F) + sum V_n U(theta_n) + 1/2 sum m (x - c)^2 + W_v(x) + W_c(x) - f . x
 //
-// elastic and active energy of points and patches; inertia and mass damping, with coefficient m and centre c of each
-// node; the viscous increment W_v = dt (mu' |dE|^2 + lambda'/2 tr(dE)^2) / dt^2 with dE the change of Green strain in
-// the step, whose derivative is the viscous stress of ViscousStress at the mean rate of the step; W_c the energy of
-// floors (FloorEnergy); dead loads f. Quasi-static steps have neither m nor W_v.
+// The terms are: elastic and active energy of points and patches; inertia and mass damping with a coefficient m and a
+// centre c for each node; the viscous increment W_v = dt (mu' |dE|^2 + lambda'/2 tr(dE)^2) / dt^2, where dE is the
+// change of Green strain during the step and whose derivative is the viscous stress of ViscousStress at the mean rate
+// of the step; the energy of floors W_c (FloorEnergy); dead loads f. Quasi-static steps have neither m nor W_v.
 struct IncrementalPotential {
   FibreDrive drive;
   const NodalVector* load = nullptr;      // f [N]
-  std::vector<double> inertia;            // m of each node [N/m]; empty in quasi-static steps
+  std::vector<double> inertia;            // m for each node [N/m]; empty in quasi-static steps
   NodalVector inertia_centre;             // c [m]
-  const NodalVector* previous = nullptr;  // positions a step ago, for W_v [m]
+  const NodalVector* previous = nullptr;  // positions one step ago, for W_v [m]
   double viscous_rate = 0;                // 1/dt [1/s]; 0 without W_v
-  // UntanglingLaw in place of W, U and W_v.
+  // Whether UntanglingLaw replaces W, U and W_v.
   bool untangling = false;
 };
 
-// The tangent of a point's law and of its viscous increment, without patches and without untangling.
+// The tangent of a point's law and of its viscous increment, without pressures of patches and without untangling.
 template <class Element, class Law>
 class PointTangent {
  public:

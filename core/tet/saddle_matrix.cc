@@ -7,7 +7,7 @@
 namespace fascicle {
 namespace {
 
-// Rows of patches that a thread takes at least at a time.
+// Least number of patch rows that a thread takes at a time.
 constexpr std::size_t kPatchGrain = 64;
 
 }  // namespace
@@ -102,7 +102,7 @@ void SaddleAssembly::FindPattern() {
   FindSmoothedPattern();
 }
 
-// Of B: rows of patches that smoothing brings together.
+// The pattern of B after smoothing.
 void SaddleAssembly::FindSmoothedPattern() {
   const VolumePatches& patches = model_.patches();
   matrix_.volume_pattern = raw_pattern_;
@@ -184,7 +184,7 @@ void SaddleAssembly::AssembleVolumes(const NodalVector& x, ThreadTeam& team) {
   });
 }
 
-// B = V W V^-1 of what it is before smoothing, V the patches' volumes at rest.
+// B = V W V^-1 B_raw, with the rest volumes V of the patches.
 void SaddleAssembly::SmoothVolumes(ThreadTeam& team) {
   const VolumePatches& patches = model_.patches();
   if (patches.row.empty()) {

@@ -8,13 +8,13 @@
 
 namespace fascicle {
 
-// The matrix of one Newton iteration, with the pressures p of the patches as unknowns of their own (a perturbed
-// Lagrangian, [Zienkiewicz, Taylor & Zhu 2013, 11.3]):
+// The matrix of one Newton iteration, with the pressures p of the patches as separate unknowns (a perturbed Lagrangian,
+// [Zienkiewicz, Taylor & Zhu 2013, 11.3]):
 //
 //   [ A   B^T ] [dx]
 //   [ B   -C  ] [dp],      A = -df/dx at fixed p,   B = V_n dtheta_n/dx,   C = V_n / U''(theta_n)
 //
-// over all nodes, prescribed components as well, until IsolatePrescribed makes an identity of these.
+// over all nodes, including prescribed components until IsolatePrescribed replaces these by the identity.
 struct SaddleMatrix {
   BlockPattern pattern;         // nodes by nodes
   BlockValues A;                // [N/m]
@@ -23,7 +23,8 @@ struct SaddleMatrix {
   NodalVector B;          // [m^2]
   std::vector<double> C;  // diagonal [m^3/Pa]
   FreeComponents free;
-  // Of A preconditioned by its diagonal blocks: a bound for the least eigenvalue that inertia alone gives; 0 without.
+  // Lower bound, from inertia alone, for the least eigenvalue of A preconditioned by its diagonal blocks; 0 if there is
+  // none.
   double least_eigenvalue = 0;
 
   std::size_t nodes() const { return pattern.rows(); }
@@ -37,18 +38,18 @@ struct SaddleMatrix {
   void IsolatePrescribed(ThreadTeam& team);
 };
 
-// Assembles SaddleMatrix from the matrices of elements (element_matrices.h): blocks and rows are added up in the order
-// of the elements, so the bits do not depend on the number of threads. One at a time.
+// Assembles SaddleMatrix from the element matrices (element_matrices.h). Blocks and rows are added up in the order of
+// the elements, so the bits do not depend on the number of threads. Not thread-safe.
 class SaddleAssembly {
  public:
-  // Finds the pattern; the model must outlive the assembly.
+  // Finds the sparsity pattern. The model must outlive the assembly.
   explicit SaddleAssembly(const TetModel& model);
 
-  // At positions x and acting pressures W p [Pa]; volume ratios theta of the patches. Exact tangents.
+  // Assembles at positions x with acting pressures W p [Pa] and volume ratios theta of the patches. Exact tangents.
   void Assemble(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> acting,
                 std::span<const double> ratio, ThreadTeam& team, ForceWorkspace& workspace);
 
-  // What A gains when the tangent of every point is replaced by the positive semidefinite one that is nearest to it.
+  // The change of A when the tangent of every point is replaced by the nearest positive semidefinite one.
   void AssembleProjection(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> acting,
                           ThreadTeam& team, ForceWorkspace& workspace);
   const BlockValues& projection() const { return projection_; }
@@ -68,11 +69,12 @@ class SaddleAssembly {
   SaddleMatrix matrix_;
   std::optional<StiffnessLayout> layout_;  // of A
   BlockValues projection_;                 // on the pattern of A
-  // B before smoothing, where there is smoothing, and the corners that make each of its rows: 4 * element + corner.
+  // B before smoothing, if there is smoothing, and the corners that contribute to each of its rows: 4 * element +
+  // corner.
   BlockPattern raw_pattern_;
   NodalVector raw_B_;
   std::vector<std::int32_t> corner_begin_, corners_;
-  std::vector<std::int32_t> volume_places_;  // of each corner: nodes of its element
+  std::vector<std::int32_t> volume_places_;  // for each corner: the nodes of its element
 };
 
 }  // namespace fascicle

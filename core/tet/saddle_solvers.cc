@@ -10,8 +10,8 @@ namespace {
 constexpr std::int32_t kNone = -1;
 constexpr double kSchurScale = 4;
 constexpr int kMaxIterations = 100;
-// Where inertia keeps the eigenvalues above that part of the largest, about 3, coarse levels are not worth their
-// making.
+// Where inertia keeps the eigenvalues above this fraction of the largest (about 3), coarse levels cost more than they
+// save.
 constexpr double kLeastForCg = 1e-3;
 constexpr int kMaxCgIterations = 1000;
 
@@ -71,10 +71,10 @@ DirectSaddleSolver::DirectSaddleSolver(const SaddleMatrix& matrix) : unknown_of_
   });
   values_.resize(rows.size());
   side_.resize(unknowns);
-  FASCICLE_CHECK(unknowns == 0 || solver_.Analyze(unknowns, rows, columns), "memory for the analysis");
+  FASCICLE_CHECK(unknowns == 0 || solver_.Analyze(unknowns, rows, columns), "not enough memory for the analysis");
 }
 
-// The lower triangle of the unknown components.
+// Visits the lower triangle of the unknown components.
 template <class Visit>
 void DirectSaddleSolver::ForEntries(const SaddleMatrix& matrix, const Visit& visit) const {
   for (std::size_t n = 0; n < matrix.nodes(); ++n) {
@@ -191,7 +191,7 @@ void IterativeSaddleSolver::SetScales(const SaddleMatrix& matrix) {
   }
 }
 
-// x_ and p_ are the parts of a joint vector, times or over its scales.
+// Splits a joint vector into x_ and p_, multiplied or divided by its scales.
 void IterativeSaddleSolver::Split(const Eigen::VectorXd& joint, bool times_scale, ThreadTeam& team) {
   const auto part = [&](std::size_t i) { return times_scale ? joint[i] * scale_[i] : joint[i] / scale_[i]; };
   ForNodes(team, x_.size(), [&](std::size_t n) {

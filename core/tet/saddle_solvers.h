@@ -9,20 +9,20 @@
 #include "core/linalg/multigrid.h"
 #include "core/tet/saddle_matrix.h"
 
-// Two ways to solve with a SaddleMatrix whose prescribed components are isolated:
-//   K [dx; dp] = [force; volume],   force [N], volume [m^3]; force must be zero on prescribed components, and dx is.
-// One thread at a time.
+// Two solvers for a SaddleMatrix whose prescribed components are isolated:
+//   K [dx; dp] = [force; volume],   force [N], volume [m^3]; force must be zero on prescribed components, and so is dx.
+// Not thread-safe.
 namespace fascicle {
 
-// By factorization: exact, and tells whether there is a minimum; time grows with the square of the size, memory with
-// its power 4/3.
+// Factorization: exact, and decides whether there is a minimum. Time grows with the square of the size, memory with the
+// power 4/3.
 class DirectSaddleSolver {
  public:
-  // Analyzes the pattern.
+  // Analyzes the sparsity pattern.
   explicit DirectSaddleSolver(const SaddleMatrix& matrix);
 
-  // False when the matrix can't be factored or its inertia is not that of a minimum: as many negative eigenvalues as
-  // patches.
+  // False if the matrix can't be factored or its inertia is not that of a minimum, which has as many negative
+  // eigenvalues as there are patches.
   bool Factor(const SaddleMatrix& matrix);
   void Solve(const NodalVector& force, std::span<const double> volume, NodalVector& dx, std::span<double> dp);
 
@@ -36,25 +36,26 @@ class DirectSaddleSolver {
   std::vector<double> values_, side_;
 };
 
-// By flexible GMRES: memory and time of an iteration grow with the size. The preconditioner is block triangular
-// [Elman, Silvester & Wathen 2014, 4.2 and 9.2]: a multigrid cycle stands for A^-1, a diagonal for the Schur
-// complement, S = C + B A^-1 B^T ~ C + kSchurScale diag(B diag(A)^-1 B^T). What keeps the number of iterations small is
-// that A holds a volume modulus of its own (see Volumes in README.md), so that both are well conditioned whatever K/mu.
+// Flexible GMRES: memory and time of an iteration grow linearly with the size. The preconditioner is block triangular
+// [Elman, Silvester & Wathen 2014, 4.2 and 9.2]: a multigrid cycle approximates A^-1, and a diagonal approximates the
+// Schur complement, S = C + B A^-1 B^T ~ C + kSchurScale diag(B diag(A)^-1 B^T). The number of iterations stays small
+// because A contains a volume modulus of its own (see Volumes in README.md), so that both are well-conditioned for any
+// K/mu.
 class IterativeSaddleSolver {
  public:
   IterativeSaddleSolver(const TetModel& model, const SaddleMatrix& matrix);
 
   struct Result {
-    bool ok = false;  // the residual, each component over the root of its diagonal, fell to `tolerance` times its start
-    // Whether no Ritz value of the preconditioned matrix is negative: it has none at a minimum, where A is positive
-    // definite or what is not lies in B^T C^-1 B's strong directions.
+    bool ok = false;  // whether the residual, scaled by the diagonal, fell to `tolerance` times its start
+    // Whether no Ritz value of the preconditioned matrix is negative. At a minimum there is none, because A is positive
+    // definite or its negative directions are among the strong directions of B^T C^-1 B.
     bool is_minimum = false;
     int iterations = 0;
   };
   Result Solve(const SaddleMatrix& matrix, const NodalVector& force, std::span<const double> volume, double tolerance,
                ThreadTeam& team, NodalVector& dx, std::span<double> dp);
 
-  // What follows will not depend on what was before.
+  // Makes later results independent of earlier ones.
   void ForgetAggregation() { multigrid_.ForgetAggregation(); }
   std::string Description() const { return multigrid_.Description(); }
 
@@ -70,7 +71,7 @@ class IterativeSaddleSolver {
   Multigrid multigrid_;
   MixedPrecisionCg cg_;
   GmresWorkspace gmres_;
-  Eigen::VectorXd scale_, joint_side_, joint_solution_;  // one over the root of the diagonal
+  Eigen::VectorXd scale_, joint_side_, joint_solution_;  // inverse square root of the diagonal
   std::vector<double> schur_;
   NodalVector x_, product_;
   std::vector<double> p_, volume_;

@@ -3,9 +3,9 @@
 
 #include "core/geometry/quadratic_tetrahedron.h"
 
-// The two elements as constants: nodes, quadrature points, shape functions. Plain numbers, for element.h, which
-// computes with Eigen, and for the kernels, which compute element by element side by side. All functions are inlined
-// always: kernels of several instruction sets must share no code.
+// Constants of the two elements: nodes, quadrature points and shape functions. Plain numbers, because both element.h,
+// which uses Eigen, and the vectorized kernels need them. All functions are always inlined, since kernels of several
+// instruction sets must share no code.
 namespace fascicle {
 
 // The edges of a tetrahedron as a plain array.
@@ -17,8 +17,8 @@ inline constexpr int kEdgeEnds[6][2] = {{kTetEdges[0][0], kTetEdges[0][1]}, {kTe
 struct LinearShape {
   static constexpr int kNodes = 4;
   static constexpr int kPoints = 1;
-  static constexpr double kPointWeight = 1;  // part of the element's volume
-  // Share of each node in the element's lumped mass.
+  static constexpr double kPointWeight = 1;  // fraction of the element's volume
+  // Fraction of the element's lumped mass at each node.
   static constexpr double kMassShare[kNodes] = {0.25, 0.25, 0.25, 0.25};
 
   // Barycentric coordinate of corner c at point q.
@@ -27,14 +27,14 @@ struct LinearShape {
   [[gnu::always_inline]] static constexpr double CornerWeight(int /*q*/, int c, int a) { return c == a ? 1 : 0; }
 };
 
-// Ten nodes: the corners and the middles of the edges in the order of kTetEdges; edges straight or curved at rest,
-// linear strain when straight, four-point quadrature of degree two [Zienkiewicz, Taylor & Zhu 2013, 5.11].
+// Ten nodes: the corners, then the mid-edge nodes in the order of kTetEdges. Edges may be curved at rest; the strain is
+// linear if they are straight. Quadrature of degree two with four points [Zienkiewicz, Taylor & Zhu 2013, 5.11].
 struct QuadraticShape {
   static constexpr int kNodes = 10;
   static constexpr int kPoints = 4;
   static constexpr double kPointWeight = 0.25;
-  // The diagonal of the consistent mass matrix, V/70 and 8V/105, scaled to the element's mass: all positive, unlike row
-  // sums [Hinton, Rock & Zienkiewicz 1976].
+  // The diagonal of the consistent mass matrix, V/70 and 8V/105, scaled to the element's mass. All entries are
+  // positive, unlike row sums [Hinton, Rock & Zienkiewicz 1976].
   static constexpr double kMassShare[kNodes] = {1. / 36, 1. / 36, 1. / 36, 1. / 36, 4. / 27,
                                                 4. / 27, 4. / 27, 4. / 27, 4. / 27, 4. / 27};
 

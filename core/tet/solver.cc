@@ -7,23 +7,23 @@
 namespace fascicle {
 namespace {
 
-// Steps between two searches for the stable step: fewer while it changes, more while it does not.
+// Number of steps between two searches for the stable step: decreased while it changes, increased while it does not.
 constexpr std::int64_t kFirstInterval = 64;
 constexpr std::int64_t kShortestInterval = 32;
 constexpr std::int64_t kLongestInterval = 1024;
 constexpr double kMuchChange = 0.05;
 constexpr double kLittleChange = 0.02;
-// An activation that has changed by more since the last search makes another one due.
+// A change of an activation by more than this since the last search triggers another search.
 constexpr double kActivationChange = 0.1;
-// Stiffness grows with 1/J^2 as an element is crushed: a smallest J below this part of what it was at the last search
-// makes another one due, and a step in which it falls by more is too long.
+// A crushed element stiffens with 1/J^2. A smallest J below this fraction of its value at the last search triggers
+// another search; a step in which it falls by more is too long.
 constexpr double kRatioChange = 0.9;
 constexpr double kRatioChangeOfStep = 0.8;
-// Motion of less than this part of the run's largest kinetic energy says nothing about stability.
+// A kinetic energy below this fraction of the run's largest says nothing about stability.
 constexpr double kFaintMotion = 1e-6;
-// Good steps after which a cut is taken back.
+// Number of successful steps after which a halving is undone.
 constexpr std::int64_t kGrowAfter = 50;
-// A run that needs more steps than that to its next frame goes nowhere.
+// A run fails when it needs more steps than this to the next frame.
 constexpr double kMostSteps = 1e9;
 
 }  // namespace
@@ -56,7 +56,7 @@ TetState TetSolver::InitialState() {
   return state;
 }
 
-// a = M^-1 (f + loads) - a_m v: without it the first step of a body that is let go would be of first order.
+// a = M^-1 (f + loads) - a_m v. With a = 0 the first step of a released body would be of first order.
 void TetSolver::SetFirstAcceleration(TetState& state) {
   ExternalForce(model_, controls_next_, team_, external_next_);
   for (std::size_t n = 0; n < model_.nodes(); ++n) {
@@ -76,7 +76,7 @@ StepReport TetSolver::AdvanceExplicit(TetState& state, double end) {
   for (;;) {
     const double target = TargetStep(state);
     const double remaining = end - state.time;
-    // The allowance keeps rounding from adding a step to a whole number of them.
+    // The tolerance prevents rounding from adding a step to a whole number of them.
     const double steps = std::ceil(remaining / target * (1 - 1e-9));
     if (!(steps < kMostSteps)) {
       StepReport report;
@@ -146,9 +146,9 @@ double TetSolver::TargetStep(const TetState& state) const {
   return std::ldexp(step, -state.cuts);
 }
 
-// Whether a step that was made was too long: an element is well on its way to turning inside out, or the motion is
-// stiffer than the step can carry. Not so the last stir of a body at rest, nor what is still stiff at the shortest
-// step, far below the stable one: there forces change from outside.
+// Decides whether a step was too long: an element is about to invert, or the motion is stiffer than the step allows.
+// Exceptions are the residual motion of a body at rest, and a motion that remains too stiff at the shortest step, far
+// below the stable one, where external forces change.
 StepProblem TetSolver::Judge(const TetState& now, const TetState& next, const StepReport& report) const {
   if (next.smallest_ratio < kRatioChangeOfStep * now.smallest_ratio) return StepProblem::kInvertedElement;
   const bool too_stiff =
@@ -167,7 +167,7 @@ void TetSolver::Accept(TetState& state) {
   std::swap(state, next_);
 }
 
-// Says where: the elements that the attempt broke, or else the thinnest one, which asks for the smallest step.
+// Adds where the step failed: the elements that it inverted, or else the thinnest element, which limits the step.
 StepReport TetSolver::Fail(const TetState& state, StepReport report) const {
   if (report.problem == StepProblem::kInvertedElement) {
     report.bad = FindBadElements(model_, FibreDrive{controls_next_.activation}, next_.positions);

@@ -22,29 +22,30 @@ struct StepReport {
   LinearSolves solves;  // of Newton's method
   // Kinetic energy of the free components at the half step [J].
   double kinetic = 0;
-  // Curvature of the energy along the motion of this step times dt^2: a Rayleigh quotient of M^-1 K. The central
-  // difference method can't stay above 4.
+  // Curvature of the energy along this step's motion times dt^2: a Rayleigh quotient of M^-1 K. The central difference
+  // method is unstable if it stays above 4.
   double stiffness_of_motion = 0;
-  BadElements bad;  // where, when a step can't be made
+  BadElements bad;  // where a step failed
 };
 
-// Steps a model in time by Lagrangian finite volumes [Teran 2003]. One thread at a time.
+// Steps a model in time by Lagrangian finite volumes [Teran 2003]. Not thread-safe.
 class TetSolver {
  public:
-  // Model, team and profile must outlive the solver. Stages of a step are timed in `profile` where there is one.
+  // Model, team and profile must outlive the solver. Stages of a step are timed in `profile`, which may be null.
   TetSolver(const TetModel& model, ThreadTeam& team, Profile* profile = nullptr);
 
-  // At rest at time 0, with what is prescribed at that time.
+  // The state at time 0: at rest, with prescribed components at their values.
   TetState InitialState();
 
   // Makes one step towards `end` [s], which it never passes and hits exactly. A step that inverts or crushes an
-  // element, gives values that are not finite or gains energy from instability is made again with half the length, up
-  // to kMaxCuts times. Implicit and quasi-static steps go as far as Newton's method converges: from all the way at
-  // first, halved when it does not and doubled when it was easy. On a problem the state keeps its time and motion. Long
-  // steps, those of Newton's method, end early when `stop` asks for it.
+  // element, gives non-finite values or gains energy from instability is repeated with half the length, up to kMaxCuts
+  // times. Implicit and quasi-static steps are as long as Newton's method allows: the first attempt goes to `end`; the
+  // length is halved when the iteration fails and doubled after an easy step. If a step fails, the state keeps its time
+  // and motion. Newton iterations end early when `stop` requests it.
   StepReport Advance(TetState& state, double end, std::stop_token stop = {});
 
-  // One attempt to step from `now` to `next_time`, without cutting; fills all of `next` but what Advance looks after.
+  // One attempt to step from `now` to `next_time`, without repetition. Sets all of `next` except for what Advance
+  // manages.
   StepReport Step(const TetState& now, double next_time, TetState& next);
 
   // The largest stable step at a state [s], see LargestStableStep.
@@ -53,12 +54,12 @@ class TetSolver {
   static constexpr int kMaxCuts = 10;
 
  private:
-  // Central difference method in its kick-drift-kick form; viscous forces take the velocity of the half step.
+  // Central difference method in kick-drift-kick form; viscous forces use the velocity of the half step.
   StepReport StepExplicit(const TetState& now, double dt, TetState& next);
-  // Elastic forces explicit, damping implicit [Teran 2003, 4.3].
+  // Explicit elastic forces, implicit damping [Teran 2003, 4.3].
   StepReport StepMixed(const TetState& now, double dt, TetState& next);
 
-  // Any stepping that solves for the end of the step: implicit_step.cc.
+  // Steppings that solve for the end of the step: implicit_step.cc.
   StepReport StepImplicit(const TetState& now, double dt, TetState& next);
   StepReport AdvanceExplicit(TetState& state, double end);
   StepReport AdvanceImplicit(TetState& state, double end);
@@ -72,7 +73,7 @@ class TetSolver {
   CgResult SolveDamping(const NodalVector& x, const NodalVector& internal, const NodalVector& external,
                         double half_step, TetState& next);
   ForceReport UpdateForce(const NodalVector* viscous_velocity, const FibreDrive& drive, TetState& next);
-  // Fills what tells an unstable step from a stable one; next.velocities are those of the half step.
+  // Computes the quantities that detect an unstable step; next.velocities are those of the half step.
   void MeasureMotion(const TetState& now, const TetState& next, StepReport& report) const;
   void AddExternalWork(const TetState& now, TetState& next) const;
 
@@ -87,7 +88,7 @@ class TetSolver {
   ThreadTeam& team_;
   Profile* const profile_;
   const TetMethod& method_;
-  // Scratch: nothing here outlives a step.
+  // Scratch memory: nothing here outlives a step.
   std::stop_token stop_;
   TetControls controls_now_, controls_next_;
   NodalVector external_now_, external_next_;
@@ -95,7 +96,7 @@ class TetSolver {
   ForceWorkspace forces_;
   CgWorkspace cg_;
   StableStepWorkspace stable_step_;
-  std::unique_ptr<NewtonSolver> newton_;  // implicit steppings only
+  std::unique_ptr<NewtonSolver> newton_;  // for implicit steppings
   IncrementalPotential potential_;
   TetState next_;
 };

@@ -10,7 +10,7 @@
 namespace fascicle {
 namespace {
 
-// Residual of the eigenvalue at which Lanczos stops: half of it is the error of the step.
+// Relative residual of the eigenvalue at which Lanczos stops; the error of the step is half of it.
 constexpr double kEigenvalueTolerance = 0.02;
 
 }  // namespace
@@ -92,7 +92,7 @@ double LargestStableStep(const TetModel& model, const FibreDrive& drive, const N
   const auto apply_stiffness = [&](const NodalVector& p, NodalVector& q) {
     stiffness.Apply(model, p, team, forces, q);
   };
-  // NaN must come through, so no std::max.
+  // Not std::max, which would drop NaN.
   const double omega_squared =
       LargestEigenvalue(team, apply_stiffness, inverse_root_mass, kEigenvalueTolerance, lanczos);
   double rate = 0;  // 2 xi omega [1/s]
@@ -104,7 +104,7 @@ double LargestStableStep(const TetModel& model, const FibreDrive& drive, const N
     rate = LargestEigenvalue(team, apply_damping, inverse_root_mass, kEigenvalueTolerance, lanczos);
   }
   if (!std::isfinite(omega_squared) || !std::isfinite(rate)) return std::numeric_limits<double>::quiet_NaN();
-  // (omega dt)^2 + 2 rate dt = 4, in the form that has no difference of large numbers.
+  // (omega dt)^2 + 2 rate dt = 4, in a form without cancellation.
   const double stiffness_part = omega_squared > 0 ? omega_squared : 0;
   return 4 / (rate + std::sqrt(rate * rate + 4 * stiffness_part));
 }

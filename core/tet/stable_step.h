@@ -8,12 +8,12 @@
 
 namespace fascicle {
 
-// The stiffness K = -df/dx of all elements, patches and floors at one state. No matrix is kept: each product goes
-// through the laws again, with less memory to read than matrices would be.
+// The stiffness K = -df/dx of all elements, patches and floors at one state, without a matrix: each product evaluates
+// the laws' tangents again, which reads less memory than stored matrices would.
 class TetStiffness {
  public:
-  // At positions x [m] and what drives the fibres; both, with what the drive points to, must stay until the last
-  // product. Updates the workspace's patches, which must be left as they are as long.
+  // Sets positions x [m] and the fibre drive. Both, and everything the drive points to, must stay valid until the last
+  // product. Updates the workspace's patches, which must stay unchanged as long.
   void Set(const TetModel& model, const FibreDrive& drive, const NodalVector& x, ThreadTeam& team,
            ForceWorkspace& workspace);
 
@@ -28,7 +28,7 @@ class TetStiffness {
   FibreDrive drive_;
   const NodalVector* x_ = nullptr;
   std::vector<double> slopes_;           // U''(theta) of each patch [Pa]
-  std::vector<double> pressure_change_;  // of each patch
+  std::vector<double> pressure_change_;  // for each patch
 };
 
 struct StableStepWorkspace {
@@ -39,10 +39,10 @@ struct StableStepWorkspace {
 
 // The largest stable step of the central difference method at a state [s]:
 //   dt = (2/omega) (sqrt(1 + xi^2) - xi)     [Belytschko, Liu, Moran & Elkhodary 2014, 6.2.8]
-// with omega^2 the largest eigenvalue of M^-1 K over the free components, fibres and activation counted (at a kink of a
-// fibre curve the stiffer side), and
-// 2 xi omega the largest eigenvalue of M^-1 (-D), D the viscous operator, when damping is explicit (else xi = 0). Both
-// are estimated from above by Lanczos. Infinite without stiffness and damping. Not finite when the state is not.
+// where omega^2 is the largest eigenvalue of M^-1 K over the free components, including fibres and activation (the
+// stiffer side at a kink of a fibre curve), and 2 xi omega is the largest eigenvalue of M^-1 (-D), with the viscous
+// operator D, if damping is explicit (otherwise xi = 0). Both are upper estimates by Lanczos. Infinite without
+// stiffness and damping. Not finite if the state is not.
 double LargestStableStep(const TetModel& model, const FibreDrive& drive, const NodalVector& x, bool explicit_damping,
                          ThreadTeam& team, ForceWorkspace& forces, StableStepWorkspace& workspace);
 

@@ -1,4 +1,4 @@
-// One step of each stepping: TetSolver::Step and what it is made of.
+// One step of each stepping: TetSolver::Step and its parts.
 #include "core/tet/floor_contact.h"
 #include "core/tet/solver.h"
 
@@ -29,7 +29,7 @@ StepReport TetSolver::Step(const TetState& now, double next_time, TetState& next
   return report;
 }
 
-// What acts from outside at both ends of the step.
+// Evaluates controls and external forces at both ends of the step.
 void TetSolver::UpdateControls(double now, double next) {
   {
     const StageTimer timer(profile_, "controls");
@@ -102,7 +102,7 @@ StepReport TetSolver::StepMixed(const TetState& now, double dt, TetState& next) 
   return report;
 }
 
-// x' = x + dt v_half; what is prescribed gets its place, and in v_half the velocity that leads there.
+// x' = x + dt v_half; prescribed components get their target position and, in v_half, the velocity that leads there.
 void TetSolver::Drift(const TetState& now, double dt, TetState& next) {
   const StageTimer timer(profile_, "positions");
   next.positions.resize(model_.nodes());
@@ -119,7 +119,7 @@ void TetSolver::Drift(const TetState& now, double dt, TetState& next) {
   }
 }
 
-// What acts in the fibres at the end of a step.
+// The fibre drive at the end of a step.
 FibreDrive TetSolver::DriveOf(const TetState& now, double dt) const {
   return {controls_next_.activation, &now.positions, 1 / dt};
 }
@@ -135,8 +135,8 @@ ForceReport TetSolver::UpdateForce(const NodalVector* viscous_velocity, const Fi
   return report;
 }
 
-// Solves (M + dt/2 a M - dt/2 D) v = M v0 + dt/2 f for v with v0 = next.velocities, where prescribed components keep
-// their value; D is the viscous operator at positions x, half_step is dt/2.
+// Solves (M + dt/2 a M - dt/2 D) v = M v0 + dt/2 f for v, with v0 = next.velocities, in which prescribed components
+// keep their value. D is the viscous operator at positions x; half_step is dt/2.
 CgResult TetSolver::SolveDamping(const NodalVector& x, const NodalVector& internal, const NodalVector& external,
                                  double half_step, TetState& next) {
   const StageTimer timer(profile_, "damping");
@@ -149,7 +149,7 @@ CgResult TetSolver::SolveDamping(const NodalVector& x, const NodalVector& intern
            [&](std::size_t n) { right_side_[n] = mass[n] * v[n] + half_step * (internal[n] + external[n]); });
   if (!model_.has_strain_damping()) {
     next.dissipated += SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
-      // Zero inverse mass keeps prescribed components.
+      // Zero inverse mass marks prescribed components.
       const Vec3 free = mass[n] * inverse_mass[n];
       const Vec3 solved = right_side_[n] / (mass[n] * (1 + half_step * a[n]));
       v[n] = free.cwiseProduct(solved) + (Vec3::Ones() - free).cwiseProduct(v[n]);
@@ -170,7 +170,7 @@ CgResult TetSolver::SolveDamping(const NodalVector& x, const NodalVector& intern
   };
   const CgResult result = ConjugateGradient(team_, apply, inverse_diagonal_, right_side_, method_.solver_tolerance,
                                             kMaxCgIterations, v, cg_);
-  // A v = b - r, so the energy lost in this half step, v . (A - M) v, takes no further product.
+  // Since A v = b - r, the energy lost in this half step, v . (A - M) v, needs no further product.
   next.dissipated += SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
     return v[n].dot(right_side_[n] - cg_.residual[n] - mass[n] * v[n]);
   });

@@ -38,7 +38,7 @@ void StiffnessLayout::SetPlaces(const TetModel& model, const BlockPattern& patte
     std::sort(of_chunk.begin(), of_chunk.end());
     for (std::size_t i = 0; i < of_chunk.size(); ++i) local_of[of_chunk[i]] = static_cast<std::int32_t>(i);
     for (std::size_t slot = kBlock * chunk.block_begin; slot < kBlock * chunk.block_end; ++slot) {
-      // The last block's free lanes repeat the last element.
+      // Unused lanes of the last block repeat the last element.
       const std::size_t e = std::min(slot - kBlock * chunk.block_begin, chunk.tet_end - chunk.tet_begin - 1);
       for (std::size_t pair = 0; pair < pairs_; ++pair) {
         places_[(pairs_ * (slot / kBlock) + pair) * kBlock + slot % kBlock] =
@@ -52,7 +52,7 @@ void StiffnessLayout::SetPlaces(const TetModel& model, const BlockPattern& patte
   SetTargets(pattern, all);
 }
 
-// `blocks`: places of the lower triangle, of all chunks.
+// `blocks`: places of the lower triangle, for all chunks.
 void StiffnessLayout::SetTargets(const BlockPattern& pattern, std::span<const std::int32_t> blocks) {
   std::vector<std::int32_t> number_of(pattern.blocks(), -1);
   std::vector<Target> lower;

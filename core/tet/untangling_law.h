@@ -5,12 +5,12 @@
 
 namespace fascicle {
 
-// An elastic energy that is finite for every F, inverted or flat, and pulls it back to a rotation:
+// An elastic energy that is finite for every F, inverted or flat, and drives F towards a rotation:
 //   W = 1/2 (|F|^2 - 3) - (J - 1) + c/2 (J - 1)^2,
-// the stable neo-Hookean energy without its barrier, for a shear modulus of one [Smith, de Goes & Kim 2018, 3]. It
-// stands in for a body's own law until no element is inverted; its own value does not matter then.
+// the stable neo-Hookean energy without its barrier, with a shear modulus of one [Smith, de Goes & Kim 2018, 3]. It
+// replaces the laws of all bodies until no element is inverted; the scale of the energy does not matter.
 struct UntanglingLaw {
-  static constexpr double kVolume = 4;  // c: Poisson's ratio 0.4
+  static constexpr double kVolume = 4;  // c, for a Poisson's ratio of 0.4
 
   static double Energy(const Mat3& F) {
     const double change = DeterminantOf(F, Cofactor(F)) - 1;

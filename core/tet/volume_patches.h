@@ -9,33 +9,33 @@
 
 namespace fascicle {
 
-// Volume ratios averaged around nodes: the cure for volumetric locking.
+// Nodal averages of the volume ratio, against volumetric locking.
 //
-// A patch is the dual region of a corner node among elements of one group, weighted by the corner's barycentric
+// A patch is the dual region of a corner node among the elements of one group, weighted by the corner's barycentric
 // coordinate L_n:
 //   V_n = sum of the integrals of L_n over those elements at rest,   theta_n = (1/V_n) sum of the integrals of L_n J.
-// Most of a nearly incompressible law's volume energy acts on theta_n, U = k/2 (ln theta)^2, not on each element's J:
-// there are about six linear elements for each node, too many constraints for its three displacements. With quadratic
-// elements the constraint theta_n = 1 is that of the Taylor-Hood element (linear continuous pressure with a lumped mass
-// matrix), with linear ones that of the nodally averaged tetrahedron [Bonet & Burton 1998]. There pressures can
-// alternate from node to node and balance nothing, so theta is averaged once more, from nodes to elements to nodes (the
-// cyclic smoothing of [Onishi & Amaya 2017]): W, self-adjoint in the inner product weighted by V. See README.md.
-// Immutable once built.
+// Most of the volume energy of a nearly incompressible law acts on theta_n, U = k/2 (ln theta)^2, instead of each
+// element's J: there are about six linear elements for each node, too many constraints for its three displacements.
+// With quadratic elements the constraint theta_n = 1 is that of the Taylor-Hood element (continuous linear pressure
+// with a lumped mass matrix), with linear elements that of the nodally averaged tetrahedron [Bonet & Burton 1998]. With
+// the latter, pressures that alternate from node to node may cancel each other. So theta is averaged once more, from
+// nodes to elements to nodes (the cyclic smoothing of [Onishi & Amaya 2017]). This operator W is self-adjoint in the
+// inner product weighted by V. See README.md. Immutable once built.
 struct VolumePatches {
-  // The patch at each corner of an element; kNone in elements whose whole volume energy is their own.
+  // The patch at each corner of an element; kNone in elements that keep their whole volume energy.
   using Corners = std::array<std::int32_t, 4>;
   static constexpr std::int32_t kNone = -1;
 
   std::vector<Corners> of_element;
   std::vector<double> rest_volume;  // V_n [m^3]
-  std::vector<double> modulus;      // k_n [Pa], volume mean over the patch
-  // Row n of W: weights weight[k] of patches neighbour[k], k in [row[n], row[n + 1]); empty for W = 1.
+  std::vector<double> modulus;      // k_n [Pa], volume average over the patch
+  // Row n of W: weights weight[k] of patches neighbour[k], k in [row[n], row[n + 1]); empty if W = 1.
   std::vector<std::int32_t> row, neighbour;
   std::vector<double> weight;
 
-  // out = W in; both of size(), not the same.
+  // out = W in; both have size() values and must not overlap.
   void Smooth(std::span<const double> in, std::span<double> out) const { SmoothRows(0, size(), in, out); }
-  // Of patches [begin, end) alone.
+  // The rows of patches [begin, end) only.
   void SmoothRows(std::size_t begin, std::size_t end, std::span<const double> in, std::span<double> out) const {
     for (std::size_t n = begin; n < end; ++n) out[n] = row.empty() ? in[n] : RowOf(n, in);
   }
@@ -59,7 +59,7 @@ struct PatchEnergy {
   }
   double Pressure(double theta) const { return k * std::log(theta) / theta; }
   double Slope(double theta) const { return k * (1 - std::log(theta)) / (theta * theta); }
-  // U'' as far as the energy is convex, to theta = e, and a safe positive value from a little before.
+  // U'' where the energy is convex, up to theta = e; clamped to a safe positive value before that.
   double ConvexSlope(double theta) const { return Slope(theta < 2 ? theta : 2); }
 };
 

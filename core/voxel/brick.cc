@@ -9,7 +9,7 @@
 namespace fascicle {
 namespace {
 
-// +1 or -1: mode m at corner c.
+// The sign, +1 or -1, of mode m at corner c.
 double SignOf(int mode, int corner) { return std::popcount(static_cast<unsigned>(mode & ~corner)) % 2 == 0 ? 1 : -1; }
 
 }  // namespace

@@ -6,9 +6,8 @@
 #include "core/base/types.h"
 #include "core/voxel/brick_modes.h"
 
-// The element of the method: a brick of eight nodes, isotropic linear elasticity, integrated by 2x2x2 Gauss points.
-// Corner c is at ((c & 1), (c >> 1 & 1), (c >> 2)) times the spacing; unknown 3 c + d is component d of its
-// displacement.
+// The element of the method: a brick with eight nodes, isotropic linear elasticity and 2x2x2 Gauss points. Corner c is
+// at ((c & 1), (c >> 1 & 1), (c >> 2)) times the spacing; unknown 3 c + d is component d of its displacement.
 namespace fascicle {
 
 using BrickMatrix = Eigen::Matrix<double, 24, 24>;
@@ -19,25 +18,25 @@ struct VoxelMaterial {
   double poisson_ratio = 0;  // in (-1, 0.5) [1]
 };
 
-// How dilatation is taken.
+// Treatment of the dilatation.
 enum class Dilatation {
-  kFull,  // at each Gauss point: locks where K/mu is large
-  kMean,  // its mean over the brick [Hughes 1980, Int. J. Numer. Meth. Engng 15, B-bar; Nagtegaal, Parks & Rice 1974]
+  kFull,  // at each Gauss point; locks where K/mu is large
+  kMean,  // averaged over the brick [Hughes 1980, Int. J. Numer. Meth. Engng 15, B-bar; Nagtegaal, Parks & Rice 1974]
 };
 
 BrickModuli<double> ModuliOf(const VoxelMaterial& material, Dilatation dilatation);
 
-// spacing > 0 [m].
+// Requires spacing > 0 [m].
 template <class S>
 BrickShape<S> ShapeOf(const Vec3& spacing);
 
-// K of one brick [N/m]: symmetric, positive semidefinite, with the six rigid modes.
+// K of one brick [N/m]: symmetric, positive semidefinite, with six rigid body modes.
 BrickMatrix BrickStiffness(const Vec3& spacing, const BrickModuli<double>& moduli);
 
-// The rows of K on its diagonal, for each component the same at all corners [N/m].
+// The diagonal of K; for each component the same at all corners [N/m].
 Vec3 BrickDiagonal(const Vec3& spacing, const BrickModuli<double>& moduli);
 
-// Derivatives of the trilinear functions at xi in [-1, 1]^3: column c the gradient of corner c's [1/m].
+// Gradients of the trilinear shape functions at xi in [-1, 1]^3: column c is that of corner c [1/m].
 Eigen::Matrix<double, 3, 8> BrickGradients(const Vec3& spacing, const Vec3& xi);
 
 }  // namespace fascicle

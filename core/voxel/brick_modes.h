@@ -1,28 +1,29 @@
 #ifndef FASCICLE_CORE_VOXEL_BRICK_MODES_H_
 #define FASCICLE_CORE_VOXEL_BRICK_MODES_H_
 
-// The stiffness of a brick of eight nodes in even and odd modes.
+// The stiffness of an eight-node brick in terms of even and odd modes.
 //
-// Trilinear displacements of a brick are sums of the eight products of 1, xi, eta, zeta (coordinates from -1 to 1).
-// Sums and differences of the corners' values (a Hadamard transform of length eight) are the coefficients, times eight.
-// The products are orthogonal over the brick, so that with isotropic stiffness most of them don't know of each other:
-// of 24 x 24 entries 45 are left. Two Gauss points along each edge integrate all of them exactly:
+// Trilinear displacements of a brick are combinations of the eight products of 1, xi, eta, zeta (coordinates from -1 to
+// 1). Sums and differences of the corner values (a Hadamard transform of length eight) are the coefficients times
+// eight. The products are orthogonal over the brick, so that with isotropic stiffness most of them decouple: of 24 x 24
+// entries 45 remain. Two Gauss points along each edge integrate all of them exactly:
 //   mean of xi^2 = 1/3, of xi^2 eta^2 = 1/9.
 namespace fascicle {
 
-// Names of the modes: m = sum of bits, 1 for xi, 2 for eta, 4 for zeta.
+// The modes: m is a sum of bits, 1 for xi, 2 for eta, 4 for zeta.
 enum BrickMode { kModeOne, kModeX, kModeY, kModeXY, kModeZ, kModeXZ, kModeYZ, kModeXYZ };
 
-// Stiffness of a material, as a brick has it. T: a number, or several side by side.
+// The moduli of a material as used by a brick. T: a number, or several side by side.
 template <class T>
 struct BrickModuli {
-  T lambda;      // of the mean dilatation [Pa]
-  T lambda_out;  // of what dilatation differs from its mean [Pa]: lambda, or -2 mu/3 where only the mean resists
+  T lambda;      // for the mean dilatation [Pa]
+  T lambda_out;  // for the deviation of the dilatation from its mean [Pa]: lambda, or -2 mu/3 with mean dilatation
   T mu;          // [Pa]
 };
 
-// What the spacing h [m] does: constant gradients a_d = sqrt(V)/(4 h_d), those that vary in one direction b =
-// a/sqrt(3) [m^(1/2)], in two q = a/3. Products are here so that kernels need not make them for each voxel.
+// Factors that depend on the spacing h [m]: for constant gradients a_d = sqrt(V)/(4 h_d), for gradients that vary in
+// one direction b = a/sqrt(3) [m^(1/2)], in two directions q = a/3. Products are stored, so that kernels need not
+// compute them for each voxel.
 template <class S>
 struct BrickShape {
   S a[3], b[3];
@@ -30,7 +31,7 @@ struct BrickShape {
   S along[3], across[3];  // q_d^2, and the sum of the other two [m]
 };
 
-// Forces f of the modes of displacements u: f[component][mode]. Neither is read or written at kModeOne: a translation.
+// Modal forces f for modal displacements u: f[component][mode]. kModeOne (translation) is neither read nor written.
 template <class T, class S>
 [[gnu::always_inline]] inline void ModeForces(const BrickShape<S>& shape, const BrickModuli<T>& moduli,
                                               const T (&u)[3][8], T (&f)[3][8]) {
@@ -52,7 +53,7 @@ template <class T, class S>
     f[d][kSingle[g]] = a[g] * shear;
     f[g][kSingle[d]] = a[d] * shear;
   }
-  // Dilatation that varies along axis d: by components g and h, in the modes that also vary along d.
+  // Dilatation that varies along axis d: components g and h, in the modes that also vary along d.
   for (int d = 0; d < 3; ++d) {
     const int g = (d + 1) % 3, h = (d + 2) % 3;
     const T ug = u[g][kPair[d][g]], uh = u[h][kPair[d][h]];
@@ -62,7 +63,7 @@ template <class T, class S>
     f[g][kPair[d][g]] = b[g] * (two_mu * eg + varying) + shear * ug;
     f[h][kPair[d][h]] = b[h] * (two_mu * eh + varying) + shear * uh;
   }
-  // Warping: component d in the mode of the other two axes. Shear of d and g varies along the third.
+  // Warping: component d in the mode of the other two axes. The shear of d and g varies along the third axis.
   T warp[3];
   for (int d = 0; d < 3; ++d) {
     const int g = (d + 1) % 3, h = (d + 2) % 3;

@@ -13,7 +13,7 @@ std::string Text(const GridIndex& at) {
   return "(" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) + ")";
 }
 
-// "3 of 12 nodes": counts what is wrong and keeps the first.
+// Counts faults and keeps the first, for messages like "3 of 12 nodes".
 struct Count {
   std::int64_t bad = 0;
   GridIndex first = {};
@@ -22,7 +22,7 @@ struct Count {
   }
 };
 
-// Whether the rest of the checks make sense.
+// Whether the remaining checks are meaningful.
 bool CheckGrid(const VoxelGrid& grid, Problems& problems) {
   double voxels = 1;
   for (int d = 0; d < 3; ++d) voxels *= grid.size[d] > 0 ? grid.size[d] : 0;
@@ -41,7 +41,7 @@ bool CheckGrid(const VoxelGrid& grid, Problems& problems) {
     usable = false;
   }
   if (grid.material.size() != grid.voxels() || (!grid.stiffness.empty() && grid.stiffness.size() != grid.voxels())) {
-    problems.Add("grid", "materials and stiffness are not of as many voxels as the grid has");
+    problems.Add("grid", "the numbers of materials and stiffness factors differ from the number of voxels");
     return false;
   }
   Count bad_stiffness;
@@ -84,16 +84,16 @@ void CheckMaterials(const VoxelGrid& grid, const std::vector<VoxelMaterial>& mat
   });
   if (unknown.bad > 0) {
     problems.Add("materials", std::to_string(unknown.bad) +
-                                  " voxels are of a material that is not listed, the first is " + Text(unknown.first) +
-                                  " of material " + std::to_string(grid.MaterialAt(unknown.first)));
+                                  " voxels have a material that is not listed, the first is " + Text(unknown.first) +
+                                  " with material " + std::to_string(grid.MaterialAt(unknown.first)));
   }
 }
 
-// Adds a problem where some of the nodes don't exist, or none are named; whether all is well.
+// Adds a problem if some of the nodes don't exist, or if none are given. Returns whether all is well.
 bool CheckNodes(const VoxelMesh& mesh, const std::vector<GridIndex>& nodes, const std::string& path,
                 Problems& problems) {
   if (nodes.empty()) {
-    problems.Add(path, "no nodes are named");
+    problems.Add(path, "no nodes are given");
     return false;
   }
   Count outside;
@@ -108,7 +108,7 @@ bool CheckNodes(const VoxelMesh& mesh, const std::vector<GridIndex>& nodes, cons
   return false;
 }
 
-// What the supports fix, as far as it exists.
+// The components that valid supports prescribe.
 FixedComponents CheckSupports(const VoxelMesh& mesh, const std::vector<VoxelSupport>& supports, Problems& problems) {
   FixedComponents fixed(mesh.nodes(), 0);
   std::map<std::pair<std::int32_t, int>, double> values;
@@ -118,7 +118,7 @@ FixedComponents CheckSupports(const VoxelMesh& mesh, const std::vector<VoxelSupp
     CheckNodes(mesh, support.nodes, JoinPath(path, "nodes"), problems);
     if (!support.components[0] && !support.components[1] && !support.components[2]) {
       problems.Add(JoinPath(path, "components"), "no component is prescribed",
-                   "leave the support out, or say which it holds");
+                   "leave the support out, or give the prescribed components");
     }
     if (!support.displacement.allFinite()) {
       problems.Add(JoinPath(path, "displacement"), "must be finite");
@@ -138,7 +138,7 @@ FixedComponents CheckSupports(const VoxelMesh& mesh, const std::vector<VoxelSupp
     if (contradicting.bad > 0) {
       problems.Add(JoinPath(path, "displacement"),
                    std::to_string(contradicting.bad) +
-                       " components are prescribed by an earlier support as something else, the first at node " +
+                       " components have a different value in an earlier support, the first at node " +
                        Text(contradicting.first));
     }
   }
@@ -155,14 +155,14 @@ void CheckLoads(const VoxelGrid& grid, const VoxelMesh& mesh, const VoxelLoads& 
     const VoxelTraction& load = loads.tractions[k];
     const std::string path = IndexPath("loads.tractions", k);
     if (!load.traction.allFinite()) problems.Add(JoinPath(path, "traction"), "must be finite");
-    if (load.faces.empty()) problems.Add(JoinPath(path, "faces"), "no faces are named");
+    if (load.faces.empty()) problems.Add(JoinPath(path, "faces"), "no faces are given");
     Count missing;
     for (const VoxelFace& face : load.faces) {
       if (grid.MaterialAt(face.voxel) == 0 || face.side < 0 || face.side > 5) missing.Add(face.voxel);
     }
     if (missing.bad > 0) {
       problems.Add(JoinPath(path, "faces"), std::to_string(missing.bad) + " of " + std::to_string(load.faces.size()) +
-                                                " faces are not of a solid voxel, the first is of " +
+                                                " faces do not belong to a solid voxel, the first is at " +
                                                 Text(missing.first));
     }
   }
@@ -172,9 +172,9 @@ void CheckLoads(const VoxelGrid& grid, const VoxelMesh& mesh, const VoxelLoads& 
 void CheckFreeMotions(const std::vector<FreeMotion>& free, Problems& problems) {
   for (const FreeMotion& motion : free) {
     problems.Add("supports",
-                 "nothing holds the island of " + std::to_string(motion.voxels) + " voxels that begins at " +
+                 "no support holds the island of " + std::to_string(motion.voxels) + " voxels that starts at " +
                      Text(motion.first_voxel) + ": it " + motion.motions,
-                 "hold it there, or keep only the largest island");
+                 "add a support, or keep only the largest island");
   }
 }
 

@@ -8,10 +8,10 @@
 
 namespace fascicle {
 
-// Everything that would leave a static problem without an answer, or with a wrong one: an empty or senseless grid,
-// moduli out of range (nu -> 0.5), voxels of no material, supports and loads on what does not exist or that contradict
-// each other, and parts that nothing holds, with their rigid motions named. Adds all of it; paths are `grid...`,
-// `materials[m]...`, `supports[s]...`, `loads...`. may_fly: parts that nothing holds are right, as in steps in time.
+// Reports everything that would leave a static problem without a solution, or give a wrong one: an empty or invalid
+// grid, moduli out of range (nu -> 0.5), voxels without a material, supports and loads on nodes that do not exist or
+// that contradict each other, and unsupported parts with their rigid body modes. Paths are `grid...`,
+// `materials[m]...`, `supports[s]...`, `loads...`. may_fly: unsupported parts are allowed, as in dynamics.
 void CheckVoxelProblem(const VoxelGrid& grid, const std::vector<VoxelMaterial>& materials,
                        const std::vector<VoxelSupport>& supports, const VoxelLoads& loads, Problems& problems,
                        bool may_fly = false);

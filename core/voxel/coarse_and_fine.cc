@@ -9,7 +9,7 @@
 namespace fascicle {
 namespace {
 
-// Distance of a point, in coarse spacings, from voxel `at`: zero inside. The sum over the axes, squared.
+// Squared distance of a point, in coarse spacings, from voxel `at`: zero inside.
 double SquaredDistance(const Vec3& point, const GridIndex& at) {
   double sum = 0;
   for (int d = 0; d < 3; ++d) {
@@ -19,7 +19,7 @@ double SquaredDistance(const Vec3& point, const GridIndex& at) {
   return sum;
 }
 
-// The solid voxel nearest to a point among the one that it is in and those around; of several, the first.
+// The solid voxel nearest to a point, among the voxel that contains it and its neighbours; the first of several.
 const VoxelRun* NearestVoxel(const VoxelMesh& mesh, const Vec3& point, GridIndex& nearest) {
   const VoxelRun* found = nullptr;
   double least = std::numeric_limits<double>::infinity();
@@ -40,9 +40,10 @@ const VoxelRun* NearestVoxel(const VoxelMesh& mesh, const Vec3& point, GridIndex
 
 }  // namespace
 
-CarriedField CarryToFine(const VoxelMesh& coarse, const VoxelField<double>& u, const VoxelMesh& fine, int ratio) {
+InterpolatedField InterpolateToFine(const VoxelMesh& coarse, const VoxelField<double>& u, const VoxelMesh& fine,
+                                    int ratio) {
   FASCICLE_CHECK(ratio >= 1 && u.nodes() == coarse.nodes(), "displacements of a coarser level");
-  CarriedField carried = {VoxelField<double>(fine.nodes()), std::vector<bool>(fine.nodes(), false)};
+  InterpolatedField interpolated = {VoxelField<double>(fine.nodes()), std::vector<bool>(fine.nodes(), false)};
   std::int32_t node = 0;
   for (const GridIndex& place : fine.NodePlaces()) {
     const std::int32_t n = node++;
@@ -50,29 +51,29 @@ CarriedField CarryToFine(const VoxelMesh& coarse, const VoxelField<double>& u, c
     GridIndex at = {};
     const VoxelRun* const run = NearestVoxel(coarse, point, at);
     if (run == nullptr) continue;
-    carried.carried[n] = true;
+    interpolated.defined[n] = true;
     for (int c = 0; c < 8; ++c) {
       double weight = 1;
       for (int d = 0; d < 3; ++d) {
         const double part = point[d] - at[d];
         weight *= (c >> d & 1) != 0 ? part : 1 - part;
       }
-      carried.values.Add(n, weight * u.At(run->node[c >> 1] + at[0] - run->i + (c & 1)));
+      interpolated.values.Add(n, weight * u.At(run->node[c >> 1] + at[0] - run->i + (c & 1)));
     }
   }
-  return carried;
+  return interpolated;
 }
 
-CoarseError ErrorOfCoarse(const CarriedField& carried, const VoxelField<double>& fine) {
+CoarseError ErrorOfCoarse(const InterpolatedField& interpolated, const VoxelField<double>& fine) {
   CoarseError error;
   error.field = VoxelField<double>(fine.nodes());
   double squares = 0, of_fine = 0;
   for (std::int32_t n = 0; n < fine.nodes(); ++n) {
-    if (!carried.carried[n]) {
+    if (!interpolated.defined[n]) {
       ++error.left_out;
       continue;
     }
-    const Vec3 difference = carried.values.At(n) - fine.At(n);
+    const Vec3 difference = interpolated.values.At(n) - fine.At(n);
     error.field.Add(n, difference);
     error.largest = std::max(error.largest, difference.norm());
     squares += difference.squaredNorm();

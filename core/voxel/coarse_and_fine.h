@@ -8,24 +8,25 @@
 
 namespace fascicle {
 
-// A level's displacements at the nodes of a finer one: by trilinear interpolation in the coarse voxel that a fine node
-// is in; where that is not solid (a fraction threshold took it), by the trilinear function of the nearest solid one
-// among its neighbours; where there is none, none.
-struct CarriedField {
-  VoxelField<double> values;  // zero where not carried
-  std::vector<bool> carried;  // of each fine node
+// Displacements of a coarse level at the nodes of a finer one, by trilinear interpolation in the coarse voxel that
+// contains a fine node. If that voxel is not solid (below the fraction threshold), the nearest solid neighbour is
+// extrapolated; if there is none, the displacement is undefined.
+struct InterpolatedField {
+  VoxelField<double> values;  // zero where undefined
+  std::vector<bool> defined;  // for each fine node
 };
-// ratio >= 1: fine voxels along an edge of a coarse one; both grids start at the same corner (Coarsen).
-CarriedField CarryToFine(const VoxelMesh& coarse, const VoxelField<double>& u, const VoxelMesh& fine, int ratio);
+// ratio >= 1: fine voxels along an edge of a coarse voxel. Both grids start at the same corner (Coarsen).
+InterpolatedField InterpolateToFine(const VoxelMesh& coarse, const VoxelField<double>& u, const VoxelMesh& fine,
+                                    int ratio);
 
-// How far coarse displacements are from the fine solution.
+// Error of coarse displacements relative to the fine solution.
 struct CoarseError {
-  VoxelField<double> field;   // carried minus fine; zero where not carried [m]
-  double relative = 0;        // root of the sum of its squares, over that of the fine solution at the same nodes [1]
+  VoxelField<double> field;   // interpolated minus fine; zero where undefined [m]
+  double relative = 0;        // rms error over the rms of the fine solution at the same nodes [1]
   double largest = 0;         // [m]
-  std::int32_t left_out = 0;  // nodes that nothing was carried to
+  std::int32_t left_out = 0;  // nodes without an interpolated value
 };
-CoarseError ErrorOfCoarse(const CarriedField& carried, const VoxelField<double>& fine);
+CoarseError ErrorOfCoarse(const InterpolatedField& interpolated, const VoxelField<double>& fine);
 
 }  // namespace fascicle
 

@@ -10,15 +10,15 @@ namespace fascicle {
 
 struct VoxelCgResult {
   bool converged = false;
-  bool curves_down = false;  // ended because A is not positive in the last direction
+  bool curves_down = false;  // ended because A is not positive along the last direction
   int iterations = 0;
   double residual = 0;  // |r| at the end
 };
 
-// Solves A x = b by conjugate gradients [Shewchuk 1994, B3], preconditioned by a cycle of `multigrid`, from x on. Ends
-// when |r| <= goal. Fields are those of the whole mesh. The same bits for any number of threads.
-//   apply(p, q)  sets q = A p, zero where a component is prescribed
-//   r            b - A x, zero where a component is prescribed; that at the end
+// Solves A x = b by conjugate gradients [Shewchuk 1994, B3], preconditioned by a cycle of `multigrid`, starting at x.
+// Stops when |r| <= goal. Fields are those of the whole mesh. The same bits for any number of threads.
+//   apply(p, q)  sets q = A p, zero at prescribed components
+//   r            b - A x, zero at prescribed components; on return the final residual
 template <class Apply>
 VoxelCgResult ConjugateGradient(ThreadTeam& team, const Apply& apply, VoxelMultigrid& multigrid, double goal,
                                 int max_iterations, const std::stop_token& stop, VoxelField<double>& r,
@@ -45,7 +45,7 @@ VoxelCgResult ConjugateGradient(ThreadTeam& team, const Apply& apply, VoxelMulti
     ++result.iterations;
     if (!std::isfinite(alpha)) break;
     if (curvature < 0) {
-      // Along p if there is nothing yet.
+      // In the first iteration, a step along p.
       if (result.iterations == 1) ForNumbers(team, x.size(), [&](std::size_t k) { x.data()[k] += p.data()[k]; });
       result.curves_down = true;
       break;

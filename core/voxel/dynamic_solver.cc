@@ -126,12 +126,12 @@ VoxelMode LowestMode(const VoxelModel& model, const std::vector<VoxelSupport>& s
       for (int d = 0; d < 3; ++d) {
         v.component(d)[n] *= scale;
         Mv.component(d)[n] = mass[n] * v.component(d)[n];
-        // K w = M v is solved by about v / eigenvalue.
+        // K w = M v has the solution w ~ v / eigenvalue.
         w.component(d)[n] = eigenvalue > 0 ? v.component(d)[n] / eigenvalue : 0;
       }
     });
     if (!equilibrium.Solve(Mv, nullptr, {.tolerance = 0.01 * tolerance}, w).converged) return mode;
-    // Rayleigh's quotient of w: w.K w = w.M v.
+    // Rayleigh quotient of w: w.K w = w.M v.
     const double next = Dot(team, w, Mv) / MassProduct(team, mass, w);
     mode.converged = std::abs(next - eigenvalue) <= 2 * tolerance * next;
     eigenvalue = next;

@@ -12,48 +12,49 @@ namespace fascicle {
 
 struct DynamicSettings {
   double density = 0;       // > 0 [kg/m^3]
-  double mass_damping = 0;  // a of C = a M, >= 0 [1/s]
+  double mass_damping = 0;  // a in C = a M, >= 0 [1/s]
   double time_step = 0;     // > 0 [s]
-  double tolerance = 1e-8;  // of a step's residual, as EquilibriumSettings::tolerance [1]
+  double tolerance = 1e-8;  // for a step's residual, see EquilibriumSettings::tolerance [1]
   int max_iterations = 1000;
 };
 
 struct VoxelStepReport {
   EquilibriumResult iterations;
-  double kinetic = 0;  // of the mean velocity of the step [J]
-  double elastic = 0;  // at its end [J]
+  double kinetic = 0;  // for the mean velocity of the step [J]
+  double elastic = 0;  // at the end of the step [J]
 };
 
 // Steps a body of voxels in time by
 //   (K + M/dt^2 + C/(2 dt)) u_{n+1} = f + (2 M/dt^2) u_n - (M/dt^2 - C/(2 dt)) u_{n-1},  C = a M
 // [Zhu, Chen & Kaufman 1998, eqs. 3-9], M lumped: rho V/8 at each corner of a voxel (the paper's rho V/3 does not
-// conserve mass). Stable for any step, but it damps, because K acts at the end of the step: with every step a motion of
-// angular frequency w gets (1 + (w dt)^2)^(1/2) times smaller, and its phase goes on by atan(w dt) instead of w dt.
-// With large rotation K u_{n+1} is the force of rotated bricks at u_{n+1}, found by Newton's method.
+// conserve mass). Unconditionally stable, but dissipative, because K acts at the end of the step: in every step a mode
+// of angular frequency w decreases by a factor of (1 + (w dt)^2)^(1/2), and its phase advances by atan(w dt) instead of
+// w dt. With large rotation, K u_{n+1} is replaced by the force of rotated bricks at u_{n+1}, and the step is solved by
+// Newton's method.
 //
-// The levels are set up once. One thread at a time; the same bits for any number of threads, and of a state that was
-// saved and loaded.
+// The levels are set up once. Not thread-safe. The same bits for any number of threads, and for a state that was saved
+// and loaded.
 class VoxelDynamicSolver {
  public:
-  // Checked input (CheckVoxelProblem, where the body may fly). The model and the team must outlive the solver.
+  // Input must be checked (CheckVoxelProblem with may_fly). The model and the team must outlive the solver.
   VoxelDynamicSolver(const VoxelModel& model, const std::vector<VoxelSupport>& supports,
                      const DynamicSettings& settings, ThreadTeam& team);
 
-  // At time 0, displaced by `displacement` [m] and with `velocity` [m/s]; either null: zero.
+  // The state at time 0 with `displacement` [m] and `velocity` [m/s]; null means zero.
   VoxelState InitialState(const VoxelField<double>* displacement = nullptr,
                           const VoxelField<double>* velocity = nullptr) const;
 
-  // Makes one step, under forces [N] at its end (AddForces) and with prescribed components as they are in `prescribed`
-  // [m] at its end; its other components are not read. A step that does not converge leaves the state as it was.
+  // Makes one step under the nodal forces [N] at its end (AddForces), with prescribed components as in `prescribed` [m]
+  // at its end (other components are not read). A step that does not converge leaves the state unchanged.
   VoxelStepReport Step(const VoxelField<double>& force, const VoxelField<double>& prescribed, VoxelState& state,
                        std::stop_token stop = {});
 
-  // The force [N] that makes up for what the scheme leaves at a step from `before` to `now` under `force`: that of
-  // supports on the body in the components that they hold, and the residual elsewhere.
+  // The force [N] that balances the scheme in a step from `before` to `now` under `force`: the reactions in prescribed
+  // components, and the residual elsewhere.
   VoxelField<double> Reaction(const VoxelField<double>& force, const VoxelState& before, const VoxelState& now);
 
   const DynamicSettings& settings() const { return settings_; }
-  // Of each node [kg].
+  // Mass of each node [kg].
   const std::vector<double>& mass() const { return mass_; }
   const VoxelMultigrid& multigrid() const { return equilibrium_.multigrid(); }
 
@@ -66,14 +67,14 @@ class VoxelDynamicSolver {
   VoxelField<double> inertia_, next_;  // scratch
 };
 
-// The lowest natural frequency of a body [Hz], and its shape.
+// The lowest natural frequency of a body [Hz] and its mode shape.
 struct VoxelMode {
   bool converged = false;
   double frequency = 0;      // [Hz]
-  VoxelField<double> shape;  // greatest displacement 1
+  VoxelField<double> shape;  // scaled to a largest displacement of 1
 };
-// Of small motions about the undeformed shape, with components held as supports say: the least eigenvalue of
-// M^-1 K by inverse iteration.
+// For small motions about the undeformed shape, with components prescribed by the supports: the least eigenvalue of
+// M^-1 K, by inverse iteration.
 //   tolerance  of the frequency [1]
 VoxelMode LowestMode(const VoxelModel& model, const std::vector<VoxelSupport>& supports, double density,
                      ThreadTeam& team, double tolerance = 1e-8);

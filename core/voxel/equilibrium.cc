@@ -9,18 +9,18 @@ namespace fascicle {
 namespace {
 
 // Newton's method.
-// Bricks that turned by that much since the levels were made want new ones [rad]; in steps in time, which are easier
-// and where new levels cost as much as the step, later.
+// Largest rotation of a brick since the levels were set up [rad] before they are set up again. Larger in dynamics,
+// where systems are easier and new levels cost as much as the step.
 constexpr double kMostTurned = 0.2, kMostTurnedInTime = 0.8;
-constexpr double kLargestPart = 0.1;  // of the residual, to which conjugate gradients solve
-constexpr double kSufficient = 1e-4;  // of the decrease that the slope promises [Nocedal & Wright 2006, 3.4]
+constexpr double kLargestPart = 0.1;  // reduction of the residual by the conjugate gradients of one Newton step
+constexpr double kSufficient = 1e-4;  // fraction of the decrease predicted by the slope [Nocedal & Wright 2006, 3.4]
 constexpr double kLeastStep = 1e-4;
 constexpr double kRoundingOfForces = 1e-14;
-constexpr double kRounding = 1e-11;  // of energies
+constexpr double kRounding = 1e-11;  // relative, of energies
 
-// Where only the mean of the dilatation resists, coarse levels are those of bricks whose whole dilatation does, with a
-// bulk modulus that does not lock: nested levels know nothing of a mean over finer bricks. What is left of the large
-// modulus is up to conjugate gradients.
+// With mean dilatation, the multigrid levels are those of bricks with full dilatation and a bulk modulus that does not
+// lock, because nested levels cannot represent the mean over finer bricks. Conjugate gradients handle the rest of a
+// large bulk modulus.
 constexpr double kMostLambda = 4;  // times mu; Poisson's ratio 0.4
 
 VoxelStiffness ForMultigrid(VoxelStiffness stiffness) {
@@ -31,8 +31,8 @@ VoxelStiffness ForMultigrid(VoxelStiffness stiffness) {
   return stiffness;
 }
 
-// Bodies of up to that many nodes that step in time are factored once, which every step then uses: a solution by the
-// factors costs less than a cycle (measured: up to here).
+// Bodies of at most this many nodes are factored once for all time steps: a solution by the factors then costs less
+// than a multigrid cycle (measured).
 constexpr std::int32_t kMostFactoredInTime = 5000;
 
 double Norm(ThreadTeam& team, const VoxelField<double>& v) { return std::sqrt(Dot(team, v, v)); }
@@ -106,10 +106,10 @@ EquilibriumResult VoxelEquilibrium::SolveLinear(const VoxelField<double>& f, con
 struct VoxelEquilibrium::Place {
   Place(const VoxelModel& model, const VoxelField<double>& at) : u(at), r(at.nodes()), R(model.mesh().voxels()) {}
 
-  VoxelField<double> u, r;   // r: f + b - D u - f_int, zero where a component is prescribed
+  VoxelField<double> u, r;   // r: f + b - D u - f_int, zero at prescribed components
   BrickRotations<double> R;  // of the bricks
-  double energy = 0;         // elastic, of D, and of loads: what is least in equilibrium [J]
-  double energy_size = 0;    // of its parts, for what rounding does to it [J]
+  double energy = 0;         // elastic energy plus those of D and of the loads: minimal in equilibrium [J]
+  double energy_size = 0;    // magnitude of its terms, for its rounding error [J]
   double forces = 0;         // |f_int| [N]
 };
 
@@ -141,7 +141,7 @@ bool VoxelEquilibrium::Move(const VoxelField<double>& f, const VoxelField<double
                [&](std::size_t k) { next.u.data()[k] = now.u.data()[k] + along * step.data()[k]; });
     Visit(f, b, next);
     const bool lower = next.energy <= now.energy + kSufficient * along * slope;
-    // Near the end energies differ by less than they are rounded: then the residual tells.
+    // Near convergence the energies differ by less than their rounding error; then the residual decides.
     const bool same = std::abs(next.energy - now.energy) <= kRounding * now.energy_size;
     if (lower || (same && Norm(*team_, next.r) < size)) {
       std::swap(now, next);
@@ -151,7 +151,7 @@ bool VoxelEquilibrium::Move(const VoxelField<double>& f, const VoxelField<double
   return false;
 }
 
-// Of the terms of the bricks' forces, which cancel in rigid motions [N].
+// Magnitude of the terms of the bricks' forces, which cancel in rigid motions [N].
 double VoxelEquilibrium::SizeOfTerms(const VoxelField<double>& u) const {
   const VoxelField<float> diagonal = DiagonalOf(model_->stiffness());
   return std::sqrt(SumOverNumbers(*team_, u.size(), [&](std::size_t k) {
@@ -163,7 +163,7 @@ EquilibriumResult VoxelEquilibrium::SolveRotated(const VoxelField<double>& f, co
                                                  const EquilibriumSettings& settings, VoxelField<double>& u) {
   Place now(*model_, u), next(*model_, u);
   BrickRotations<double> of_levels(model_->mesh().voxels());
-  std::unique_ptr<VoxelMultigrid> turned;  // levels of bricks as they have turned
+  std::unique_ptr<VoxelMultigrid> turned;  // levels of the rotated bricks
   VoxelField<double> step(u.nodes()), r(u.nodes());
   const auto apply = [&](const VoxelField<double>& x, VoxelField<double>& y) {
     rotated_->ApplyTangent(now.u, now.R, x, *team_, y);

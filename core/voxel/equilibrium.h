@@ -14,38 +14,37 @@
 namespace fascicle {
 
 struct EquilibriumSettings {
-  // Of the residual's norm [1]. Relative to its norm where free components are zero (linear equilibrium), or to those
-  // of loads and of the bricks' forces together (steps in time, large rotation); whatever the start.
+  // Of the residual's norm [1], relative to the residual with zero free components (linear equilibrium), or to the sum
+  // of loads and brick forces (dynamics, large rotation), whatever the start.
   double tolerance = 1e-8;
-  int max_iterations = 1000;  // of conjugate gradients, in all
-  std::stop_token stop = {};  // ends early, not converged, when asked
+  int max_iterations = 1000;  // of conjugate gradients, in total
+  std::stop_token stop = {};  // ends the iteration early, as not converged
 };
 
 struct EquilibriumResult {
   bool converged = false;
-  int iterations = 0;         // of conjugate gradients, in all
+  int iterations = 0;         // of conjugate gradients, in total
   int newton_iterations = 0;  // 1 with small rotation
-  double residual = 0;        // |r| at the end, relative as the tolerance is [1]
+  double residual = 0;        // final |r|, relative as for the tolerance [1]
 };
 
-// Finds u with f_int(u) + D u = f + b, where f_int are the forces of the model's bricks (K u with small rotation), D is
-// diagonal, not negative, the same for the components of a node, and some components of u are prescribed: equilibrium
-// with D = 0, or a step in time with D and b from inertia.
+// Solves f_int(u) + D u = f + b for u, where f_int are the forces of the model's bricks (K u with small rotation), D is
+// a non-negative diagonal, equal for the components of a node, and some components of u are prescribed: equilibrium
+// with D = 0, or a time step with D and b from inertia.
 //
-// By conjugate gradients [Shewchuk 1994, B3] preconditioned by a cycle of multigrid; with large rotation within
-// Newton's method on the energy, where they stop at directions along which the energy curves down, and a line search
-// [Nocedal & Wright 2006, algorithms 7.1 and 3.1]. One thread at a time; the same bits for any number of threads,
-// whatever was solved before.
+// Conjugate gradients [Shewchuk 1994, B3] preconditioned by a multigrid cycle. With large rotation, Newton's method on
+// the energy with a line search, where conjugate gradients stop at directions of negative curvature [Nocedal & Wright
+// 2006, algorithms 7.1 and 3.1]. Not thread-safe. The same bits for any number of threads, whatever was solved before.
 class VoxelEquilibrium {
  public:
-  // shift: D of each node [N/m], or empty for none. Model and team must outlive it.
+  // shift: D for each node [N/m]; empty: D = 0. Model and team must outlive the object.
   VoxelEquilibrium(const VoxelModel& model, const std::vector<VoxelSupport>& supports, std::vector<double> shift,
                    ThreadTeam& team);
   VoxelEquilibrium(const VoxelEquilibrium&) = delete;
   VoxelEquilibrium& operator=(const VoxelEquilibrium&) = delete;
 
-  // Starts from u, whose prescribed components are to have their values. b: null for none; tolerances are relative to
-  // |f|, not to |b|.
+  // Starts from u, whose prescribed components must already have their values. b may be null; tolerances are relative
+  // to |f|, not to |b|.
   EquilibriumResult Solve(const VoxelField<double>& f, const VoxelField<double>* b, const EquilibriumSettings& settings,
                           VoxelField<double>& u);
 
@@ -62,10 +61,10 @@ class VoxelEquilibrium {
   EquilibriumResult SolveRotated(const VoxelField<double>& f, const VoxelField<double>* b,
                                  const EquilibriumSettings& settings, VoxelField<double>& u);
   double SizeOfTerms(const VoxelField<double>& u) const;
-  // What Newton's method knows of a place.
+  // A point of Newton's method: displacements, residual, rotations and energy.
   struct Place;
   void Visit(const VoxelField<double>& f, const VoxelField<double>* b, Place& place);
-  // Moves `now` along a step by a line search, with `next` for scratch; false where nothing is lower.
+  // Line search along a step from `now`, with `next` as scratch. False if the energy does not decrease.
   bool Move(const VoxelField<double>& f, const VoxelField<double>* b, const VoxelField<double>& step, Place& now,
             Place& next);
 
@@ -73,7 +72,7 @@ class VoxelEquilibrium {
   ThreadTeam* team_;
   PrescribedComponents prescribed_;
   std::vector<double> shift_;
-  std::unique_ptr<VoxelMultigrid> multigrid_;  // of bricks that have not turned
+  std::unique_ptr<VoxelMultigrid> multigrid_;  // of unrotated bricks
   std::optional<RotatedBricks> rotated_;       // with large rotation
 };
 

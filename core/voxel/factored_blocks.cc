@@ -3,7 +3,7 @@
 namespace fascicle {
 namespace {
 
-// Added to the diagonal, for motions that nothing resists.
+// Added to the diagonal (relative), for zero-energy motions.
 constexpr double kRegularization = 1e-9;
 
 }  // namespace

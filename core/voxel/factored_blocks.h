@@ -10,23 +10,23 @@
 
 namespace fascicle {
 
-// A matrix of 3x3 blocks with its pattern.
+// A matrix of 3x3 blocks with its sparsity pattern.
 struct BlockMatrix {
   BlockPattern pattern;
   BlockValues values;
 };
 
-// K + D of a level in blocks, one for each pair of nodes that a voxel joins. shift: D, or empty.
+// K + D of a level as blocks, one for each pair of nodes with a common voxel. shift: D, or empty.
 BlockMatrix AssembleLevel(const LevelStiffness& K, const VoxelField<float>& shift);
 
-// The factors of a positive semidefinite matrix of 3x3 blocks, by which systems are solved. Motions that nothing
-// resists are held by a little of their diagonal; components without any stand by themselves. One thread at a time.
+// A factorization of a positive semidefinite matrix of 3x3 blocks. Zero-energy motions are regularized by a small
+// multiple of the diagonal; components with a zero diagonal are isolated. Not thread-safe.
 class FactoredBlocks {
  public:
   // Reads the lower triangle. False when memory runs out.
   bool Factor(const BlockPattern& pattern, const BlockValues& values);
 
-  // Three numbers for each block: the right side, and after Solve() the solution in its place.
+  // Three numbers for each block: the right-hand side; after Solve() the solution.
   std::span<double> side() { return side_; }
   void Solve() { solver_.Solve(side_); }
   std::size_t unknowns() const { return side_.size(); }

@@ -12,10 +12,10 @@ namespace fascicle {
 using SymmetricTensor = std::array<double, 6>;
 
 // Strain at the centre of every voxel [1], where that of trilinear displacements is most accurate: sym(grad u), or with
-// large rotation S - I of F = R S, in the frame that turned with the brick.
+// large rotation S - I of F = R S, in the rotated frame of the brick.
 std::vector<SymmetricTensor> StrainAtCentres(const VoxelModel& model, const VoxelField<double>& u);
 
-// Stress lambda tr(e) I + 2 mu e [Pa] of that strain, with each voxel's own stiffness; in the same frame.
+// Stress lambda tr(e) I + 2 mu e [Pa] for that strain, with each voxel's own stiffness, in the same frame.
 std::vector<SymmetricTensor> StressAtCentres(const VoxelModel& model, const VoxelField<double>& u);
 
 }  // namespace fascicle

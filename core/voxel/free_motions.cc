@@ -11,9 +11,9 @@ namespace fascicle {
 namespace {
 
 constexpr std::size_t kMostJoined = 60;
-constexpr double kZero = 1e-10;  // of an eigenvalue, relative to the largest possible
+constexpr double kZero = 1e-10;  // relative to the largest possible eigenvalue
 
-// Displacement of a place under the six rigid motions about `centre`, lengths in units of `unit`.
+// Displacement at a place due to the six rigid body modes about `centre`; lengths in units of `unit`.
 Eigen::Matrix<double, 3, 6> RigidMotions(const Vec3& place, const Vec3& centre, double unit) {
   const Vec3 r = (place - centre) / unit;
   Eigen::Matrix<double, 3, 6> motions;
@@ -23,19 +23,19 @@ Eigen::Matrix<double, 3, 6> RigidMotions(const Vec3& place, const Vec3& centre, 
   return motions;
 }
 
-// A node that is held, or that several islands share.
+// A supported node, or one shared by several islands.
 struct Tie {
   Vec3 place;                         // [m]
-  std::uint8_t fixed = 0;             // bits of components
-  std::vector<std::int32_t> islands;  // one for a support, two or more that share
+  std::uint8_t fixed = 0;             // bits of prescribed components
+  std::vector<std::int32_t> islands;  // one for a support, two or more for a shared node
 };
 
 struct Island {
   GridIndex first_voxel = {};
   std::int64_t voxels = 0;
-  Vec3 centre = Vec3::Zero();  // of what holds it
+  Vec3 centre = Vec3::Zero();  // centre of its ties
   std::vector<std::int32_t> ties;
-  std::int32_t joined = 0;  // representative of all that hang together in nodes
+  std::int32_t joined = 0;  // representative of all islands connected by nodes
 };
 
 struct Structure {
@@ -96,7 +96,7 @@ std::string Join(const std::string& axes) {
   return text;
 }
 
-// Names of the motions that columns of `motions` (6 rows of one island) combine to.
+// Describes the motions spanned by the columns of `motions` (6 rows for one island).
 std::string Describe(const Eigen::MatrixXd& motions) {
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(motions);
   const Eigen::MatrixXd basis = Eigen::MatrixXd(qr.householderQ()).leftCols(qr.rank());
@@ -111,7 +111,7 @@ std::string Describe(const Eigen::MatrixXd& motions) {
   return text.empty() ? "turns about an axis that is not one of the grid's" : text;
 }
 
-// Free motions of islands that hang together, given the ties that count.
+// Adds the free motions of connected islands, given the ties to consider.
 void AddFreeMotions(const Structure& s, const std::vector<std::int32_t>& members, bool shared_nodes_hold,
                     std::vector<FreeMotion>& free) {
   const auto size = static_cast<Eigen::Index>(6 * members.size());

@@ -9,16 +9,16 @@
 
 namespace fascicle {
 
-// A part of a body that can move without strain: K has no inverse.
+// A part of a body that can move without strain, which makes K singular.
 struct FreeMotion {
-  GridIndex first_voxel = {};  // of the island
-  std::int64_t voxels = 0;     // in it
+  GridIndex first_voxel = {};  // first voxel of the island
+  std::int64_t voxels = 0;     // number of its voxels
   std::string motions;         // "moves along i, turns about j and k"
 };
 
-// All islands that supports leave free to move as rigid bodies. Islands that touch in an edge or a corner hold each
-// other in the nodes that they share (two of these are a hinge, one is a ball joint); of a chain of more than 60 such
-// islands each must be held by itself.
+// All islands with rigid body modes that the supports leave free. Islands that touch in an edge or a corner constrain
+// each other at the shared nodes (an edge is a hinge, a corner a ball joint). In a chain of more than 60 such islands,
+// each must be supported by itself.
 std::vector<FreeMotion> FindFreeMotions(const VoxelGrid& grid, const VoxelMesh& mesh, const FixedComponents& fixed);
 
 }  // namespace fascicle

@@ -8,9 +8,9 @@
 namespace fascicle {
 namespace {
 
-// One of the eight voxels that a coarse one joins.
+// One of the eight voxels that form a coarse one.
 struct Child {
-  std::int32_t voxel = -1;  // none
+  std::int32_t voxel = -1;  // -1: none
   std::int32_t material = 0;
   std::array<std::int32_t, 8> nodes = {};
 };
@@ -30,7 +30,7 @@ Children ChildrenOf(const VoxelMesh& fine, const GridIndex& coarse) {
   return children;
 }
 
-// Whether the coarse voxel is a brick of the same kind as its eight children.
+// Whether the coarse voxel has the stiffness of a plain brick, like its eight children.
 bool AreAlike(const Children& children, const std::vector<float>& scale, const FixedComponents& fixed) {
   for (const Child& child : children) {
     if (child.voxel < 0 || child.material != children[0].material) return false;
@@ -43,8 +43,8 @@ bool AreAlike(const Children& children, const std::vector<float>& scale, const F
   return true;
 }
 
-// The rows of the corners of a child, as functions of those of the coarse voxel: P^T times rows, axis by axis. Along an
-// axis the lower child has the coarse end and the middle, the upper one the middle and the other end.
+// Expresses the rows of a child's corners in those of the coarse voxel: P^T times rows, axis by axis. Along an axis,
+// the lower child spans the coarse end and the midpoint, the upper one the midpoint and the other end.
 void InterpolateRowsTransposed(int child, BrickMatrix& rows) {
   for (int axis = 0; axis < 3; ++axis) {
     const bool upper = (child >> axis & 1) != 0;
@@ -105,7 +105,7 @@ VoxelMesh LevelStiffness::CoarserMesh(const VoxelMesh& fine) {
     for (const Child& child : ChildrenOf(fine, at)) {
       if (child.voxel >= 0) return child.material;
     }
-    FASCICLE_CHECK(false, "a coarse voxel of nothing");
+    FASCICLE_CHECK(false, "a coarse voxel has a child");
   });
 }
 
@@ -133,7 +133,7 @@ void LevelStiffness::FindOwn(const LevelStiffness& fine, const FixedComponents& 
   for (std::size_t s = 0; s < mesh_->slabs().size(); ++s) {
     const VoxelSlab& slab = mesh_->slabs()[s];
     slab_begin_[s] = static_cast<std::int32_t>(blocks_.size());
-    int lane = kBrickBlock;  // a block is of one slab
+    int lane = kBrickBlock;  // a block belongs to one slab
     for (std::int32_t r = slab.first_run; r < slab.end_run; ++r) {
       ForVoxelsOfRun(mesh_->runs()[r],
                      [&](std::int32_t voxel, const GridIndex& at, const std::array<std::int32_t, 8>& nodes) {

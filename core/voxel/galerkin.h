@@ -11,20 +11,20 @@
 
 namespace fascicle {
 
-// Bits 1, 2, 4 of each node: components 0, 1, 2 are prescribed. Empty: none anywhere.
+// Bits 1, 2, 4 for each node: components 0, 1, 2 are prescribed. Empty: none.
 using FixedComponents = std::vector<std::uint8_t>;
 
-// Stiffness of one level of a multigrid: P^T K P of the level below, brick by brick.
+// Stiffness of one multigrid level: P^T K P of the finer level, brick by brick.
 //
-// Where eight voxels are of the same stiffness and free, their common brick's own K of twice the spacing is just that,
-// because the trilinear functions of a level are among those of the finer one. Other bricks (at surfaces, between
-// materials, at supports, and all that have turned) have matrices of their own.
+// Where eight voxels have the same stiffness and no prescribed component, the result is the stiffness of a brick with
+// twice the spacing, because the trilinear functions of a level are contained in those of the finer one. Other bricks
+// (at boundaries, between materials, at supports, and all rotated ones) have matrices of their own.
 class LevelStiffness {
  public:
-  // The finest level; of bricks that have turned, R K R^T of each.
+  // The finest level; for rotated bricks R K R^T of each.
   LevelStiffness(const VoxelMesh& mesh, VoxelStiffness stiffness,
                  std::optional<BrickRotations<float>> rotations = std::nullopt);
-  // `fine` must outlive the constructor only; `fixed` is of fine's nodes. mesh: VoxelMesh::Coarser of fine's.
+  // `fine` is needed during construction only; `fixed` refers to its nodes. mesh: CoarserMesh of fine.
   static VoxelMesh CoarserMesh(const VoxelMesh& fine);
   LevelStiffness(const VoxelMesh& mesh, const LevelStiffness& fine, const FixedComponents& fixed, ThreadTeam& team);
   LevelStiffness(const LevelStiffness&) = delete;
@@ -38,7 +38,7 @@ class LevelStiffness {
   // y = K x.
   void Apply(const VoxelField<float>& x, ThreadTeam& team, VoxelField<float>& y) const;
   VoxelField<float> Diagonal() const;
-  // K of one voxel [N/m]; voxel of mesh(), in a run of that material.
+  // K of one voxel [N/m], a voxel of mesh() in a run of that material.
   BrickMatrix MatrixOf(std::int32_t voxel, std::int32_t material) const;
 
  private:
@@ -53,7 +53,7 @@ class LevelStiffness {
   std::vector<BrickMatrix> of_material_;
   const VoxelKernels* kernels_ = &VoxelKernelsFor(PreferredInstructionSet());
   std::size_t own_count_ = 0;
-  std::vector<std::int32_t> own_;  // of each voxel: kBrickBlock * block + lane, or -1; empty: none
+  std::vector<std::int32_t> own_;  // for each voxel: kBrickBlock * block + lane, or -1; empty: none
   std::vector<PackedBricks> blocks_;
   std::vector<std::int32_t> slab_begin_;  // first block of each slab, and the end
 };

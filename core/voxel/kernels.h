@@ -5,16 +5,17 @@
 #include "core/geometry/voxel_mesh.h"
 #include "core/voxel/brick_modes.h"
 
-// The loops over voxels, compiled for each instruction set. Plain numbers and pointers: whatever is compiled for one
-// set must not be of use to code for another.
+// The loops over voxels, compiled once for each instruction set. The interface has plain numbers and pointers only,
+// because nothing compiled for one set may be used by code for another.
 namespace fascicle {
 
-// Bricks with matrices of their own come in blocks, entry by entry: 300 entries (row >= column) of that many bricks.
+// Bricks with matrices of their own are stored in blocks, entry by entry: 300 entries (row >= column) of this many
+// bricks.
 inline constexpr int kBrickBlock = 16;
 inline constexpr int kPackedEntries = 300;
 struct PackedBricks {
-  std::int32_t node[4][kBrickBlock];  // as VoxelRun::node; unused bricks repeat another's nodes and have zero matrices
-  std::int32_t bricks;                // in use
+  std::int32_t node[4][kBrickBlock];  // as VoxelRun::node; unused bricks repeat another's nodes, with zero matrices
+  std::int32_t bricks;                // number in use
   float entries[kPackedEntries][kBrickBlock];
 };
 
@@ -23,23 +24,23 @@ template <class S>
 struct ProductTask {
   const VoxelRun* runs;
   std::int32_t run_count;
-  const float* scale;            // of each voxel, kPadding beyond the last
-  const BrickModuli<S>* moduli;  // of each material, from 1
+  const float* scale;            // for each voxel, plus kPadding
+  const BrickModuli<S>* moduli;  // for each material, from 1
   const BrickShape<S>* shape;
-  const S* x[3];  // readable kPadding beyond the last node
+  const S* x[3];  // readable up to kPadding beyond the last node
   S* y[3];
-  std::int32_t end_node;  // zeros may be added to y before that
+  std::int32_t end_node;  // zeros may be added to y below this node
 };
 
-// The same for bricks that have turned (rotated_bricks.h). Nine numbers of a rotation for each voxel, column by column,
-// kPadding of each beyond the last.
+// The same for rotated bricks (rotated_bricks.h). Nine numbers of a rotation for each voxel, in column-major order,
+// each followed by kPadding more.
 template <class S>
 struct RotatedTask : ProductTask<S> {
   const S* rotation[9];
-  // Of double precision alone:
-  const S* at[3];      // displacements of which the tangent is taken, as x
-  S* new_rotation[9];  // where rotations of x are to be written to
-  S* energy;           // of each voxel [J], to be written to
+  // In double precision only:
+  const S* at[3];      // displacements at which the tangent is evaluated, laid out like x
+  S* new_rotation[9];  // output: rotations at x
+  S* energy;           // output: energy of each voxel [J]
 };
 
 struct PackedTask {
@@ -49,11 +50,11 @@ struct PackedTask {
   float* y[3];
 };
 
-// Nodes of one row, and the rows of twice the spacing that they are interpolated from.
+// Nodes of one row, and the rows of the coarser level from which they are interpolated.
 struct TransferRun {
-  std::int32_t first;  // fine node
+  std::int32_t first;  // first fine node
   std::int32_t length;
-  std::int32_t odd;        // 1 where the first node is between two coarse ones
+  std::int32_t odd;        // 1 if the first node lies between two coarse ones
   std::int32_t rows;       // 1, 2 or 4
   std::int32_t coarse[4];  // first coarse node of each row
 };
@@ -68,7 +69,7 @@ struct TransferTask {
 struct VoxelKernels {
   void (*product)(const ProductTask<double>&);
   void (*product_float)(const ProductTask<float>&);
-  void (*rotated_forces)(const RotatedTask<double>&);   // y += forces at displacements x, with rotations and energies
+  void (*rotated_forces)(const RotatedTask<double>&);   // y += forces at displacements x; sets rotations and energies
   void (*rotated_tangent)(const RotatedTask<double>&);  // y += (their derivative at `at`) x
   void (*rotated_product)(const RotatedTask<float>&);   // y += R K R^T x
   void (*packed)(const PackedTask&);
@@ -76,7 +77,7 @@ struct VoxelKernels {
   void (*interpolate_transposed)(const TransferTask&);  // to += P^T from, from fine to coarse
 };
 
-// The set must be available.
+// The set must be available on this machine.
 const VoxelKernels& VoxelKernelsFor(InstructionSet set);
 
 }  // namespace fascicle

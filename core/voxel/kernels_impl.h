@@ -7,17 +7,16 @@
 #include "core/base/lanes.h"
 #include "core/voxel/kernels.h"
 
-// What kernels.h declares, for one type of Lanes. Included by one file for each instruction set, and by nothing else:
-// all functions here are templates on that type, so that no two sets share any (a test looks at the object files).
-// Nothing of Eigen or the standard library is called.
+// Implements kernels.h for one type of Lanes. Included by exactly one file for each instruction set. All functions here
+// are templates on the Lanes type, so that two sets share none of them (a test inspects the object files). Calls
+// nothing of Eigen or the standard library.
 //
-// Lanes are voxels one behind the other along i, so that corners are read as they stand in memory. Sums and differences
-// across a face of corners (eta, zeta) are made once and serve the voxels on both of its sides; then one lane further
-// is the other side. On the way back the two sides of a face are joined first, in the same order for any number of
-// lanes.
+// Lanes are consecutive voxels along i, so corners are read as they are stored. Sums and differences across a face of
+// corners (eta, zeta) are computed once and serve the voxels on both sides; shifted by one lane they belong to the
+// other side. On the way back, the two sides of a face are added first, in the same order for any number of lanes.
 namespace fascicle {
 
-// As many lanes as there are, of those of `a` and then those of `b`, from number kFirst on.
+// The lanes of `a` followed by those of `b`, starting at number kFirst; as many as a vector has.
 template <int kFirst, class L, int... kIndex>
 [[gnu::always_inline]] inline L LanesFrom(L a, L b, std::integer_sequence<int, kIndex...>) {
   return L::Of(__builtin_shufflevector(a.v, b.v, (kIndex + kFirst)...));
@@ -25,7 +24,7 @@ template <int kFirst, class L, int... kIndex>
 template <int kFirst, class L>
 [[gnu::always_inline]] inline L LanesFrom(L a, L b) {
 #if defined(__AVX512F__)
-  // Compilers take a permutation by numbers in a register, which overwrites one of its inputs.
+  // Compilers choose a permutation with indices in a register, which overwrites one of its inputs.
   if constexpr (L::kBytes == 64) {
     const auto low = (__m512i)a.v, high = (__m512i)b.v;
     if constexpr (sizeof(typename L::Scalar) == 8) {
@@ -42,7 +41,7 @@ template <class L>
 [[gnu::always_inline]] inline L NextLanes(L a, L b) {
   return LanesFrom<1>(a, b);
 }
-// The last lane of `a`, then those of `b` but its last.
+// The last lane of `a`, then those of `b` except for its last.
 template <class L>
 [[gnu::always_inline]] inline L PreviousLanes(L a, L b) {
   return LanesFrom<L::kLanes - 1>(a, b);
@@ -68,13 +67,13 @@ template <class L>
   return L::Of(__builtin_convertvector(floats, typename L::Vector));
 }
 
-// Of the four corners of a face: modes 1, eta, zeta, eta zeta of each component.
+// For the four corners of a face: modes 1, eta, zeta, eta zeta of each component.
 template <class L>
 struct FaceModes {
   L m[3][4];
 };
 
-// The scale of the lanes' voxels, zero beyond the end of the run.
+// The scale of the lanes' voxels; zero beyond the end of the run.
 template <class L, class S>
 [[gnu::always_inline]] inline L ScaleOf(const ProductTask<S>& task, const VoxelRun& run, std::int32_t at) {
   const L scale = LoadFloats<L>(task.scale + run.first_voxel + at);
@@ -87,7 +86,7 @@ template <class L, class S>
   return {scale * L(material.lambda), scale * L(material.lambda_out), scale * L(material.mu)};
 }
 
-// Forces of bricks that have not turned.
+// Forces of unrotated bricks.
 template <class L>
 struct LinearBrick {
   using Task = ProductTask<typename L::Scalar>;
@@ -98,8 +97,8 @@ struct LinearBrick {
   }
 };
 
-// y += forces of the bricks of some runs, f(u) in modes: Brick::Forces. Of kFields fields, the first is task.x, the
-// second task.at.
+// y += forces of the bricks of some runs, with modal forces f(u) by Brick::Forces. Of kFields fields, the first is
+// task.x, the second task.at.
 template <class L, class Brick>
 struct RunSum {
   using S = typename L::Scalar;
@@ -114,7 +113,8 @@ struct RunSum {
     return task.x[d];
   }
 
-  // VoxelRun::node, as wide as addresses are: or each address of each step begins with a conversion.
+  // VoxelRun::node, widened to the size of addresses: otherwise every address computation would begin with a
+  // conversion.
   struct Rows {
     explicit Rows(const VoxelRun& run) : node{run.node[0], run.node[1], run.node[2], run.node[3]} {}
     std::ptrdiff_t node[4];
@@ -136,8 +136,8 @@ struct RunSum {
     }
   }
 
-  // y += the four corners' values of face modes f; only the first `count` lanes are of the run. Loops over corners are
-  // of nothing but whole vectors: compilers unroll those, and all stays in registers.
+  // y += the four corners' values of face modes f; only the first `count` lanes belong to the run. Loops over corners
+  // contain whole vectors only: compilers unroll them, and everything stays in registers.
   [[gnu::always_inline]] static void AddFace(const Task& task, const Rows& rows, std::int32_t at, std::int32_t count,
                                              const FaceModes<L>& f) {
     L p[3][4];
@@ -149,7 +149,7 @@ struct RunSum {
       p[d][2] = far - far_y;
       p[d][3] = far + far_y;
     }
-    // Beyond the run stand zeros, which do no harm unless another thread is at work there.
+    // Values beyond the run are zeros; adding them is harmless unless another thread works there.
     if (count >= L::kLanes || rows.node[3] + at + L::kLanes <= task.end_node) [[likely]] {
       for (int d = 0; d < 3; ++d) {
         for (int r = 0; r < 4; ++r) {
@@ -171,10 +171,11 @@ struct RunSum {
     }
   }
 
-  // sum: face modes of the forces of bricks at + 0, 1, ..., and of the one before, on the faces on their left. left:
-  // displacements of these faces; carried: forces on the faces on the right. Both become those of the next bricks.
+  // sum: face modes of the forces on the left faces of bricks at + 0, 1, ..., from these bricks and their left
+  // neighbours. left: displacements of these faces. pending: forces on the right faces. Both are updated for the next
+  // bricks.
   [[gnu::always_inline]] static void SumBricks(const Task& task, const VoxelRun& run, const Rows& rows, std::int32_t at,
-                                               FaceModes<L> (&left)[kFields], FaceModes<L>& carried,
+                                               FaceModes<L> (&left)[kFields], FaceModes<L>& pending,
                                                FaceModes<L>& sum) {
     FaceModes<L> next[kFields];
     LoadFaces(task, rows, at + L::kLanes, next);
@@ -195,34 +196,34 @@ struct RunSum {
         const L odd = f[d][2 * m + 1];
         const L on_right = m == 0 ? odd : f[d][2 * m] + odd;
         const L on_left = m == 0 ? -odd : f[d][2 * m] - odd;
-        sum.m[d][m] = on_left + PreviousLanes(carried.m[d][m], on_right);
-        carried.m[d][m] = on_right;
+        sum.m[d][m] = on_left + PreviousLanes(pending.m[d][m], on_right);
+        pending.m[d][m] = on_right;
       }
     }
   }
 
-  // The run is a copy: what is read of it stays in registers.
+  // The run is a copy, so that its members stay in registers.
   [[gnu::always_inline]] static void AddRun(const Task& task, const VoxelRun run) {
     const Rows rows(run);
     const std::int32_t nodes = run.length + 1;
-    FaceModes<L> left[kFields], carried, sum;
+    FaceModes<L> left[kFields], pending, sum;
     LoadFaces(task, rows, 0, left);
     for (int d = 0; d < 3; ++d) {
-      for (int m = 0; m < 4; ++m) carried.m[d][m] = L(0.0);
+      for (int m = 0; m < 4; ++m) pending.m[d][m] = L(0.0);
     }
     std::int32_t at = 0;
     for (; at < run.length; at += L::kLanes) {
-      // Rows are too short for the processor to see where they lead. The other two were read a row ago.
+      // Prefetch: rows are too short for the hardware prefetcher. The other two rows were read one row ago.
       for (int d = 0; d < 3; ++d) {
         __builtin_prefetch(task.x[d] + rows.node[1] + at + kAhead);
         __builtin_prefetch(task.x[d] + rows.node[3] + at + kAhead);
       }
-      SumBricks(task, run, rows, at, left, carried, sum);
+      SumBricks(task, run, rows, at, left, pending, sum);
       AddFace(task, rows, at, nodes - at, sum);
     }
-    if (at == nodes - 1) {  // bricks fill the lanes: the last nodes have none on their right
+    if (at == nodes - 1) {  // bricks fill the lanes: the last nodes have no brick on their right
       for (int d = 0; d < 3; ++d) {
-        for (int m = 0; m < 4; ++m) sum.m[d][m] = PreviousLanes(carried.m[d][m], L(0.0));
+        for (int m = 0; m < 4; ++m) sum.m[d][m] = PreviousLanes(pending.m[d][m], L(0.0));
       }
       AddFace(task, rows, at, 1, sum);
     }

@@ -9,7 +9,7 @@ namespace {
 
 std::int32_t CheckedNode(const VoxelMesh& mesh, const GridIndex& at) {
   const std::int32_t node = mesh.NodeAt(at);
-  FASCICLE_CHECK(node >= 0, "a load on a node that does not exist was not checked");
+  FASCICLE_CHECK(node >= 0, "CheckVoxelProblem has checked the nodes of loads");
   return node;
 }
 

@@ -9,18 +9,19 @@
 
 namespace fascicle {
 
-// How far bricks may turn.
+// Treatment of rotations.
 enum class VoxelRotation {
-  kSmall,  // linear elasticity, the paper's: right for small gradients of the displacement
-  kLarge,  // corotated: linear in the frame of each brick, which turns by the rotation nearest to the deformation
+  kSmall,  // linear elasticity, as in the paper: for small displacement gradients
+  kLarge,  // corotated: linear in the frame of each brick, rotated by the rotation nearest to the deformation
            // gradient at its centre [Mueller & Gross 2004, Interactive virtual materials]
 };
 
-// A body of voxels: what does not change. Vectors (displacements, forces) are along the axes of the grid, its
+// The constant data of a body of voxels. Vectors (displacements, forces) refer to the axes of the grid, its
 // `direction`. Thread-safe.
 class VoxelModel {
  public:
-  // Checked input (CheckVoxelProblem); the grid must outlive the model. materials[m - 1] is that of voxels with m.
+  // Input must be checked (CheckVoxelProblem). The grid must outlive the model. Voxels of material m have materials[m -
+  // 1].
   VoxelModel(const VoxelGrid& grid, std::vector<VoxelMaterial> materials, Dilatation dilatation,
              VoxelRotation rotation = VoxelRotation::kSmall)
       : grid_(&grid),
@@ -37,7 +38,7 @@ class VoxelModel {
   const VoxelMesh& mesh() const { return mesh_; }
   const std::vector<VoxelMaterial>& materials() const { return materials_; }
   const VoxelStiffness& stiffness() const { return stiffness_; }
-  // y = K x [N], of bricks that have not turned.
+  // y = K x [N] for unrotated bricks.
   const VoxelOperator<double>& K() const { return operator_; }
 
  private:
@@ -49,14 +50,14 @@ class VoxelModel {
   VoxelOperator<double> operator_;
 };
 
-// Nodes whose components are prescribed, as places in the lattice of corners.
+// Nodes with prescribed components, as indices in the lattice of corners.
 struct VoxelSupport {
   std::vector<GridIndex> nodes;
   std::array<bool, 3> components = {true, true, true};
-  Vec3 displacement = Vec3::Zero();  // of the components that are prescribed [m]
+  Vec3 displacement = Vec3::Zero();  // of the prescribed components [m]
 };
 
-// Shared evenly by nodes.
+// A total force, divided equally among nodes.
 struct VoxelNodalForce {
   std::vector<GridIndex> nodes;
   Vec3 total = Vec3::Zero();  // [N]
@@ -79,15 +80,15 @@ struct VoxelLoads {
   Vec3 body_force = Vec3::Zero();  // on all voxels [N/m^3]
 };
 
-// f += the loads' forces on nodes [N]: a traction's by area / 4 to each corner of a face, the body force by volume / 8
-// to each corner of a voxel, both as the trilinear functions share them out.
+// f += the nodal forces of the loads [N], consistent with the trilinear shape functions: area / 4 of a traction to each
+// corner of a face, volume / 8 of the body force to each corner of a voxel.
 void AddForces(const VoxelModel& model, const VoxelLoads& loads, VoxelField<double>& f);
 
 // Nodes in the box low <= (i, j, k) <= high, in order.
 std::vector<GridIndex> NodesInBox(const VoxelMesh& mesh, const GridIndex& low, const GridIndex& high);
 
-// Sides of solid voxels towards `side` whose voxels are in the box low <= (i, j, k) <= high and have no solid neighbour
-// there, in order.
+// Outer faces: sides of solid voxels in the box low <= (i, j, k) <= high towards `side` without a solid neighbour, in
+// order.
 std::vector<VoxelFace> OuterFaces(const VoxelGrid& grid, int side, const GridIndex& low, const GridIndex& high);
 
 }  // namespace fascicle

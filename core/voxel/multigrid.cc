@@ -7,13 +7,14 @@
 namespace fascicle {
 namespace {
 
-// Where bricks of the next level would be solid by less than that part, and there are not too many nodes to factor what
-// comes of them, rigid pieces take their place.
+// Rigid pieces replace the next level if less than this fraction of its bricks would be solid and the level has few
+// enough nodes for their matrix to be factored.
 constexpr double kLeastFilling = 0.85;
 constexpr std::int32_t kMostNodesOfPieces = 15000;
-// Degree of the polynomials: of the finest level, and of the coarser ones, where it costs little.
+// Degree of the smoothing polynomials: on the finest level, and on coarser ones, where work is cheap.
 constexpr int kSmoothing = 5, kSmoothingBelow = 8;
-// Part of the spectrum that they damp: from the largest eigenvalue down to that part of it.
+// The polynomials damp the part of the spectrum between this multiple of the largest eigenvalue and the eigenvalue
+// itself.
 constexpr float kDamped = 1.0f / 40;
 constexpr int kPowerIterations = 12;
 constexpr double kEigenvalueMargin = 1.1;
@@ -55,7 +56,7 @@ struct VoxelMultigrid::Level {
     ForNumbers(team, y.size(), [=](std::size_t k) { to[k] += by[k] * from[k]; });
   }
 
-  // Of the matrix preconditioned by its diagonal, by power iteration.
+  // For the matrix preconditioned by its diagonal, by power iteration.
   void FindLargestEigenvalue(ThreadTeam& team) {
     for (int c = 0; c < 3; ++c) {
       for (std::int32_t n = 0; n < mesh->nodes(); ++n) {
@@ -74,8 +75,8 @@ struct VoxelMultigrid::Level {
     largest_eigenvalue = static_cast<float>(kEigenvalueMargin * length);
   }
 
-  // x += polynomial in the matrix preconditioned by its diagonal times the preconditioned r, and r -= the matrix times
-  // that, the last of it only if asked for.
+  // x += q(A) r and r -= A q(A) r, where A is the matrix preconditioned by its diagonal and q a polynomial; the last
+  // part of r only on request.
   enum class Start { kZero, kX };
   void Smooth(Start start, bool with_residual, ThreadTeam& team) {
     const float centre = 0.5f * (1 + kDamped) * largest_eigenvalue, half = 0.5f * (1 - kDamped) * largest_eigenvalue;
@@ -124,11 +125,11 @@ struct VoxelMultigrid::Level {
   VoxelMesh own_mesh;
   const VoxelMesh* mesh;
   LevelStiffness K;
-  VoxelField<float> shift;  // D, zero where a component is prescribed; empty for none
+  VoxelField<float> shift;  // D, zero at prescribed components; empty: none
   std::unique_ptr<VoxelTransfer> to_coarser;
-  VoxelField<float> inverse_diagonal;  // zero where a component is prescribed
+  VoxelField<float> inverse_diagonal;  // zero at prescribed components
   float largest_eigenvalue = 0;
-  VoxelField<float> first_result;  // of the first of two cycles; not of the finest level
+  VoxelField<float> first_result;  // of the first of two cycles; not on the finest level
   VoxelField<float> r, x, d, q;    // residual, result, step, K times the step
 };
 
@@ -235,7 +236,7 @@ void VoxelMultigrid::ImproveBySecondCycle(std::size_t l, ThreadTeam& team) {
 void VoxelMultigrid::Apply(const VoxelField<double>& r, ThreadTeam& team, VoxelField<double>& z) {
   VoxelField<float>& to = side();
   const double size = std::sqrt(Dot(team, r, r));
-  const double scale = size > 0 ? 1 / size : 0;  // far from the ends of single precision
+  const double scale = size > 0 ? 1 / size : 0;  // keeps numbers away from the limits of single precision
   ForNumbers(team, r.size(), [&](std::size_t k) { to.data()[k] = static_cast<float>(scale * r.data()[k]); });
   Cycle(team);
   const VoxelField<float>& from = result();
@@ -261,7 +262,7 @@ void VoxelMultigrid::SolveCoarsest() {
   }
   coarsest_.Solve();
   for (std::int32_t n = 0; n < level.mesh->nodes(); ++n) {
-    // Motions of coarse nodes that move no free node are left alone.
+    // Motions of coarse nodes that move no free node are ignored.
     for (int d = 0; d < 3; ++d) {
       level.x(n, d) = level.inverse_diagonal(n, d) > 0 ? static_cast<float>(side[3 * n + d]) : 0;
     }

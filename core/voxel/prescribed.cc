@@ -5,13 +5,13 @@
 namespace fascicle {
 namespace {
 
-// Calls body(node, d, displacement) for every component that is prescribed.
+// Calls body(node, d, displacement) for every prescribed component.
 template <class Body>
 void ForPrescribed(const VoxelMesh& mesh, const std::vector<VoxelSupport>& supports, const Body& body) {
   for (const VoxelSupport& support : supports) {
     for (const GridIndex& at : support.nodes) {
       const std::int32_t node = mesh.NodeAt(at);
-      FASCICLE_CHECK(node >= 0, "a support of a node that does not exist was not checked");
+      FASCICLE_CHECK(node >= 0, "CheckVoxelProblem has checked the nodes of supports");
       for (int d = 0; d < 3; ++d) {
         if (support.components[d]) body(node, d, support.displacement[d]);
       }

@@ -8,13 +8,13 @@
 
 namespace fascicle {
 
-// The components of a mesh's displacements that supports prescribe: which, not how far.
+// The set of a mesh's components that supports prescribe (not their values).
 class PrescribedComponents {
  public:
   PrescribedComponents(const VoxelMesh& mesh, const std::vector<VoxelSupport>& supports);
 
   const FixedComponents& of_nodes() const { return of_nodes_; }
-  // Their numbers in the fields of the mesh, ascending.
+  // Their indices in fields of the mesh, ascending.
   const std::vector<std::size_t>& numbers() const { return numbers_; }
 
   void Clear(VoxelField<double>& field) const {
@@ -29,7 +29,7 @@ class PrescribedComponents {
   std::vector<std::size_t> numbers_;
 };
 
-// The displacements that supports prescribe, zero elsewhere [m].
+// The displacements prescribed by supports; zero elsewhere [m].
 VoxelField<double> DisplacementsOf(const VoxelMesh& mesh, const std::vector<VoxelSupport>& supports);
 
 }  // namespace fascicle

@@ -9,13 +9,13 @@
 
 namespace fascicle {
 
-// A coarse space for a level of voxels that larger bricks fit badly: pieces of about 3x3x3 nodes that move as rigid
-// bodies, smoothed [Vanek, Mandel & Brezina 1996; core/linalg/aggregation.h]. Thin parts bend in it as they should, no
-// matter how much of a larger brick they fill. Its matrix P^T (K + D) P is factored. One thread at a time.
+// A coarse space for a level that larger bricks represent badly: pieces of about 3x3x3 nodes that move as rigid bodies,
+// smoothed [Vanek, Mandel & Brezina 1996; core/linalg/aggregation.h]. It represents the bending of thin parts, whatever
+// fraction of a larger brick they fill. Its matrix P^T (K + D) P is factored. Not thread-safe.
 class RigidPieces {
  public:
-  // shift: D, or empty; inverse_diagonal: of K + D, zero where a component takes no part; largest_eigenvalue: of the
-  // matrix preconditioned by it.
+  // shift: D, or empty; inverse_diagonal: of K + D, zero for components to exclude; largest_eigenvalue: of the matrix
+  // preconditioned by it.
   RigidPieces(const LevelStiffness& K, const VoxelField<float>& shift, const VoxelField<float>& inverse_diagonal,
               float largest_eigenvalue, ThreadTeam& team);
 

@@ -7,7 +7,7 @@
 
 namespace fascicle {
 
-// A rotation for each voxel of a mesh, component by component; identities at first.
+// A rotation for each voxel of a mesh, component by component; initially identities.
 template <class S>
 class BrickRotations {
  public:
@@ -20,7 +20,7 @@ class BrickRotations {
   }
 
   std::int32_t voxels() const { return voxels_; }
-  // Entry k % 3, k / 3 of all voxels, then kPadding more.
+  // Entry (k % 3, k / 3) for all voxels, followed by kPadding more.
   S* component(int k) { return values_.data() + k * stride_; }
   const S* component(int k) const { return values_.data() + k * stride_; }
   Mat3 At(std::int32_t voxel) const {
@@ -35,25 +35,24 @@ class BrickRotations {
   std::vector<S> values_;
 };
 
-// The largest angle between the rotations of a voxel [rad].
+// The largest angle by which the rotation of any voxel differs [rad].
 double LargestAngle(const BrickRotations<double>& a, const BrickRotations<double>& b);
 
-// Bricks that are linear in frames which turn with them: with the places x of corners, X of the undeformed brick, and R
-// the rotation nearest to the deformation gradient at the centre, the energy
-//   1/2 (R^T x - X) . K (R^T x - X),
-// its forces R K (R^T x - X) + what comes of R turning with x, and their derivative, all exact: rigid motions give no
-// force, forces have no torque, the derivative is symmetric. [Mueller & Gross 2004, Interactive virtual materials,
-// whose forces are the first part.] The same bits for any number of threads and every instruction set. One thread at a
-// time.
+// Corotated bricks, which are linear in frames that rotate with them: with the positions x of the corners, their rest
+// positions X, and R the rotation nearest to the deformation gradient at the centre, the energy is
+//   1/2 (R^T x - X) . K (R^T x - X).
+// The forces R K (R^T x - X) + (terms from dR/dx) and their derivative are exact: rigid motions cause no force, forces
+// have no torque, the derivative is symmetric. [Mueller & Gross 2004, Interactive virtual materials, whose forces are
+// the first part only.] The same bits for any number of threads and every instruction set. Not thread-safe.
 class RotatedBricks {
  public:
-  // K, of bricks that have not turned, must outlive this.
+  // K of the unrotated bricks must outlive this object.
   explicit RotatedBricks(const VoxelOperator<double>& K);
 
-  // Sets f to the forces at displacements u [N], R to the rotations there; returns the energy [J].
+  // Sets f to the forces at displacements u [N] and R to the rotations there; returns the energy [J].
   double Forces(const VoxelField<double>& u, ThreadTeam& team, BrickRotations<double>& R, VoxelField<double>& f);
 
-  // y = (df/du) x at displacements u, whose rotations are R.
+  // y = (df/du) x at displacements u with rotations R.
   void ApplyTangent(const VoxelField<double>& u, const BrickRotations<double>& R, const VoxelField<double>& x,
                     ThreadTeam& team, VoxelField<double>& y) const;
 

@@ -4,15 +4,15 @@
 #include "core/materials/rotation.h"
 #include "core/voxel/kernels_impl.h"
 
-// Bricks that have turned, for one type of Lanes; what kernels_impl.h says holds here.
+// Kernels of rotated bricks, for one type of Lanes; the rules of kernels_impl.h apply.
 //
-// Everything is in modes (brick_modes.h), in the frame of the brick: y = R^T x of places x, X of the undeformed brick,
-// f = K (y - X), R the rotation nearest to the deformation gradient F = R S at the centre, which is the constant part
-// of x. The energy of a brick is 1/2 (y - X) . K (y - X). Since R turns with x,
+// Everything is in modes (brick_modes.h) and in the frame of the brick: y = R^T x for positions x, X of the undeformed
+// brick, f = K (y - X). R is the rotation nearest to the deformation gradient F = R S at the centre, which is the
+// constant part of x. The energy of a brick is 1/2 (y - X) . K (y - X). Since R depends on x,
 //   R^T dx = dy + w cross y,  w = G a,  G = (tr(S) I - S)^-1,  a: twice the axial vector of R^T dF,
-// its derivative is the force R (f - e(g)), with g = G t of the torque t = sum of y cross f, and e(g) the matrix of
-// g cross as a force on the constant part. (Without e(g) [Mueller & Gross 2004] neither energy nor angular momentum are
-// kept, and the tangent is not symmetric.)
+// the derivative of the energy is the force R (f - e(g)), with g = G t for the torque t = sum of y cross f, and e(g)
+// the matrix of g cross as a force on the constant part. (Without e(g) [Mueller & Gross 2004], neither energy nor
+// angular momentum is conserved, and the tangent is not symmetric.)
 namespace fascicle {
 
 template <class T>
@@ -34,8 +34,8 @@ template <class L>
 struct TurnedBrick {
   using S = typename L::Scalar;
   static constexpr int kSingle[3] = {kModeX, kModeY, kModeZ};
-  // Least det(tr(S) I - S), 8 where there is no strain: below, a brick is crushed or turned inside out and R jumps; it
-  // is taken for fixed.
+  // Least det(tr(S) I - S), which is 8 without strain. Below it a brick is crushed or inverted and R jumps; then R is
+  // taken as constant.
   static constexpr double kLeastSpin = 1e-2;
 
   // Gradient per mode of the constant part along each axis: 1/(4 h).
@@ -62,7 +62,7 @@ struct TurnedBrick {
       for (int d = 0; d < 3; ++d) to[d][m] = R(d, 0) * from[0][m] + R(d, 1) * from[1][m] + R(d, 2) * from[2][m];
     }
   }
-  // sum of a cross b over the modes.
+  // Sum of a cross b over the modes.
   [[gnu::always_inline]] static Vector3<L> Torque(const L (&a)[3][8], const L (&b)[3][8]) {
     Vector3<L> sum = {{L(0.0), L(0.0), L(0.0)}};
     for (int m = 1; m < 8; ++m) {
@@ -83,9 +83,9 @@ struct TurnedBrick {
     }
   }
 
-  // What the forces at x come from.
+  // Intermediate results of the forces at x.
   struct State {
-    // x: displacements. They become places.
+    // x: displacements on input; positions afterwards.
     [[gnu::always_inline]] State(const RotatedTask<S>& task, const BrickModuli<L>& moduli, const Matrix3<L>& R,
                                  L (&x)[3][8]) {
       GradientFactors(task, factor);
@@ -114,7 +114,7 @@ struct TurnedBrick {
     Vector3<L> g;
   };
 
-  // f = R f, zero beyond the end of the run.
+  // f = R f; zero beyond the end of the run.
   [[gnu::always_inline]] static void TurnBack(const Matrix3<L>& R, const typename L::Mask& inside,
                                               const L (&local)[3][8], L (&f)[3][8]) {
     Turn(R, local, f);
@@ -127,7 +127,7 @@ struct TurnedBrick {
   }
 };
 
-// Forces, with the rotations that they are taken in, and energies.
+// Forces, with their rotations and energies.
 template <class L>
 struct RotatedForces : TurnedBrick<L> {
   using Base = TurnedBrick<L>;
@@ -213,7 +213,7 @@ struct RotatedTangent : TurnedBrick<L> {
   }
 };
 
-// R K R^T x: that without what changes with R, always positive.
+// R K R^T x: the derivative with R held constant, always positive semidefinite.
 template <class L>
 struct RotatedProduct : TurnedBrick<L> {
   using Base = TurnedBrick<L>;

@@ -12,17 +12,17 @@
 namespace fascicle {
 namespace {
 
-// E and nu of a law's moduli at small strain.
+// E and nu from a law's small-strain moduli.
 VoxelMaterial MaterialOf(const Material& material) {
   const double mu = std::visit([](const auto& law) { return law.ShearModulus(); }, material);
   const double bulk = std::visit([](const auto& law) { return law.BulkModulus(); }, material);
   return {9 * bulk * mu / (3 * bulk + mu), (3 * bulk - 2 * mu) / (2 * (3 * bulk + mu))};
 }
 
-constexpr std::size_t kMostMaterials = 254;  // of a grid, where they are bytes
+constexpr std::size_t kMostMaterials = 254;  // of a grid, which stores them in bytes
 
-// The body's grid with its materials in place of labels. Where each voxel has parameters of its own, those of one
-// Poisson's ratio are one material, and differ in the grid's stiffness.
+// The body's grid with materials in place of labels. If each voxel has its own parameters, voxels with the same
+// Poisson's ratio share a material and differ in the grid's stiffness factor.
 struct GridAndMaterials {
   VoxelGrid grid;
   std::vector<VoxelMaterial> materials;
@@ -63,8 +63,8 @@ VoxelRotation RotationOf(const Body& body) {
   return std::holds_alternative<CorotatedLinear>(body.material) ? VoxelRotation::kLarge : VoxelRotation::kSmall;
 }
 
-// Which components along the grid hold those along the world's axes; CheckScene lets single ones through only where the
-// grid's axes are the world's.
+// The grid components that correspond to prescribed world axes. CheckScene allows single axes only if the grid is
+// aligned with the world axes.
 std::array<bool, 3> ComponentsOf(const std::array<bool, 3>& axes, const Mat3& direction) {
   std::array<bool, 3> components = {};
   for (int along = 0; along < 3; ++along) {
@@ -171,9 +171,9 @@ void CheckVoxelSupports(const Scene& scene, Problems& problems) {
       char where[96];
       std::snprintf(where, sizeof where, "[%.4g, %.4g, %.4g] m", place[0], place[1], place[2]);
       problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
-                   "nothing holds a part of " + std::to_string(motion.voxels) + " voxels near " + where + ": it " +
+                   "no support holds a part of " + std::to_string(motion.voxels) + " voxels near " + where + ": it " +
                        motion.motions + " of the image",
-                   "hold it, keep only the largest part of the image, or step dynamically");
+                   "add a support, keep only the largest part of the image, or use dynamic stepping");
     }
   }
 }

@@ -11,11 +11,11 @@
 
 namespace fascicle {
 
-// A body of a scene made ready for the solvers of voxels: places and directions of the world become those of the grid,
-// constraints become supports, loads forces on nodes. Immutable; may be shared between threads.
+// A body of a scene prepared for the voxel solvers: positions and directions in the coordinates of the grid,
+// constraints as supports, loads as nodal forces. Immutable; may be shared between threads.
 class VoxelSceneBody {
  public:
-  // The scene must have passed CheckScene; it must outlive this.
+  // CheckScene must have accepted the scene, which must outlive this object.
   VoxelSceneBody(const Scene& scene, const Body& body);
 
   const Body& source() const { return *source_; }
@@ -25,11 +25,11 @@ class VoxelSceneBody {
 
   // Loads and gravity at a time [N].
   void ForceAt(double time, VoxelField<double>& force) const;
-  // What supports prescribe at a time [m]; other components are left alone.
+  // Displacements prescribed at a time [m]; other components are left unchanged.
   void PrescribeAt(double time, VoxelField<double>& displacement) const;
 
-  // The force of each support on the body [N], along the axes of the world: of components that two share it counts for
-  // the first. `reaction` is the force on every node [N].
+  // The force of each support on the body [N], along the world axes, where `reaction` is the force on every node [N]. A
+  // component shared by two supports counts for the first.
   std::vector<Vec3> SumOverSupports(const VoxelField<double>& reaction) const;
 
   // From the axes of the grid to those of the world.
@@ -38,7 +38,7 @@ class VoxelSceneBody {
   double volume() const { return static_cast<double>(model_->mesh().voxels()) * grid_.spacing.prod(); }  // [m^3]
 
  private:
-  // A load as forces on nodes at scale 1, along the axes of the grid.
+  // A load as nodal forces at scale 1, along the axes of the grid.
   struct NodalLoad {
     const Curve* scale;
     std::vector<std::int32_t> nodes;
@@ -53,11 +53,11 @@ class VoxelSceneBody {
   std::unique_ptr<VoxelModel> model_;
   std::vector<VoxelSupport> supports_;
   std::vector<NodalLoad> loads_;
-  std::vector<double> gravity_share_;  // of each node: its mass where gravity acts, else empty [kg]
+  std::vector<double> gravity_share_;  // for each node: its mass if gravity acts, otherwise empty [kg]
 };
 
-// Parts of bodies that nothing holds, with their rigid motions named: where the scene asks for equilibrium, they have
-// none. The scene must have passed CheckScene. Paths are `bodies[i].constraints`.
+// Reports unsupported parts of bodies with their rigid body modes, where the scene asks for an equilibrium. CheckScene
+// must have accepted the scene. Paths are `bodies[i].constraints`.
 void CheckVoxelSupports(const Scene& scene, Problems& problems);
 
 }  // namespace fascicle

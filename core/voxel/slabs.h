@@ -6,10 +6,10 @@
 #include "core/geometry/voxel_mesh.h"
 #include "core/voxel/voxel_field.h"
 
-// Sums over voxels in parallel, in an order that depends on the mesh alone; see VoxelSlab.
+// Parallel sums over voxels in an order that depends on the mesh only; see VoxelSlab.
 namespace fascicle {
 
-// Calls body(slab) for the even slabs of a mesh, then for the odd ones, in parallel.
+// Calls body(slab) for the even slabs of a mesh in parallel, then for the odd ones.
 template <class Body>
 void ForSlabs(const VoxelMesh& mesh, ThreadTeam& team, const Body& body) {
   const std::size_t slabs = mesh.slabs().size();
@@ -20,7 +20,7 @@ void ForSlabs(const VoxelMesh& mesh, ThreadTeam& team, const Body& body) {
   }
 }
 
-// Zeros where slab s is the first to add to y, when slabs come as in ForSlabs.
+// Sets y to zero where slab s is the first to add to it, in the order of ForSlabs.
 template <class S>
 void ClearSlab(const VoxelMesh& mesh, std::size_t s, VoxelField<S>& y) {
   const VoxelSlab& slab = mesh.slabs()[s];

@@ -9,11 +9,11 @@
 namespace fascicle {
 namespace {
 
-// Steps between two frames: of equal length, none longer than the scene's.
+// Number of equal steps between two frames, none longer than the scene's time step.
 std::int64_t StepsPerFrame(const Scene& scene) {
   const double interval = scene.output.frame_interval;
   if (scene.voxel.stepping == VoxelStepping::kStatic || !scene.voxel.time_step) return 1;
-  // The allowance keeps rounding from adding a step to a whole number of them.
+  // The tolerance prevents rounding from adding a step to a whole number of them.
   return std::max<std::int64_t>(1,
                                 static_cast<std::int64_t>(std::ceil(interval / *scene.voxel.time_step * (1 - 1e-12))));
 }
@@ -23,7 +23,7 @@ StepProblem ProblemOf(const EquilibriumResult& result, const std::stop_token& st
   return stop.stop_requested() ? StepProblem::kStopped : StepProblem::kNotSolved;
 }
 
-// What acts on a body at a time: forces [N], and displacements of what supports prescribe [m].
+// The external actions on a body at a time: forces [N] and prescribed displacements [m].
 struct Acting {
   VoxelField<double> force, prescribed;
 };
@@ -107,7 +107,7 @@ VoxelSceneState VoxelSolver::InitialState() const {
 
 VoxelSolveReport VoxelSolver::SolveStart(VoxelSceneState& state, std::stop_token stop) {
   if (scene_.voxel.stepping == VoxelStepping::kDynamic && !scene_.voxel.start_loaded) {
-    // The motion of supports begins where they are at time 0.
+    // The motion of supports starts at their position at time 0.
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       bodies_[b]->PrescribeAt(0, state.bodies[b].displacement);
       bodies_[b]->PrescribeAt(0, state.bodies[b].previous);
@@ -116,7 +116,7 @@ VoxelSolveReport VoxelSolver::SolveStart(VoxelSceneState& state, std::stop_token
   }
   VoxelSolveReport report = SolveStatic(state, 0, stop);
   if (report.problem == StepProblem::kNone && scene_.voxel.stepping == VoxelStepping::kDynamic) {
-    static_solvers_.clear();  // its levels are not needed again
+    static_solvers_.clear();  // its levels are not needed any more
     static_solvers_.resize(bodies_.size());
   }
   return report;

@@ -15,15 +15,15 @@
 
 namespace fascicle {
 
-// What changes from step to step, and all that a checkpoint saves.
+// Everything that changes from step to step, which is what a checkpoint saves.
 struct VoxelSceneState {
   double time = 0;  // [s]
   std::int64_t step = 0;
   double time_step = 0;         // of the last step [s]
   std::int64_t iterations = 0;  // of conjugate gradients so far
   std::vector<VoxelState> bodies;
-  // Of each body at `time`: elastic and kinetic energy [J], and the force of each support on it, along the axes of the
-  // world [N].
+  // For each body at `time`: elastic and kinetic energy [J], and the force of each support on it along the world axes
+  // [N].
   std::vector<double> elastic, kinetic;
   std::vector<std::vector<Vec3>> reactions;
 
@@ -33,25 +33,25 @@ struct VoxelSceneState {
 
 struct VoxelSolveReport {
   StepProblem problem = StepProblem::kNone;
-  std::size_t body = 0;  // that has it
+  std::size_t body = 0;  // the body with the problem
 };
 
-// Steps the bodies of a scene by the voxel method [Zhu, Chen & Kaufman 1998]. One thread at a time.
+// Steps the bodies of a scene by the voxel method [Zhu, Chen & Kaufman 1998]. Not thread-safe.
 class VoxelSolver {
  public:
-  // The scene must have passed CheckScene and CheckVoxelSupports. Scene, team and profile must outlive the solver.
+  // CheckScene and CheckVoxelSupports must have accepted the scene. Scene, team and profile must outlive the solver.
   VoxelSolver(const Scene& scene, ThreadTeam& team, Profile* profile = nullptr);
 
   const std::vector<std::unique_ptr<VoxelSceneBody>>& bodies() const { return bodies_; }
 
-  // At time 0 and at rest; SolveStart must follow.
+  // The state at time 0, at rest. Call SolveStart next.
   VoxelSceneState InitialState() const;
 
-  // Finds the equilibrium of time 0 where the scene asks for it (statics, `start_loaded`).
+  // Finds the equilibrium at time 0 if the scene asks for it (statics, `start_loaded`).
   VoxelSolveReport SolveStart(VoxelSceneState& state, std::stop_token stop = {});
 
-  // Makes one step towards `end` [s], the time of the next frame. Static: straight to it. Dynamic: of the whole part of
-  // the frame interval that is no longer than the scene's time step. On a problem the state stays as it was.
+  // Makes one step towards `end` [s], the time of the next frame. Static: the whole interval. Dynamic: an equal part of
+  // the frame interval that is no longer than the scene's time step. If it fails, the state is unchanged.
   VoxelSolveReport Advance(VoxelSceneState& state, double end, std::stop_token stop = {});
 
  private:

@@ -13,27 +13,27 @@ using StaticSettings = EquilibriumSettings;
 struct StaticSolution {
   EquilibriumResult iterations;
   VoxelField<double> displacement;  // [m]
-  VoxelField<double> reaction;      // forces of the bricks - f: zero, up to the residual, but where supports hold [N]
+  VoxelField<double> reaction;      // brick forces minus f [N]: reactions, and the residual elsewhere
   double energy = 0;                // elastic [J]
 };
 
-// Equilibrium of a body of voxels, with supports that stay and loads and displacements of supports that may change: the
-// levels of multigrid are set up once. One thread at a time; the same bits for any number of threads.
+// Equilibrium of a body of voxels. The supported nodes are fixed, loads and prescribed displacements may change; the
+// multigrid levels are set up once. Not thread-safe. The same bits for any number of threads.
 class VoxelStaticSolver {
  public:
-  // Checked input (CheckVoxelProblem). The model and the team must outlive the solver.
+  // Input must be checked (CheckVoxelProblem). The model and the team must outlive the solver.
   VoxelStaticSolver(const VoxelModel& model, const std::vector<VoxelSupport>& supports, ThreadTeam& team);
 
-  // Under loads, supports displaced as they say. Starts from `start`, or from zero where it is null.
+  // Solves for loads, with the supports' displacements. Starts from `start`, or from zero if it is null.
   StaticSolution Solve(const VoxelLoads& loads, const StaticSettings& settings = {},
                        const VoxelField<double>* start = nullptr);
-  // Under forces on nodes [N], prescribed components as they are in `prescribed` [m]; its others are not read. From the
-  // solution of a load that is near, fewer iterations are left (and with large rotation that may be the only way).
+  // Solves for nodal forces [N], with prescribed components as in `prescribed` [m] (others are not read). Starting from
+  // the solution of a similar load saves iterations; with large rotation it may be the only way to converge.
   StaticSolution Solve(const VoxelField<double>& force, const VoxelField<double>& prescribed,
                        const StaticSettings& settings = {}, const VoxelField<double>* start = nullptr);
 
   const VoxelMultigrid& multigrid() const { return equilibrium_.multigrid(); }
-  // All memory that the solver takes while it solves, with its model's.
+  // Memory that the solver needs while it solves, including its model.
   std::size_t bytes() const;
 
  private:

@@ -7,7 +7,7 @@
 namespace fascicle {
 namespace {
 
-// Coarse nodes of a row that stand in a line: the fine run's first node is at the first of them, or after it.
+// The consecutive coarse nodes of a row; the fine run's first node is at or after the first of them.
 TransferRun RunOf(const NodeRun& fine, const VoxelMesh& coarse) {
   TransferRun run = {fine.first, fine.length, fine.i % 2, 0, {}};
   for (int far = 0; far <= fine.k % 2; ++far) {
@@ -26,7 +26,7 @@ VoxelTransfer::VoxelTransfer(const VoxelMesh& fine, const VoxelMesh& coarse, con
     : coarse_(&coarse), kernels_(kernels) {
   runs_.reserve(fine.node_runs().size());
   for (const NodeRun& run : fine.node_runs()) runs_.push_back(RunOf(run, coarse));
-  // Coarse layer k has the fine planes 2k and 2k + 1; the last one also that at its end.
+  // Coarse layer k has the fine planes 2k and 2k + 1; the last layer also has the plane at its end.
   for (const VoxelSlab& slab : coarse.slabs()) {
     slab_begin_.push_back(fine.NodeRunsOfPlane(std::min(2 * slab.first_layer, fine.size()[2]))[0]);
   }

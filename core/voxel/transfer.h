@@ -9,8 +9,8 @@
 
 namespace fascicle {
 
-// Trilinear interpolation P from a mesh to one of half the spacing, all of whose voxels lie in voxels of the coarse
-// mesh: the coarse displacements themselves, at the fine nodes. The same bits for any number of threads.
+// Trilinear interpolation P from a coarse mesh to the mesh with half its spacing, all of whose voxels lie within coarse
+// voxels. The same bits for any number of threads.
 class VoxelTransfer {
  public:
   // The meshes must outlive the transfer.

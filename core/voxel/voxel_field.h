@@ -10,8 +10,9 @@
 
 namespace fascicle {
 
-// Three components for each node of a VoxelMesh, component by component, along the axes of the grid. Behind each
-// component are zeros, so that vector instructions may read beyond the last node; all sums and products keep them zero.
+// Three components for each node of a VoxelMesh, stored component by component, along the axes of the grid. Each
+// component is followed by zeros, so that vector instructions may read beyond the last node; all sums and products keep
+// them zero.
 template <class S>
 class VoxelField {
  public:
@@ -24,7 +25,7 @@ class VoxelField {
   }
 
   std::int32_t nodes() const { return nodes_; }
-  // Numbers from one component to the next.
+  // Distance between components in memory, in numbers.
   std::size_t stride() const { return stride_; }
   std::size_t size() const { return values_.size(); }
   S* data() { return values_.data(); }
@@ -47,7 +48,7 @@ class VoxelField {
   std::vector<S> values_;
 };
 
-// Calls body(k) for the number of every component of every node.
+// Calls body(k) for the index k of every component of every node.
 template <class Body>
 void ForNumbers(ThreadTeam& team, std::size_t count, const Body& body) {
   team.For(count, 3 * kNodeGrain, [&](std::size_t begin, std::size_t end) {
@@ -55,7 +56,7 @@ void ForNumbers(ThreadTeam& team, std::size_t count, const Body& body) {
   });
 }
 
-// Sum of term(k) over all numbers, in an order that depends on their count alone: eight at a time.
+// Sum of term(k) over all indices, eight at a time, in an order that depends on their count only.
 template <class Term>
 double SumOverNumbers(ThreadTeam& team, std::size_t count, const Term& term) {
   return team.Sum(count, [&](std::size_t begin, std::size_t end) {

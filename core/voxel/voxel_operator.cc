@@ -18,7 +18,7 @@ std::vector<BrickModuli<double>> ModuliOfAll(const std::vector<VoxelMaterial>& m
 VoxelStiffness::VoxelStiffness(const VoxelMesh& m, std::vector<BrickModuli<double>> moduli_of_materials)
     : mesh(&m), moduli(std::move(moduli_of_materials)), scale(m.voxels(), 1.0f) {
   for (const VoxelRun& run : m.runs()) {
-    FASCICLE_CHECK(run.material < static_cast<std::int32_t>(moduli.size()), "a voxel of no material");
+    FASCICLE_CHECK(run.material < static_cast<std::int32_t>(moduli.size()), "every voxel has a material");
   }
   scale.resize(m.voxels() + VoxelField<float>::kPadding, 0.0f);
 }
@@ -27,7 +27,7 @@ VoxelStiffness::VoxelStiffness(const VoxelMesh& m, const std::vector<VoxelMateri
                                const std::vector<float>& scale_of_voxels)
     : VoxelStiffness(m, ModuliOfAll(materials, dilatation)) {
   if (scale_of_voxels.empty()) return;
-  FASCICLE_CHECK(scale_of_voxels.size() == static_cast<std::size_t>(m.voxels()), "a factor for each voxel");
+  FASCICLE_CHECK(scale_of_voxels.size() == static_cast<std::size_t>(m.voxels()), "one factor for each voxel");
   std::copy(scale_of_voxels.begin(), scale_of_voxels.end(), scale.begin());
 }
 

@@ -8,16 +8,16 @@
 
 namespace fascicle {
 
-// What changes from step to step, and all that a checkpoint saves.
+// Everything that changes from step to step, which is what a checkpoint saves.
 struct VoxelState {
   double time = 0;  // [s]
   std::int64_t step = 0;
   VoxelField<double> displacement;  // u_n, at `time` [m]
-  VoxelField<double> previous;      // u_{n-1}, a step before [m]
+  VoxelField<double> previous;      // u_{n-1}, one step earlier [m]
   std::int64_t iterations = 0;      // of linear solves so far
 
   void Save(ArchiveWriter& archive) const;
-  // Sets failed() of the archive when sizes differ from the present ones.
+  // Sets failed() of the archive if sizes differ from the current ones.
   void Load(ArchiveReader& archive);
 };
 

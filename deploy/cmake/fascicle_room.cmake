@@ -1,5 +1,5 @@
-# A room is a folder with a library of its own. Headers are included by their path from the project's root, and only
-# those of rooms that a target links are found: each room exports a folder that holds nothing but a link to itself.
+# A room is a folder with its own library. Headers are included by their path from the project's root. A target finds
+# only the headers of rooms that it links: each room exports a folder that contains nothing but a link to the room.
 #
 #   fascicle_room(core/geometry SOURCES a.cc b.cc DEPS core/base Eigen3::Eigen PRIVATE_DEPS ZLIB::ZLIB)
 #
@@ -41,9 +41,9 @@ function(fascicle_arrows room)
   set_property(GLOBAL APPEND_STRING PROPERTY FASCICLE_ARROWS "{\"${room}\", {\"${deps}\"}},\n")
 endfunction()
 
-# The loops over elements of a room, once for each instruction set; which one runs is decided at run time. Sets `sources` to
-# kernels_baseline.cc, kernels_avx2.cc and so on. No fused operations: all sets give the same bits. Eigen is not used in these
-# files, and must not lay out its types for the set.
+# The loops over elements of a room, compiled once for each instruction set; the choice is made at run time. Sets
+# `sources` to kernels_baseline.cc, kernels_avx2.cc and so on. Without fused operations, all sets give the same bits.
+# Eigen is not used in these files and must not adapt its types to the set.
 function(fascicle_kernels sources)
   set(files kernels_baseline.cc)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
@@ -73,7 +73,7 @@ endfunction()
 #
 #   fascicle_test(geometry_test SOURCES mesh_io_test.cc DEPS core/geometry [LABELS slow] [TIMEOUT 60])
 #
-# Tests find the project's root and real anatomy by tests/support/paths.h.
+# Tests find the project's root and anatomical data by tests/support/paths.h.
 function(fascicle_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -90,7 +90,7 @@ function(fascicle_test name)
     set(ARG_TIMEOUT 300)
   endif()
   if(FASCICLE_SANITIZE)
-    # Sanitized programs are slow to start: each runs once, with all its tests.
+    # Sanitized programs start slowly: each runs once, with all of its tests.
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES TIMEOUT 900 LABELS "${ARG_LABELS}")
   else()

@@ -16,7 +16,7 @@ if(CCACHE_PROGRAM)
 endif()
 
 add_library(fascicle_settings INTERFACE)
-# No contraction: a fused multiply-add here and not there would change bits between machines and builds.
+# No contraction: a fused multiply-add in some places only would change bits between machines and builds.
 target_compile_options(fascicle_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Werror -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # False alarms of gcc 12 in Eigen and the standard library at -O3.
@@ -32,8 +32,8 @@ if(FASCICLE_SANITIZE MATCHES "address" AND NOT FASCICLE_FUZZ)
     $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${CMAKE_CURRENT_LIST_DIR}/sanitized_program.cc>)
 endif()
 
-# Precompiled headers: parsing Eigen, gRPC and Google Test would otherwise take most of a build. Headers stay
-# self-contained all the same: tests/architecture compiles each without them.
+# Precompiled headers: parsing Eigen, gRPC and Google Test would otherwise take most of a build. Headers are still
+# self-contained: tests/architecture compiles each without precompiled headers.
 #   core       the standard library and Eigen            core_test   and Google Test
 #   wire       and the generated messages and gRPC       wire_test   and Google Test
 function(fascicle_precompiled kind)

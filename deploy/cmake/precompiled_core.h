@@ -1,4 +1,4 @@
-// What nearly every source of the core includes; see fascicle_settings.cmake.
+// Headers that nearly every source of the core includes; see fascicle_settings.cmake.
 #pragma once
 
 #include <Eigen/Core>

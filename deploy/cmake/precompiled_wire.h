@@ -1,4 +1,4 @@
-// What nearly every source that sees the wire includes; see fascicle_settings.cmake.
+// Headers that nearly every source with wire messages includes; see fascicle_settings.cmake.
 #pragma once
 
 #include <google/protobuf/message.h>

@@ -26,7 +26,7 @@ bool IsNumber(const FieldDescriptor& field) {
   }
 }
 
-// One number of a field; `index` counts in a repeated field and is ignored otherwise.
+// One number of a field; `index` selects an entry of a repeated field and is ignored otherwise.
 double Get(const Message& message, const FieldDescriptor* field, int index) {
   const Reflection& r = *message.GetReflection();
   const bool list = field->is_repeated();
@@ -40,7 +40,7 @@ double Get(const Message& message, const FieldDescriptor* field, int index) {
   }
 }
 
-// Sets a field that is not a list, or adds to a list.
+// Sets a singular field, or appends to a list.
 void Put(Message& message, const FieldDescriptor* field, double value) {
   const Reflection& r = *message.GetReflection();
   const bool list = field->is_repeated();
@@ -118,7 +118,7 @@ void CheckList(const Message& message, const FieldDescriptor* field, const Field
 
 void CheckScalar(const Message& message, const FieldDescriptor* field, const FieldRule* rule, const std::string& path,
                  Problems& problems) {
-  const bool absent = !message.GetReflection()->HasField(message, field);  // without presence: is 0
+  const bool absent = !message.GetReflection()->HasField(message, field);  // without presence: whether it is 0
   if (absent && rule != nullptr && rule->required && (field->has_presence() || !InRange(*rule, 0))) {
     problems.Add(path, field->has_presence() ? "is missing" : "is missing or 0", Hint(*rule));
   } else if (const double value = Get(message, field, 0); !absent && !IsGood(rule, value)) {
@@ -126,7 +126,7 @@ void CheckScalar(const Message& message, const FieldDescriptor* field, const Fie
   }
 }
 
-// Enumerations are open on the wire: a number that this program has no name for may arrive.
+// Enumerations are open on the wire: values unknown to this program may arrive.
 void CheckEnum(const Message& message, const FieldDescriptor* field, const std::string& path, Problems& problems) {
   const Reflection& r = *message.GetReflection();
   const int size = field->is_repeated() ? r.FieldSize(message, field) : 1;
@@ -134,11 +134,11 @@ void CheckEnum(const Message& message, const FieldDescriptor* field, const std::
     const int value = field->is_repeated() ? r.GetRepeatedEnumValue(message, field, i) : r.GetEnumValue(message, field);
     if (field->enum_type()->FindValueByNumber(value) != nullptr) continue;
     problems.Add(field->is_repeated() ? IndexPath(path, static_cast<std::size_t>(i)) : path,
-                 "is " + std::to_string(value) + ", which is no value of " + field->enum_type()->name());
+                 "is " + std::to_string(value) + ", which is not a value of " + field->enum_type()->name());
   }
 }
 
-// "Exactly one" stands over every oneof: nothing chosen is a problem, two can't be told.
+// Every oneof requires exactly one member: none is a problem; two cannot occur.
 void CheckOneofs(const Message& message, const std::string& prefix, Problems& problems) {
   const google::protobuf::Descriptor* type = message.GetDescriptor();
   for (int i = 0; i < type->real_oneof_decl_count(); ++i) {
@@ -183,7 +183,7 @@ void Check(const Message& message, const std::string& prefix, Problems& problems
 bool IsAbsent(const Message& message, const FieldDescriptor* field) {
   const Reflection& r = *message.GetReflection();
   if (field->is_repeated()) return r.FieldSize(message, field) == 0;
-  return !r.HasField(message, field);  // without presence: is 0
+  return !r.HasField(message, field);  // without presence: whether it is 0
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ using google::protobuf::EnumValueDescriptor;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::FileDescriptor;
 
-// Comments and rules by full name. The descriptors that protoc compiles into a program carry no comments, hence the
-// copy that was built in beside them.
+// Comments and rules by full name. The descriptors that protoc compiles into a program lack comments, so a copy is
+// embedded.
 class CommentTable {
  public:
   CommentTable() {

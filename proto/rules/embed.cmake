@@ -1,4 +1,4 @@
-# Writes a C++ source that holds the bytes of a file: cmake -DINPUT=set.bin -DOUTPUT=set.cc -DSYMBOL=Name -P embed.cmake
+# Writes a C++ source with the bytes of a file: cmake -DINPUT=set.bin -DOUTPUT=set.cc -DSYMBOL=Name -P embed.cmake
 file(READ ${INPUT} hex HEX)
 string(LENGTH "${hex}" digits)
 math(EXPR size "${digits} / 2")

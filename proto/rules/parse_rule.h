@@ -9,14 +9,14 @@
 
 namespace fascicle {
 
-// A field's comment, taken apart.
+// A field's comment and its rule line.
 struct SplitComment {
   std::string text;  // without the rule line; lines joined by '\n', no leading blanks
-  std::string rule;  // the last line, where it is "Unit ...; range ..."; empty when it is not
+  std::string rule;  // the last line, if it is "Unit ...; range ..."; otherwise empty
 };
 SplitComment Split(std::string_view comment);
 
-// Reads one rule line. Nothing when it does not follow the grammar of field_rules.h to the letter.
+// Parses a rule line. Nothing if it deviates from the grammar of field_rules.h.
 std::optional<FieldRule> ParseRule(std::string_view line);
 
 }  // namespace fascicle

@@ -14,7 +14,7 @@
 
 namespace fascicle::server {
 
-// A job that has not ended: its record, and what changes too often to be stored each time. Thread-safe.
+// A job that has not ended: its record, and data that changes too often to be stored every time. Thread-safe.
 class ActiveJob {
  public:
   // `record` is kept without its spec.
@@ -23,19 +23,19 @@ class ActiveJob {
   const std::string& id() const { return id_; }
   JobRecord record() const;
 
-  // Applies `change` to the record, with progress and counts as they are now. It is stored first and only then seen by
-  // others; when `change` returns false nothing happens. Throws StoreError, and then nothing has changed.
+  // Applies `change` to the record with its current progress and counts. The record is stored before others can see it.
+  // If `change` returns false, nothing happens. Throws StoreError; the record is then unchanged.
   using Change = std::function<bool(JobRecord&)>;
   void Update(const Change& change);
-  // The same without storing it: for the end of a job whose store has failed.
+  // The same without storing, for the end of a job whose store has failed.
   void UpdateUnstored(const Change& change);
 
-  // For every step: cheap.
+  // Called in every step; cheap.
   void SetProgress(const Progress& progress);
   void SetFrames(std::shared_ptr<FrameStore> frames);
   std::shared_ptr<FrameStore> frames() const;
 
-  // `stored` with all that is known here; queue_position stays 0.
+  // `stored` completed by the data in memory; queue_position stays 0.
   JobView View(JobRecord stored) const;
 
   void RequestStop() { stop_.request_stop(); }
@@ -48,17 +48,17 @@ class ActiveJob {
   const std::string id_;
   std::stop_source stop_;
   std::mutex update_mutex_;   // one update at a time; taken before mutex_
-  mutable std::mutex mutex_;  // guards what follows; never held during disk access
+  mutable std::mutex mutex_;  // guards the members below; never held during disk access
   JobRecord record_;
   Progress progress_;
   EtaEstimator eta_;
   std::shared_ptr<FrameStore> frames_;
 };
 
-// Of a record alone: a job that is not active.
+// The view of a record whose job is not active.
 JobView ViewOf(JobRecord record);
 
-// [us] since the Unix epoch.
+// Time since the Unix epoch [us].
 std::int64_t UnixTimeUs();
 
 }  // namespace fascicle::server

@@ -6,15 +6,15 @@
 
 namespace fascicle::server {
 
-// Estimates the time to the end from how the done part grows. The speed is smoothed exponentially over about ten
-// seconds, so that it follows steps that get smaller without jumping. Not thread-safe.
+// Estimates the remaining time from the growth of the completed fraction. The speed is smoothed exponentially over
+// about ten seconds, so that the estimate follows shorter steps without jumping. Not thread-safe.
 class EtaEstimator {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  // `fraction` of the work is done at `now`. Cheap: most calls only compare times.
+  // Reports that `fraction` of the work is done at `now`. Cheap: most calls only compare times.
   void Add(double fraction, TimePoint now);
-  // [s] from `now`; negative while unknown.
+  // Remaining time from `now` [s]; negative if unknown.
   double Seconds(TimePoint now) const;
 
  private:

@@ -77,8 +77,8 @@ void FrameWriter::Store(const Item& item) {
   const std::string bytes = Encode(frame);
   const FrameRecord record{frame.index, frame.time, frame.step, static_cast<std::int64_t>(bytes.size()),
                            std::string(frame.digest.begin(), frame.digest.end())};
-  // A replaced frame must never be read under the old generation, so the generation goes first; should this process end
-  // in between, the next one replaces the frame and counts once more.
+  // A replaced frame must never be read under the old generation, so the generation is updated first. If this process
+  // ends in between, the next one replaces the frame and increments the generation again.
   if (frame.index < frames_->frame_count()) {
     const std::vector<FrameRecord> stored = frames_->ListFrames(frame.index, 1);
     const bool is_same = !stored.empty() && stored.front().digest == record.digest;
@@ -108,7 +108,7 @@ void FrameWriter::StoreProgressRarely() {
       return true;
     });
   } catch (const std::exception&) {
-    // Progress is a convenience: whatever is wrong, the next frame or the end of the job will tell.
+    // Progress is not essential; if the storage has failed, the next frame or the end of the job reports it.
   }
 }
 

@@ -16,20 +16,19 @@
 
 namespace fascicle::server {
 
-// Takes the frames of a run and stores them from a thread of its own: the solver goes on while a frame is encoded and
-// brought to the disk, and waits only when kMaxWaiting frames are queued. Also stores progress and profile now and
-// then.
+// Stores the frames of a run from a thread of its own. The solver continues while a frame is encoded and written, and
+// waits only if kMaxWaiting frames are queued. Also stores progress and profile from time to time.
 class FrameWriter final : public FrameSink {
  public:
-  // `job` has its frame store. `notify` is called after each frame that was stored. All must outlive the writer.
+  // `job` must have its frame store. `notify` is called after each stored frame. All arguments must outlive the writer.
   FrameWriter(ActiveJob& job, const JobCodec& codec, RunProfile& profile, std::function<void()> notify);
-  // Finishes; an error is lost.
+  // Finishes; errors are ignored.
   ~FrameWriter() override;
 
   bool PutFrame(Frame frame, std::string checkpoint) override;
   void PutProgress(const Progress& progress) override { job_.SetProgress(progress); }
 
-  // Returns when every frame is stored; throws what went wrong with the first that could not be.
+  // Returns when every frame is stored. Throws the error of the first frame that could not be stored.
   void Finish();
 
  private:
@@ -51,7 +50,7 @@ class FrameWriter final : public FrameSink {
   const JobCodec& codec_;
   RunProfile& profile_;
   const std::function<void()> notify_;
-  std::chrono::steady_clock::time_point next_progress_;  // of the thread alone
+  std::chrono::steady_clock::time_point next_progress_;  // used by the thread only
 
   std::mutex mutex_;
   std::condition_variable changed_;

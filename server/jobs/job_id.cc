@@ -23,7 +23,7 @@ std::string JobIdGenerator::Next(std::int64_t unix_time_ms) {
   if (is_later) {
     for (std::size_t i = kTimeDigits; i < next.size(); ++i) next[i] = random_() & 31;
   } else {
-    next = last_;  // the same millisecond, or the clock was set back: count on
+    next = last_;  // the same millisecond, or the clock was set back: increment
     for (std::size_t i = next.size(); i-- > 0;) {
       next[i] = (next[i] + 1) & 31;
       if (next[i] != 0) break;

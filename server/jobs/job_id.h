@@ -10,12 +10,12 @@
 
 namespace fascicle::server {
 
-// Makes identifiers that sort by creation: 26 digits of Crockford's base 32 (0-9a-z without i, l, o, u), 10 for the
-// milliseconds since the Unix epoch and 16 at random, as a ULID in lower case. Each is greater than the one before,
-// also within a millisecond and when the clock is set back. Thread-safe.
+// Generates identifiers that sort by creation time: 26 digits of Crockford's base 32 (0-9a-z without i, l, o, u), 10
+// for the milliseconds since the Unix epoch and 16 random ones, like a lower-case ULID. Each id is greater than the one
+// before, within a millisecond and after the clock was set back, too. Thread-safe.
 class JobIdGenerator {
  public:
-  // All ids will be greater than `newest`; empty, or anything that is not an id, stands for none.
+  // All ids will be greater than `newest`, which may be empty or invalid: no bound.
   explicit JobIdGenerator(std::string_view newest);
 
   std::string Next(std::int64_t unix_time_ms);

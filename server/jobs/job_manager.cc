@@ -27,7 +27,7 @@ std::string NewestId(Store& store) {
   return newest.empty() ? std::string() : newest.front().id;
 }
 
-// A job that another process has left in the middle: queued again, or cancelled when that was asked for.
+// Takes over a job that another process left unfinished: queues it again, or cancels it if that was requested.
 void Resume(Store& store, JobRecord& record) {
   if (record.state == JobState::kQueued) return;
   const bool is_cancelled = record.state == JobState::kCancelling;
@@ -39,7 +39,7 @@ void Resume(Store& store, JobRecord& record) {
       record.stored_bytes = frames->stored_bytes();
     }
   } catch (const StoreError&) {
-    // A damaged file fails its own job, when that is taken up, and nothing else.
+    // A damaged file makes its own job fail, when that is started, and nothing else.
   }
   store.UpdateJob(record);
 }
@@ -91,7 +91,7 @@ struct JobManager::Impl {
     if (const auto found = active.find(id); found != active.end()) active.erase(found);
   }
 
-  // The record as it is now, where `stored` was read after `job` was looked up.
+  // The current record, where `stored` was read after `job` was looked up.
   JobView View(const std::shared_ptr<ActiveJob>& job, JobRecord stored) {
     if (job == nullptr) return ViewOf(std::move(stored));
     JobView view = job->View(std::move(stored));
@@ -101,7 +101,7 @@ struct JobManager::Impl {
     return view;
   }
 
-  // Waits for the next job; nullptr when there will be none.
+  // Waits for the next job; null when there will be none.
   std::shared_ptr<ActiveJob> TakeNext() {
     std::unique_lock lock(mutex);
     queue_changed.wait(lock, [this] { return is_draining || !queue.empty(); });
@@ -121,7 +121,7 @@ struct JobManager::Impl {
     }
   }
 
-  // False while the store has failed to take the job's end: then it is known here alone.
+  // False while the store has failed to save the job's end, which is then known to this process only.
   bool IsStored(const ActiveJob& job) {
     try {
       const std::optional<JobRecord> stored = store.GetJob(job.id());
@@ -149,14 +149,14 @@ struct JobManager::Impl {
   JobIdGenerator ids;
   Notifier notifier;
 
-  std::mutex mutex;  // guards what follows; never held during disk access
+  std::mutex mutex;  // guards the members below; never held during disk access
   std::condition_variable queue_changed;
   std::map<std::string, std::shared_ptr<ActiveJob>, std::less<>> active;
-  std::set<std::string, std::less<>> queue;      // in order of creation; all of them active
+  std::set<std::string, std::less<>> queue;      // in the order of creation; all of them active
   std::set<std::shared_ptr<ActiveJob>> running;  // with a worker
   bool is_draining = false;
 
-  std::mutex drain_mutex;  // one drain at a time; guards workers
+  std::mutex drain_mutex;  // serializes drains; guards workers
   std::vector<std::thread> workers;
 };
 

@@ -13,7 +13,7 @@
 namespace fascicle::server {
 namespace {
 
-// False when the job was cancelled in the queue at the last moment.
+// False if the job was cancelled at the last moment, while still in the queue.
 bool Start(ActiveJob& job, Profile& profile) {
   const StageTimer timer(&profile, "start");
   bool has_started = false;
@@ -36,7 +36,7 @@ void SetRunning(ActiveJob& job) {
   });
 }
 
-// At the stored checkpoint when that fits the scene and the stored frames, else at rest.
+// At the stored checkpoint if it fits the scene and the stored frames, otherwise at rest.
 std::unique_ptr<Simulation> MakeSimulation(std::shared_ptr<const Scene> scene, int threads, FrameStore& frames,
                                            Profile& profile) {
   const StageTimer timer(&profile, "model");
@@ -54,7 +54,7 @@ std::shared_ptr<const Scene> DecodeScene(const RunContext& context, const std::s
   return scene;
 }
 
-// All that comes before the first step.
+// Everything before the first step.
 std::unique_ptr<Simulation> SetUp(const RunContext& context, ActiveJob& job, Profile& profile) {
   const StageTimer timer(&profile, "set-up");
   const std::optional<JobRecord> record = context.store.GetJob(job.id());
@@ -93,13 +93,13 @@ Outcome Failed(std::string reason, const char* message, std::string advice, cons
   return {Outcome::Kind::kFailed, failure};
 }
 
-// As Simulate, with failures in place of exceptions.
+// Like Simulate, with failures in place of exceptions.
 Outcome SimulateSafely(const RunContext& context, ActiveJob& job, RunProfile& profile,
                        const std::function<void()>& notify) {
   try {
     return Simulate(context, job, profile, notify);
   } catch (const StoreError& error) {
-    return Failed("STORAGE", error.what(), "look at the server's disk: its space, its health", job);
+    return Failed("STORAGE", error.what(), "check the free space and the health of the server's disk", job);
   } catch (const std::exception& error) {
     return Failed("INTERNAL", error.what(), "", job);
   } catch (...) {
@@ -111,7 +111,7 @@ std::string Encode(const JobCodec& codec, const Failure& failure) {
   try {
     return codec.encode_failure(failure);
   } catch (...) {
-    return {};  // that the job has failed matters more than why
+    return {};  // recording the failure matters more than its description
   }
 }
 
@@ -123,7 +123,7 @@ std::string Encode(const JobCodec& codec, const RunProfile& profile) {
   }
 }
 
-// What the record becomes.
+// The final change of the record.
 ActiveJob::Change EndOf(const JobCodec& codec, const RunProfile& profile, const Outcome& outcome) {
   return [&](JobRecord& record) {
     record.profile = Encode(codec, profile);
@@ -148,7 +148,7 @@ ActiveJob::Change EndOf(const JobCodec& codec, const RunProfile& profile, const 
 void End(const RunContext& context, ActiveJob& job, const RunProfile& profile, const Outcome& outcome) {
   if (outcome.kind == Outcome::Kind::kSucceeded) {
     Progress progress = job.View({}).progress;
-    progress.fraction = 1;  // also when it has settled early
+    progress.fraction = 1;  // 1 even if the run settled early
     job.SetProgress(progress);
   }
   constexpr int kTries = 3;
@@ -161,10 +161,10 @@ void End(const RunContext& context, ActiveJob& job, const RunProfile& profile, c
       error = caught.what();
     }
   }
-  // The store still has the job as running, so that the next process goes on with it; this one can't.
+  // The store still has the job as running, so the next process resumes it; this one can't.
   if (outcome.kind == Outcome::Kind::kFailed) return job.UpdateUnstored(EndOf(context.codec, profile, outcome));
   const Outcome failed =
-      Failed("STORAGE", error.c_str(), "look at the server's disk; the job goes on when the server restarts", job);
+      Failed("STORAGE", error.c_str(), "check the server's disk; the job continues when the server restarts", job);
   job.UpdateUnstored(EndOf(context.codec, profile, failed));
 }
 
@@ -179,7 +179,7 @@ void RunJob(const RunContext& context, ActiveJob& job, const std::function<void(
     notify();
     outcome = SimulateSafely(context, job, profile, notify);
   } catch (const std::exception& error) {
-    outcome = Failed("STORAGE", error.what(), "look at the server's disk: its space, its health", job);
+    outcome = Failed("STORAGE", error.what(), "check the free space and the health of the server's disk", job);
   }
   End(context, job, profile, outcome);
   notify();

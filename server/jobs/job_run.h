@@ -8,15 +8,15 @@
 
 namespace fascicle::server {
 
-// What all runs share.
+// The objects shared by all runs.
 struct RunContext {
   Store& store;
   const JobCodec& codec;
   const JobManagerOptions& options;
 };
 
-// Runs a queued job, from its checkpoint where it has one, to its end or until it is asked to stop; then its record
-// says what has become of it: final, or queued again. Every frame is stored before that. Never throws.
+// Runs a queued job, from its checkpoint if it has one, until its end or until it is asked to stop. Then updates its
+// record: final, or queued again. Every frame is stored before that. Never throws.
 void RunJob(const RunContext& context, ActiveJob& job, const std::function<void()>& notify);
 
 }  // namespace fascicle::server

@@ -5,7 +5,7 @@
 namespace fascicle::server {
 
 struct Notifier::Listener {
-  std::recursive_mutex mutex;  // held during a call; recursive, as the call may drop its own handle
+  std::recursive_mutex mutex;  // held during a call; recursive, because the call may destroy its own handle
   bool is_active = true;
   std::function<void()> call;
 };

@@ -15,18 +15,18 @@
 
 namespace fascicle::server {
 
-// Tells listeners that something has changed, from a thread of its own: whoever makes the change neither waits for a
-// listener nor lends it the locks it holds. Changes that come faster than they are told are told once. Thread-safe.
+// Notifies listeners of changes from a thread of its own, so that the caller of Notify neither waits for a listener nor
+// holds a lock during its call. Changes that come faster than calls are combined. Thread-safe.
 class Notifier {
  public:
   using Handle = std::shared_ptr<void>;
 
   Notifier();
-  // Tells what is still to be told. Handles may live on.
+  // Makes the outstanding calls. Handles may outlive the notifier.
   ~Notifier();
 
-  // Calls `listener` after each Notify(id) until the handle is gone. Destroying the handle waits for a call that is
-  // under way, unless it is the listener itself that does it.
+  // Calls `listener` after each Notify(id) until the handle is destroyed. Destroying it waits for a call in progress,
+  // unless the listener itself does it.
   Handle Subscribe(std::string_view id, std::function<void()> listener);
   void Notify(std::string_view id);
 

@@ -6,7 +6,7 @@
 
 namespace fascicle::server {
 
-// Files that scenes need, by digest.
+// Files that scenes need, identified by digest.
 class AssetServiceImpl : public v1::AssetService::CallbackService {
  public:
   explicit AssetServiceImpl(RpcContext& context) : context_(context) {}

@@ -65,7 +65,7 @@ grpc::Status AssetUpload::Take() {
     if (grpc::Status status = Begin(); !status.ok() || complete_) return status;
   }
   const std::string& data = message_.data();
-  if (data.size() > kLargestChunk) return InvalidArgument("data", "must be at most 1 MiB in each message");
+  if (data.size() > kLargestChunk) return InvalidArgument("data", "must have at most 1 MiB in each message");
   received_ += static_cast<std::int64_t>(data.size());
   if (received_ > size_) return InvalidArgument("SIZE_MISMATCH", "data", "is more than the announced size");
   upload_->Write(data);
@@ -76,7 +76,7 @@ grpc::Status AssetUpload::Commit() {
   if (!begun_) return InvalidArgument("name", "no message was sent");
   if (received_ != size_) return InvalidArgument("SIZE_MISMATCH", "data", "is less than the announced size");
   if (!upload_->Commit()) {
-    return InvalidArgument("DIGEST_MISMATCH", "data", "does not have the digest that the name says");
+    return InvalidArgument("DIGEST_MISMATCH", "data", "does not have the digest given by the name");
   }
   return grpc::Status::OK;
 }
@@ -87,7 +87,7 @@ void AssetUpload::FinishOnce(const grpc::Status& status) {
     if (finished_) return;
     finished_ = true;
   }
-  if (status.ok()) {  // not earlier: after Finish the response may be gone at any time
+  if (status.ok()) {  // not earlier: after Finish the response may be destroyed at any time
     response_.set_name(name_);
     response_.set_size(size_);
   }
@@ -96,8 +96,8 @@ void AssetUpload::FinishOnce(const grpc::Status& status) {
 
 void AssetUpload::OnDone() {
   context_.streams.Remove(this);
-  // A broken upload leaves nothing: removing its file is work for the executor, and for whoever holds the upload last:
-  // a message may still be at work.
+  // A broken upload leaves nothing. Removing its file is left to the executor and to the last owner of the upload,
+  // because a message may still be in progress.
   context_.slow.Post([upload = std::move(self_)] {});
 }
 

@@ -12,13 +12,13 @@
 
 namespace fascicle::server {
 
-// One call of UploadAsset: one chunk is read, then written to the store on an executor, then the next.
+// One call of UploadAsset: reads a chunk, writes it to the store on an executor, then reads the next one.
 class AssetUpload : public grpc::ServerReadReactor<v1::UploadAssetRequest>,
                     public std::enable_shared_from_this<AssetUpload> {
  public:
   AssetUpload(RpcContext& context, v1::UploadAssetResponse& response) : context_(context), response_(response) {}
 
-  // Begins to read; returns the reactor for gRPC, which lives until the call is done.
+  // Starts reading. Returns the reactor for gRPC, which lives until the call is done.
   static grpc::ServerReadReactor<v1::UploadAssetRequest>* Launch(std::shared_ptr<AssetUpload> upload);
 
   void OnReadDone(bool ok) override;
@@ -26,7 +26,8 @@ class AssetUpload : public grpc::ServerReadReactor<v1::UploadAssetRequest>,
   void OnDone() override;
 
  private:
-  // Each takes the message just read, on the executor. Not OK, or `complete_`: the call is over.
+  // Each processes the message just read, on the executor. The call is over if the status is not OK or `complete_` is
+  // set.
   grpc::Status Take();
   grpc::Status Begin();
   grpc::Status Commit();
@@ -38,7 +39,7 @@ class AssetUpload : public grpc::ServerReadReactor<v1::UploadAssetRequest>,
 
   v1::UploadAssetRequest message_;
   bool begun_ = false;
-  bool complete_ = false;  // answered early: the asset is there
+  bool complete_ = false;  // answered early: the asset is already stored
   std::string name_;
   std::int64_t size_ = 0;
   std::int64_t received_ = 0;

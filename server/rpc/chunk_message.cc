@@ -14,7 +14,7 @@ void AppendVarint(std::string& out, std::uint64_t value) {
   out.push_back(static_cast<char>(value));
 }
 
-// Tag and length of a length-delimited field.
+// Appends tag and length of a length-delimited field.
 void AppendField(std::string& out, int field, std::size_t length) {
   AppendVarint(out, static_cast<std::uint64_t>(field) << 3 | 2);
   AppendVarint(out, length);
@@ -37,7 +37,7 @@ grpc::ByteBuffer ChunkMessage(int field, const ChunkSource& source) {
   chunk.set_last(source.last);
   chunk.set_crc32c(Crc32c(std::string_view(*source.bytes).substr(source.begin, source.size)));
   std::string inner = chunk.SerializeAsString();
-  AppendField(inner, v1::Chunk::kDataFieldNumber, source.size);  // protobuf takes fields in any order
+  AppendField(inner, v1::Chunk::kDataFieldNumber, source.size);  // protobuf accepts fields in any order
   std::string head;
   AppendField(head, field, inner.size() + source.size);
   head += inner;

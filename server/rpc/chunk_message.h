@@ -12,10 +12,10 @@
 
 namespace fascicle::server {
 
-// A part of a serialized message: `size` bytes of `bytes` from `begin`.
+// A part of a serialized message: `size` bytes of `bytes`, starting at `begin`.
 struct ChunkSource {
   std::int64_t frame_index = 0;
-  std::int64_t offset = 0;  // in the message [byte]
+  std::int64_t offset = 0;  // within the message [byte]
   bool last = false;
   std::shared_ptr<const std::string> bytes;
   std::size_t begin = 0;
@@ -23,7 +23,7 @@ struct ChunkSource {
 };
 
 // A serialized message whose field number `field` is the v1::Chunk made of `source`, with its CRC-32C. The data is not
-// copied: the buffer holds on to `source.bytes`. Serializing a v1::Chunk would touch each byte twice more.
+// copied: the buffer shares ownership of `source.bytes`. Serializing a v1::Chunk would copy each byte twice more.
 grpc::ByteBuffer ChunkMessage(int field, const ChunkSource& source);
 
 grpc::ByteBuffer Serialize(const google::protobuf::MessageLite& message);

@@ -33,7 +33,7 @@ std::string OneLine(std::string text) {
   return text;
 }
 
-// The message of a status travels in the trailer too.
+// Limits the length: the message of a status is sent in the trailer, too.
 std::string Shortened(std::string text) {
   constexpr std::size_t kLongest = 1000;
   if (text.size() <= kLongest) return text;

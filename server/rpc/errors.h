@@ -15,22 +15,22 @@
 
 namespace fascicle::server {
 
-// Errors as clients see them: a status whose details (grpc-status-details-bin) are a google.rpc.Status with an
-// ErrorInfo{reason, domain "fascicle"} and the message that belongs to the code. README.md has the table.
+// Errors as seen by clients: a status whose details (grpc-status-details-bin) are a google.rpc.Status with an
+// ErrorInfo{reason, domain "fascicle"} and the detail message of the code. README.md has the table.
 
-// Bytes of details that every gRPC client takes: the default limit of a trailer is 8 KiB for all of it, in base64.
+// Size of details [byte] that every gRPC client accepts: by default, a trailer is limited to 8 KiB in all, in base64.
 constexpr std::size_t kDefaultDetailsLimit = 5000;
 
-// How many bytes of details this caller takes: what its metadata `fascicle-details-limit` says (at most 256 KiB), or
-// the default.
+// Size of details that this caller accepts [byte]: the value of its metadata `fascicle-details-limit` (at most 256
+// KiB), or the default.
 std::size_t DetailsLimit(const grpc::ServerContextBase& call);
 
-// INVALID_ARGUMENT with a BadRequest of every problem, as far as `details_limit` [byte] allows; the rest is counted in
-// a last entry. A description is the message and, on a second line, the hint.
+// INVALID_ARGUMENT with a BadRequest that lists the problems within `details_limit` [byte]; a last entry counts the
+// rest. A description is the message and, on a second line, the hint.
 grpc::Status InvalidArgument(const Problems& problems, std::size_t details_limit = kDefaultDetailsLimit);
 // The same with one problem.
 grpc::Status InvalidArgument(const std::string& field, const std::string& message);
-// As InvalidArgument with a reason of its own.
+// Like InvalidArgument, with a specific reason.
 grpc::Status InvalidArgument(const std::string& reason, const std::string& field, const std::string& message);
 
 // NOT_FOUND with ResourceInfo. `type` is `job` or `asset`.
@@ -50,7 +50,7 @@ grpc::Status Aborted(const std::string& reason, const std::string& message);
 grpc::Status OutOfRange(const std::string& reason, const std::string& message);
 grpc::Status Internal(const std::string& reason, const std::string& message);
 
-// Runs `body`. What it throws is logged under `what` and becomes an INTERNAL error: STORAGE for a StoreError,
+// Runs `body`. An exception is logged under `what` and becomes an INTERNAL error: STORAGE for a StoreError,
 // OUT_OF_MEMORY, or INTERNAL.
 grpc::Status Guarded(spdlog::logger& log, const char* what, const std::function<grpc::Status()>& body) noexcept;
 

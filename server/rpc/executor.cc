@@ -31,7 +31,7 @@ void Executor::PostAfter(std::chrono::milliseconds delay, Task task) {
     std::lock_guard lock(mutex_);
     delayed_.emplace(Clock::now() + delay, std::move(task));
   }
-  wake_.notify_one();  // some thread must learn of the new earliest time
+  wake_.notify_one();  // some thread must be told the new earliest time
 }
 
 std::size_t Executor::pending() const {
@@ -52,7 +52,7 @@ void Executor::Work() {
       ready_.pop_front();
       lock.unlock();
       Run(task);
-      task = nullptr;  // what it holds is released outside the lock
+      task = nullptr;  // its captures are released outside the lock
       lock.lock();
     } else if (stopping_) {
       return;

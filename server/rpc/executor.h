@@ -14,22 +14,22 @@
 
 namespace fascicle::server {
 
-// Threads for everything that may block (disk, locks, translation of scenes). gRPC's own threads are as few as the
-// machine's cores: one reaction that waits there holds up every call of the server. Thread-safe.
+// Threads for everything that may block (disk, locks, translation of scenes). gRPC has only as many threads as the
+// machine has cores; a reaction that blocks one of them delays every call of the server. Thread-safe.
 class Executor {
  public:
   using Task = std::function<void()>;
 
-  // `on_error` hears of exceptions that leave a task; it must not throw.
+  // `on_error` receives exceptions that escape from a task; it must not throw.
   Executor(int threads, std::function<void(const std::string& what)> on_error);
-  // Runs what was posted without delay, drops what was delayed, and joins.
+  // Runs the tasks posted without delay, drops delayed ones, and joins the threads.
   ~Executor();
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
 
   void Post(Task task);
   void PostAfter(std::chrono::milliseconds delay, Task task);
-  // Tasks that wait for a thread.
+  // Number of tasks that wait for a thread.
   std::size_t pending() const;
 
  private:

@@ -12,7 +12,7 @@
 namespace fascicle::server {
 namespace {
 
-// Ends a call at once.
+// A stream that ends at once with a status.
 class EndedStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
  public:
   explicit EndedStream(const grpc::Status& status) { Finish(status); }
@@ -27,7 +27,7 @@ std::optional<Message> Parse(const grpc::ByteBuffer& bytes) {
   return message;
 }
 
-grpc::Status NotAMessage() { return InvalidArgument("", "the request is not the message that this call takes"); }
+grpc::Status NotAMessage() { return InvalidArgument("", "the request is not the message type of this call"); }
 
 }  // namespace
 
@@ -57,7 +57,7 @@ grpc::Status FrameServiceImpl::List(const v1::ListFramesRequest& request, v1::Li
   const std::optional<std::string> id = ParseJobName(request.name());
   if (!id) problems.Add("name", "must be jobs/{id}");
   if (request.start_index() < 0) problems.Add("start_index", "must not be negative");
-  if (request.page_size() < 0 || request.page_size() > 10'000) problems.Add("page_size", "must lie in [0, 10000]");
+  if (request.page_size() < 0 || request.page_size() > 10'000) problems.Add("page_size", "must be in [0, 10000]");
   if (!problems.empty()) return InvalidArgument(problems);
   const std::shared_ptr<FrameStore> frames = context_.jobs.Frames(*id);
   if (!frames) return NotFound("job", request.name());

@@ -12,7 +12,7 @@ using FrameServiceBase =
     v1::FrameService::WithRawCallbackMethod_GetGeometry<v1::FrameService::WithRawCallbackMethod_StreamFrames<
         v1::FrameService::WithCallbackMethod_ListFrames<v1::FrameService::Service>>>;
 
-// What jobs produce. The streams are raw, so that frames go from the store to the network without a copy.
+// The results of jobs. The streams are raw, so that frames are sent from the store without a copy.
 class FrameServiceImpl : public FrameServiceBase {
  public:
   explicit FrameServiceImpl(RpcContext& context) : context_(context) {}

@@ -13,15 +13,15 @@ namespace {
 
 using Response = v1::StreamFramesResponse;
 
-// Frames of MODE_LATEST are at least this far apart. Small frames fit in gRPC's buffers by the hundred: sent as fast as
-// the transport takes them, a viewer would see them long after they were new.
+// Least time between frames of MODE_LATEST. gRPC's buffers hold hundreds of small frames; sent as fast as the transport
+// accepts them, they would reach the viewer long after they were new.
 constexpr std::chrono::milliseconds kLatestInterval(33);
 
 void CheckRequest(const v1::StreamFramesRequest& request, Problems& problems) {
   if (!ParseJobName(request.name())) problems.Add("name", "must be jobs/{id}");
   if (request.start_index() < 0) problems.Add("start_index", "must not be negative");
   if (request.end_index() < 0) problems.Add("end_index", "must not be negative");
-  if (request.stride() < 0 || request.stride() > 1'000'000) problems.Add("stride", "must lie in [0, 1000000]");
+  if (request.stride() < 0 || request.stride() > 1'000'000) problems.Add("stride", "must be in [0, 1000000]");
   if (!v1::StreamFramesRequest::Mode_IsValid(request.mode())) problems.Add("mode", "is not known");
 }
 
@@ -52,19 +52,19 @@ bool FrameStream::Open() {
     Complete(NotFound("job", request_.name()));
     return false;
   }
-  Follow(job_id_);  // before the first look, so that nothing is missed
+  Follow(job_id_);  // before the first check, so that no change is missed
   next_index_ = request_.start_index();
   stride_ = std::max<std::int64_t>(request_.stride(), 1);
   generation_ = request_.generation();
   if (!Refresh()) return false;
   generation_ = view_.record.generation;
   if (IsFinal(view_.record.state) && next_index_ > known_count_) {
-    Complete(OutOfRange("START_INDEX", "start_index " + std::to_string(next_index_) + " lies beyond the " +
+    Complete(OutOfRange("START_INDEX", "start_index " + std::to_string(next_index_) + " is beyond the " +
                                            std::to_string(known_count_) + " frames of " + request_.name()));
     return false;
   }
   wanted_end_ = request_.end_index() > 0 ? request_.end_index() : INT64_MAX;
-  // What is stored now: a job may write faster than the reader reads.
+  // The frames stored now: a job may write faster than the reader reads.
   if (!request_.follow()) wanted_end_ = std::min(wanted_end_, known_count_);
   open_ = true;
   Response message;
@@ -77,7 +77,7 @@ bool FrameStream::Open() {
 }
 
 bool FrameStream::Refresh() {
-  // The state before the content: a job that is final has stored all that it ever will.
+  // The state is read before the frames: a job in a final state has stored all of them.
   std::optional<JobView> view = context_.jobs.Get(job_id_);
   if (!view) {
     Complete(NotFound("job", request_.name()));
@@ -95,7 +95,7 @@ bool FrameStream::Refresh() {
 
 void FrameStream::Advance() {
   const bool latest = request_.mode() == v1::StreamFramesRequest::MODE_LATEST;
-  if (latest && !AllWritten()) return;  // the newest is chosen when the reader is ready for it
+  if (latest && !AllWritten()) return;  // the newest is chosen when the reader is ready
   if (const auto rest = kLatestInterval - (Clock::now() - last_frame_); latest && rest > rest.zero()) {
     WakeAfter(std::chrono::ceil<std::chrono::milliseconds>(rest));
     return;
@@ -145,7 +145,7 @@ void FrameStream::PushChunk() {
   source.last = offset_ >= current_->size;
   source.bytes = std::make_shared<const std::string>(std::move(*bytes));
   if (source.last && offset_ > FrameStore::kChunkSize) {
-    // A frame of several chunks may have been rewritten between two of them.
+    // The frame may have been replaced between two of its chunks.
     const std::vector<FrameRecord> now = frames_->ListFrames(current_->index, 1);
     if (now.empty() || now.front().digest != current_->digest) {
       Complete(Aborted("GENERATION_CHANGED", "the frames of " + request_.name() + " were rewritten: start again"));

@@ -13,8 +13,8 @@
 
 namespace fascicle::server {
 
-// One call of StreamFrames. Everything is read from the store: for a live job, a late joiner, a reconnect and a
-// finished job the same code reads from the wanted index and then waits for more.
+// One call of StreamFrames. Everything is read from the store. The same code serves a live job, a late joiner, a
+// reconnect and a finished job: it reads from the requested index on and then waits for more.
 class FrameStream : public OutStream {
  public:
   FrameStream(RpcContext& context, v1::StreamFramesRequest request)
@@ -26,17 +26,17 @@ class FrameStream : public OutStream {
  private:
   using Clock = std::chrono::steady_clock;
 
-  // Checks the request and sends the header. False when the stream was completed with an error.
+  // Checks the request and sends the header. False if the stream was completed with an error.
   bool Open();
-  // Looks again what job and store hold. False when the stream was completed with an error.
+  // Reads the current state of the job and its store. False if the stream was completed with an error.
   bool Refresh();
   // Chooses the next frame, if one is stored; otherwise ends, or waits for more.
   void Advance();
-  // The frame to send next when `request_` asks for the newest only.
+  // The next frame to send if `request_` asks for the newest only.
   std::int64_t NewestIndex() const;
   void BeginFrame(std::int64_t index);
   void PushChunk();
-  // A heartbeat when there is news of the progress, or nothing was sent for long.
+  // Sends a heartbeat if the progress has changed, or if nothing was sent for long.
   void Beat();
   void PushEnd();
 
@@ -46,18 +46,18 @@ class FrameStream : public OutStream {
   std::shared_ptr<FrameStore> frames_;
   JobView view_;  // as of the last Refresh
   std::int64_t generation_ = 0;
-  std::int64_t next_index_ = 0;  // the next frame to send
+  std::int64_t next_index_ = 0;  // index of the next frame to send
   std::int64_t stride_ = 1;
-  std::int64_t known_count_ = 0;        // frames stored, as of the last Refresh
-  std::int64_t wanted_end_ = 0;         // no frame from there on is sent
-  std::vector<FrameRecord> listed_;     // records read ahead
-  std::optional<FrameRecord> current_;  // being sent
-  std::int64_t offset_ = 0;             // of the next chunk in it [byte]
+  std::int64_t known_count_ = 0;        // number of stored frames as of the last Refresh
+  std::int64_t wanted_end_ = 0;         // end of the range to send
+  std::vector<FrameRecord> listed_;     // records read in advance
+  std::optional<FrameRecord> current_;  // the frame being sent
+  std::int64_t offset_ = 0;             // of its next chunk [byte]
 
-  Clock::time_point last_look_;  // Refresh
+  Clock::time_point last_look_;  // time of the last Refresh
   Clock::time_point last_message_;
   Clock::time_point last_beat_;
-  Clock::time_point last_frame_;  // begun
+  Clock::time_point last_frame_;  // when it was started
   std::string last_progress_;     // as in the last heartbeat
 };
 

@@ -18,10 +18,10 @@ bool GeometryStream::Load() {
       return false;
     }
     job_id_ = *id;
-    Follow(job_id_);  // before the first look, so that nothing is missed
+    Follow(job_id_);  // before the first check, so that no change is missed
     following_ = true;
   }
-  // The state before the content: a job that is final has stored all that it ever will.
+  // The state is read before the geometry: a job in a final state has stored it, if ever.
   const std::optional<JobView> view = context_.jobs.Get(job_id_);
   const std::shared_ptr<FrameStore> frames = view ? context_.jobs.Frames(job_id_) : nullptr;
   if (!frames) {

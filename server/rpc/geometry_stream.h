@@ -19,7 +19,7 @@ class GeometryStream : public OutStream {
   void Fill() override;
 
  private:
-  // False while the geometry is not there, or when the stream was completed with an error.
+  // False if the geometry is not stored yet, or if the stream was completed with an error.
   bool Load();
 
   const std::string job_name_;

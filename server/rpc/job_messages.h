@@ -8,7 +8,7 @@
 
 namespace fascicle::server {
 
-// What a job keeps as its spec: a v1::Job with scene and threads alone; equal jobs give equal bytes.
+// The spec of a job as it is stored: a v1::Job with scene and threads only. Equal jobs have equal bytes.
 std::string SpecOf(const v1::Job& requested);
 
 // The message of a job, without its scene.

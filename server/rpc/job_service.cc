@@ -16,7 +16,7 @@ namespace {
 void CheckRequest(const v1::CreateJobRequest& request, Problems& problems) {
   if (!request.job().has_scene()) problems.Add("job.scene", "is missing");
   if (request.job().threads() < 0 || request.job().threads() > 256) {
-    problems.Add("job.threads", "must lie in [0, 256]", "0 takes the server's default");
+    problems.Add("job.threads", "must be in [0, 256]", "0 selects the server's default");
   }
   if (request.request_id().size() > 64) problems.Add("request_id", "is longer than 64 characters");
 }
@@ -80,7 +80,7 @@ std::vector<std::string> JobServiceImpl::MissingAssets(const v1::Scene& scene) {
 void JobServiceImpl::CheckScene(const v1::Scene& scene, Problems& problems) {
   const auto read = [this](const std::string& sha256_hex) { return context_.store.ReadAsset(sha256_hex); };
   Problems found;
-  if (TranslateScene(scene, read, found) == nullptr && found.empty()) found.Add("", "can't be translated");
+  if (TranslateScene(scene, read, found) == nullptr && found.empty()) found.Add("", "cannot be translated");
   problems.Append("job.scene", found);
 }
 
@@ -104,13 +104,13 @@ grpc::ServerUnaryReactor* JobServiceImpl::ListJobs(grpc::CallbackServerContext* 
 
 grpc::Status JobServiceImpl::List(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
   Problems problems;
-  if (request.page_size() < 0 || request.page_size() > 1000) problems.Add("page_size", "must lie in [0, 1000]");
+  if (request.page_size() < 0 || request.page_size() > 1000) problems.Add("page_size", "must be in [0, 1000]");
   std::vector<JobState> states;
   std::string filter;
   for (int i = 0; i < request.states_size(); ++i) {
     const int state = request.states(i);
     if (state < v1::Job::STATE_QUEUED || state > v1::Job::STATE_CANCELLED) {
-      problems.Add(IndexPath("states", static_cast<std::size_t>(i)), "is no state of a job");
+      problems.Add(IndexPath("states", static_cast<std::size_t>(i)), "is not a state of a job");
     }
     states.push_back(static_cast<JobState>(state));
     filter += static_cast<char>('0' + state);
@@ -123,13 +123,13 @@ grpc::Status JobServiceImpl::List(const v1::ListJobsRequest& request, v1::ListJo
   const int page_size = request.page_size() == 0 ? 50 : request.page_size();
   const std::vector<JobView> views = context_.jobs.List(page_size + 1, *before, states);
   for (const JobView& view : views) {
-    if (response.jobs_size() == page_size) {  // one more is there
+    if (response.jobs_size() == page_size) {  // at least one more exists
       const std::string& last = response.jobs(page_size - 1).name();
       response.set_next_page_token(MakePageToken(*ParseJobName(last), filter));
       break;
     }
     v1::Job& job = *response.add_jobs() = ToMessage(view);
-    job.clear_profile();  // as long as all the rest
+    job.clear_profile();  // as large as everything else
   }
   return grpc::Status::OK;
 }

@@ -10,7 +10,7 @@
 
 namespace fascicle::server {
 
-// Submit, look, cancel, delete.
+// Submits, shows, cancels and deletes jobs.
 class JobServiceImpl : public v1::JobService::CallbackService {
  public:
   explicit JobServiceImpl(RpcContext& context) : context_(context) {}
@@ -29,7 +29,7 @@ class JobServiceImpl : public v1::JobService::CallbackService {
  private:
   grpc::Status Create(const v1::CreateJobRequest& request, v1::Job& response, std::size_t details_limit);
   grpc::Status List(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
-  // `assets/{sha256}` of those that the scene names and the store lacks.
+  // `assets/{sha256}` of the scene's assets that the store lacks.
   std::vector<std::string> MissingAssets(const v1::Scene& scene);
   void CheckScene(const v1::Scene& scene, Problems& problems);
 

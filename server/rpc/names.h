@@ -10,15 +10,15 @@ namespace fascicle::server {
 // Resource names on the wire: `jobs/{id}` and `assets/{sha256}`.
 
 std::string JobName(std::string_view id);
-// The id, 1 to 64 letters and digits; nothing when `name` is no name of a job.
+// The id, 1 to 64 letters and digits; nothing if `name` is not a job name.
 std::optional<std::string> ParseJobName(std::string_view name);
 
 std::string AssetName(std::string_view sha256_hex);
-// The 64 lower-case hexadecimal digits; nothing when `name` is no name of an asset.
+// The 64 lower-case hexadecimal digits; nothing if `name` is not an asset name.
 std::optional<std::string> ParseAssetName(std::string_view name);
 
-// Where a list of jobs goes on: the last id that was given, with a check over id and `filter`, so that garbage and
-// tokens of another list are told from real ones.
+// The position in a list of jobs: the last id returned, with a checksum over id and `filter` that detects invalid
+// tokens and those of another list.
 std::string MakePageToken(std::string_view last_id, std::string_view filter);
 std::optional<std::string> ParsePageToken(std::string_view token, std::string_view filter);
 

@@ -11,15 +11,16 @@
 
 namespace fascicle::server {
 
-// The streams that are open, so that a server that shuts down can end each of them with a status before gRPC is shut
-// down: gRPC alone would wait for them for ever. Thread-safe.
+// The open streams. A server that shuts down ends each of them with a status before it shuts gRPC down, which would
+// wait for them indefinitely. Thread-safe.
 class OpenStreams {
  public:
-  // `abort` ends the stream at once; it is called at most once, from Drain. False while draining: refuse the stream.
+  // `abort` ends the stream at once; it is called at most once, from Drain. Returns false while draining: refuse the
+  // stream.
   bool Add(const void* stream, std::function<void(const grpc::Status&)> abort);
   void Remove(const void* stream);
 
-  // From now on no stream is added, and those that are open end with UNAVAILABLE.
+  // From now on no stream is added; open ones end with UNAVAILABLE.
   void Drain();
   bool draining() const;
   bool WaitUntilEmpty(std::chrono::milliseconds timeout);

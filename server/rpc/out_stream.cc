@@ -96,7 +96,7 @@ void OutStream::WakeAfter(std::chrono::milliseconds delay) {
   const auto time = std::chrono::steady_clock::now() + delay;
   {
     std::lock_guard lock(mutex_);
-    if (stopped_ || next_timer_ <= time) return;  // it will be woken early enough
+    if (stopped_ || next_timer_ <= time) return;  // an earlier wake-up is scheduled
     next_timer_ = time;
   }
   context_.quick.PostAfter(delay, [weak = weak_from_this(), time] {
@@ -132,13 +132,12 @@ void OutStream::OnWriteDone(bool ok) {
     std::unique_lock lock(mutex_);
     writing_ = false;
     in_flight_.Clear();
-    if (!ok) {  // the client is gone
+    if (!ok) {  // the client has disconnected
       stopped_ = true;
       ready_.clear();
       if (!last_) last_ = grpc::Status::CANCELLED;
     }
-    // Filled again when all that was made in advance is on its way: half as many switches of threads as for each
-    // message.
+    // Refill when all prepared messages are on their way: half as many thread switches as for each message.
     low = ready_.size() <= 1;
     Pump(lock);
   }
@@ -154,7 +153,7 @@ void OutStream::OnDone() {
     std::lock_guard lock(mutex_);
     subscription.swap(subscription_);
   }
-  // Letting go may wait for a listener that is being called: not here.
+  // Destroying the subscription may wait for a call of its listener, so not on this thread.
   if (subscription) context_.quick.Post([subscription = std::move(subscription)] {});
   self_.reset();
 }

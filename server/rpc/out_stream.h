@@ -16,18 +16,18 @@
 
 namespace fascicle::server {
 
-// A server stream that is filled from an executor: one message in flight, at most kAhead more made in advance, so a
-// slow reader costs a few MiB and no thread. Derived classes make the messages in Fill.
+// A server stream that is filled by an executor: one message in flight and at most kAhead prepared ones, so that a slow
+// reader costs a few MiB and no thread. Derived classes create the messages in Fill.
 class OutStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std::enable_shared_from_this<OutStream> {
  public:
   static constexpr std::size_t kAhead = 2;
 
   OutStream(RpcContext& context, const char* method) : context_(context), method_(method) {}
 
-  // Begins to fill; returns the reactor for gRPC, which lives until the call is done.
+  // Starts filling. Returns the reactor for gRPC, which lives until the call is done.
   static grpc::ServerWriteReactor<grpc::ByteBuffer>* Launch(std::shared_ptr<OutStream> stream);
 
-  // There may be more to send: calls Fill on the executor. Any thread.
+  // Call when there may be more to send: runs Fill on the executor. Any thread.
   void Wake();
 
   void OnWriteDone(bool ok) final;
@@ -35,15 +35,15 @@ class OutStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std:
   void OnDone() final;
 
  protected:
-  // Makes messages while HasRoom(), until Complete or until there is nothing to send now. On an executor, never
-  // twice at a time; called again after Wake, after each write, and when `subscription` tells.
+  // Creates messages while HasRoom(), until Complete or until there is nothing to send at present. Runs on an executor,
+  // never concurrently with itself; called again after Wake, after each write, and by `subscription`.
   virtual void Fill() = 0;
 
-  // The rest is called from Fill only.
+  // The functions below are called from Fill only.
   bool HasRoom() const;
   bool AllWritten() const;
   void Push(grpc::ByteBuffer message);
-  // Ends the stream once all is written.
+  // Ends the stream once everything is written.
   void Complete(grpc::Status status);
   // Wakes this stream whenever the job changes, until the end.
   void Follow(const std::string& job_id);
@@ -55,7 +55,7 @@ class OutStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std:
  private:
   void RunFill();
   void Abort(const grpc::Status& status);
-  // Starts the next operation of the call, if there is one; releases the lock.
+  // Starts the next operation of the call, if any; releases the lock.
   void Pump(std::unique_lock<std::mutex>& lock);
 
   const char* const method_;

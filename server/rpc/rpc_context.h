@@ -17,16 +17,16 @@
 
 namespace fascicle::server {
 
-// What the services tell about themselves and how they behave.
+// Settings of the services.
 struct RpcSettings {
   int workers = 2;
   int default_threads = 1;
   std::int64_t max_asset_size = std::int64_t{4} << 30;                             // [byte]
-  std::chrono::milliseconds heartbeat_interval = std::chrono::seconds(10);         // at the latest
-  std::chrono::milliseconds progress_interval = std::chrono::milliseconds(1'000);  // when something changed
+  std::chrono::milliseconds heartbeat_interval = std::chrono::seconds(10);         // at most
+  std::chrono::milliseconds progress_interval = std::chrono::milliseconds(1'000);  // while a job progresses
 };
 
-// What every service works with. Outlives all calls.
+// Objects shared by all services. Outlives all calls.
 struct RpcContext {
   Store& store;
   JobManager& jobs;
@@ -37,7 +37,7 @@ struct RpcContext {
   RpcSettings settings;
 };
 
-// Answers a unary call with `body` (() -> grpc::Status) on an executor. Request and response live until then.
+// Answers a unary call with `body` (() -> grpc::Status) on an executor. Request and response stay valid until then.
 template <class Body>
 grpc::ServerUnaryReactor* RunUnary(RpcContext& context, Executor& executor, grpc::CallbackServerContext* call,
                                    const char* method, Body body) {

@@ -17,10 +17,10 @@
 namespace fascicle::server {
 namespace {
 
-constexpr int kLargestMessage = 4 << 20;  // [byte]; frames and files travel in chunks of 1 MiB
-constexpr int kConcurrentStreams = 256;   // of one connection
+constexpr int kLargestMessage = 4 << 20;  // [byte]; frames and files are sent in chunks of 1 MiB
+constexpr int kConcurrentStreams = 256;   // per connection
 constexpr int kKeepaliveTime = 30'000;    // [ms]
-// [ms]; a client that computes or draws for some seconds between two reads must not be taken for dead.
+// [ms]; long enough for a client that computes or draws for some seconds between two reads.
 constexpr int kKeepaliveTimeout = 20'000;
 constexpr int kShortestPingInterval = 10'000;  // [ms]
 
@@ -34,12 +34,12 @@ void Configure(grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeout);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, kShortestPingInterval);
-  // Otherwise a second server would take the same port silently and get half of the calls.
+  // Otherwise a second server would silently share the port and receive half of the calls.
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
 }
 
-// gRPC 1.51 takes its threads down with its last object, and sometimes waits ten seconds for one that polls. Holding on
-// to the library until the process ends avoids it.
+// gRPC 1.51 stops its threads with its last object, and sometimes waits ten seconds for one that polls. Keeping the
+// library initialized until the process ends avoids that.
 void KeepLibraryUp() { [[maybe_unused]] static const bool kept = (grpc_init(), true); }
 
 }  // namespace
@@ -58,7 +58,7 @@ struct RpcServer::Impl {
   AssetServiceImpl asset_service{context};
   FrameServiceImpl frame_service{context};
   ServerServiceImpl server_service{context};
-  // Destroyed in reverse: every call ends, then the executors' last tasks, then what they use.
+  // Destroyed in reverse order: every call ends, then the last tasks of the executors, then the objects they use.
   Executor quick;
   Executor slow;
   std::unique_ptr<grpc::Server> server;
@@ -70,7 +70,7 @@ RpcServer::RpcServer(const std::string& listen, Store& store, JobManager& jobs, 
                      const RpcSettings& settings)
     : impl_(std::make_unique<Impl>(store, jobs, std::move(log), settings)) {
   KeepLibraryUp();
-  // Both are switches of the process; turning them on twice does nothing.
+  // Both are settings of the whole process; enabling them twice has no effect.
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
@@ -83,7 +83,7 @@ RpcServer::RpcServer(const std::string& listen, Store& store, JobManager& jobs, 
   impl_->server = builder.BuildAndStart();
   if (!impl_->server || impl_->port == 0) {
     throw std::runtime_error("cannot listen on " + listen +
-                             ": the address is not of this machine or the port is in use");
+                             ": the address does not belong to this machine or the port is in use");
   }
   grpc::HealthCheckServiceInterface* health = impl_->server->GetHealthCheckService();
   for (const char* service : {v1::JobService::service_full_name(), v1::AssetService::service_full_name(),
@@ -101,7 +101,7 @@ void RpcServer::Stop() {
   impl_->server->GetHealthCheckService()->SetServingStatus(false);
   impl_->streams.Drain();
   impl_->streams.WaitUntilEmpty(std::chrono::seconds(2));
-  // What is left after that (a reader that stands still, a health watch) is cut.
+  // Cuts the remaining calls (a reader that has stopped reading, a health watch).
   impl_->server->Shutdown(std::chrono::system_clock::now() + std::chrono::seconds(1));
 }
 

@@ -15,15 +15,15 @@ namespace fascicle::server {
 // The services on a port, with health (grpc.health.v1) and reflection.
 class RpcServer {
  public:
-  // Listens on `listen` ("HOST:PORT"; port 0 picks a free one). The rest must outlive this. Throws std::runtime_error
-  // when it cannot listen there.
+  // Listens on `listen` ("HOST:PORT"; port 0 chooses a free one). The other arguments must outlive this object. Throws
+  // std::runtime_error if it cannot listen there.
   RpcServer(const std::string& listen, Store& store, JobManager& jobs, std::shared_ptr<spdlog::logger> log,
             const RpcSettings& settings);
   ~RpcServer();
 
   int port() const;
-  // Health tells NOT_SERVING, every stream ends with UNAVAILABLE, then the port is closed. Idempotent; waits for calls
-  // that are being answered.
+  // Reports NOT_SERVING, ends every stream with UNAVAILABLE, then closes the port. Idempotent; waits for calls in
+  // progress.
   void Stop();
 
  private:

@@ -8,7 +8,7 @@
 
 namespace fascicle::server {
 
-// The server itself.
+// Information about the server itself.
 class ServerServiceImpl : public v1::ServerService::CallbackService {
  public:
   explicit ServerServiceImpl(RpcContext& context) : context_(context) {}

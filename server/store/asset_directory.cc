@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Creates a folder whose parent is there, durably.
+// Creates a folder within an existing one, durably.
 void CreateFolder(const std::string& path) {
   std::error_code error;
   if (fs::create_directory(path, error)) SyncParent(path);
@@ -50,7 +50,7 @@ class AssetDirectory::FileUpload final : public Upload {
 
   void Write(std::string_view bytes) override {
     size_ += static_cast<std::int64_t>(bytes.size());
-    if (size_ > announced_size_) return;  // it will not be kept: don't fill the disk with it
+    if (size_ > announced_size_) return;  // it will be refused; do not fill the disk with it
     sha256_.Update(bytes);
     file_.Write(bytes.data(), bytes.size());
   }
@@ -92,7 +92,7 @@ bool AssetDirectory::HasAsset(std::string_view sha256_hex) {
 }
 
 std::unique_ptr<AssetStore::Upload> AssetDirectory::BeginUpload(std::string_view sha256_hex, std::int64_t size) {
-  // With a digest that is none the upload takes its course and then fails, as with any other wrong digest.
+  // An invalid digest is handled like a wrong one: the upload proceeds and fails at its end.
   std::string written = directory_ + "/uploads/" + std::to_string(next_upload_++);
   return std::make_unique<FileUpload>(std::move(written), IsSha256Hex(sha256_hex) ? PathOf(sha256_hex) : std::string(),
                                       sha256_hex, size);
@@ -105,7 +105,7 @@ std::optional<std::string> AssetDirectory::ReadAsset(std::string_view sha256_hex
   std::string bytes(file ? static_cast<std::size_t>(file.tellg()) : 0, '\0');
   file.seekg(0);
   if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) throw StoreError(path + ": cannot be read");
-  if (Hex(Sha256Of(bytes)) != sha256_hex) throw StoreError(path + ": is damaged, its digest is another");
+  if (Hex(Sha256Of(bytes)) != sha256_hex) throw StoreError(path + ": is damaged, its digest is different");
   return bytes;
 }
 

@@ -12,14 +12,14 @@
 
 namespace fascicle::server {
 
-// 64 digits 0-9a-f: nothing else may become part of a path.
+// Whether the text is 64 digits 0-9a-f; nothing else may become part of a path.
 bool IsSha256Hex(std::string_view text);
 
-// Assets as files: assets/ab/{sha256}, written as assets/uploads/{number} first. Thread-safe; an upload belongs to one
+// Assets as files: assets/ab/{sha256}, first written as assets/uploads/{number}. Thread-safe; an upload belongs to one
 // thread.
 class AssetDirectory final : public AssetStore {
  public:
-  // Creates the directory and removes what interrupted uploads have left.
+  // Creates the directory and removes the files of interrupted uploads.
   explicit AssetDirectory(const std::string& directory);
 
   bool HasAsset(std::string_view sha256_hex) override;

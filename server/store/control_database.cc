@@ -9,8 +9,7 @@ namespace {
 constexpr int kApplicationId = 0x46534343;  // "FSCC"
 
 constexpr std::array<const char*, 2> kFormats = {
-    // Format 1. The specification has a table of its own: it may be large, and an update of the job must not rewrite
-    // it.
+    // Format 1. The specification has its own table: it may be large, and an update of the job must not rewrite it.
     R"(CREATE TABLE jobs (
          id TEXT PRIMARY KEY NOT NULL,
          request_id TEXT UNIQUE,
@@ -41,7 +40,7 @@ constexpr const char* kColumns =
     "id, request_id, request_digest, scene_name, threads, state, failure, attempt, generation, create_time_us, "
     "start_time_us, end_time_us, fraction, time, step, frame_count, stored_bytes, profile";
 
-// A record from the columns above, in their order.
+// Reads a record from the columns above, in their order.
 JobRecord ReadRecord(const Rows& row) {
   JobRecord job;
   job.id = row.String(0);
@@ -65,7 +64,7 @@ JobRecord ReadRecord(const Rows& row) {
   return job;
 }
 
-// Bit s for state s: a whole set of states as one argument of a query.
+// Bit s for state s, so that a set of states is a single argument of a query.
 std::int64_t MaskOf(const std::vector<JobState>& states) {
   std::int64_t mask = 0;
   for (JobState state : states) mask |= std::int64_t{1} << static_cast<int>(state);
@@ -139,7 +138,7 @@ std::vector<JobRecord> ControlDatabase::ListJobs(int limit, std::string_view bef
                                                  const std::vector<JobState>& states) {
   return readers_.With([&](Reader& reader) {
     std::vector<JobRecord> jobs;
-    Rows rows = reader.list.Query(before_id, MaskOf(states), limit < 0 ? 0 : limit);  // a negative LIMIT has none
+    Rows rows = reader.list.Query(before_id, MaskOf(states), limit < 0 ? 0 : limit);  // SQL: LIMIT < 0 is no limit
     while (rows.Next()) jobs.push_back(ReadRecord(rows));
     return jobs;
   });

@@ -46,7 +46,7 @@ std::int64_t Rows::Int(int column) const { return sqlite3_column_int64(statement
 double Rows::Real(int column) const { return sqlite3_column_double(statement_, column); }
 
 std::string_view Rows::Bytes(int column) const {
-  // The order matters: the call for the bytes may convert, and only then is the size right.
+  // The order matters: reading the bytes may convert them, and the size is right only afterwards.
   const void* bytes = sqlite3_column_blob(statement_, column);
   if (bytes == nullptr) return {};
   return {static_cast<const char*>(bytes), static_cast<std::size_t>(sqlite3_column_bytes(statement_, column))};
@@ -117,7 +117,7 @@ std::int64_t Database::changes() const { return sqlite3_changes64(handle_); }
 Transaction::Transaction(Database& database) : database_(database) { database_.Execute("BEGIN IMMEDIATE"); }
 
 Transaction::~Transaction() {
-  // After some errors SQLite has rolled back by itself; and when this one fails there is nothing left to do.
+  // After some errors SQLite has already rolled back. If this fails, nothing more can be done.
   if (sqlite3_get_autocommit(database_.handle_) == 0)
     sqlite3_exec(database_.handle_, "ROLLBACK", nullptr, nullptr, nullptr);
 }
@@ -128,7 +128,7 @@ namespace {
 
 void BackUp(Database& database, std::int64_t format) {
   const std::string backup = database.path() + ".format-" + std::to_string(format) + ".backup";
-  std::filesystem::remove(backup);  // of an upgrade that did not get to its end
+  std::filesystem::remove(backup);  // of an interrupted upgrade
   Statement copy = database.Prepare("VACUUM INTO ?");
   copy.Run(std::string_view(backup));
   SyncFile(backup);
@@ -165,7 +165,7 @@ Database OpenFormatted(const std::string& path, int application_id, std::span<co
   const bool is_new = !std::filesystem::exists(path);
   Database database(path, Database::Mode::kCreate);
   CheckOrigin(database, application_id, static_cast<std::int64_t>(formats.size()));
-  database.Execute(("PRAGMA page_size = " + std::to_string(page_size)).c_str());  // of a new file
+  database.Execute(("PRAGMA page_size = " + std::to_string(page_size)).c_str());  // for a new file
   database.Execute("PRAGMA journal_mode = WAL");
   database.Execute("PRAGMA synchronous = FULL");
   database.Execute("PRAGMA journal_size_limit = 67108864");

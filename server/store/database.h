@@ -11,16 +11,16 @@ struct sqlite3_stmt;
 
 namespace fascicle::server {
 
-// A thin layer over the C interface of SQLite: owned handles, typed arguments, and every error thrown as a StoreError
-// that names the file. A connection and its statements belong to one thread at a time.
+// A thin layer over SQLite's C interface: owned handles, typed arguments, and every error thrown as a StoreError that
+// names the file. A connection and its statements belong to one thread at a time.
 
-// Bytes, where std::string_view stands for text.
+// Bytes, as opposed to std::string_view for text.
 struct Blob {
   std::string_view bytes;
 };
 
-// The rows of a running query. Values are valid until the next call of Next; the statement is reset, and its read
-// transaction ended, when this is destroyed.
+// The rows of a running query. Values are valid until the next call of Next. The destructor resets the statement and
+// ends its read transaction.
 class Rows {
  public:
   explicit Rows(sqlite3_stmt* statement) : statement_(statement) {}
@@ -30,7 +30,7 @@ class Rows {
 
   // False after the last row.
   bool Next();
-  // Columns count from 0.
+  // Columns are counted from 0.
   std::int64_t Int(int column) const;
   double Real(int column) const;
   std::string_view Bytes(int column) const;  // of text or a blob; empty for NULL
@@ -46,14 +46,14 @@ class Statement {
   Statement& operator=(Statement&&) = delete;
   ~Statement();
 
-  // Binds the arguments in order and starts the query. Text and blobs are not copied: they must outlive the rows.
+  // Binds the arguments in order and starts the query. Text and blobs are not copied; they must outlive the rows.
   template <class... Args>
   Rows Query(const Args&... args) {
     int index = 0;
     (Bind(++index, args), ...);
     return Rows(statement_);
   }
-  // Runs a statement that gives no rows.
+  // Runs a statement without rows.
   template <class... Args>
   void Run(const Args&... args) {
     Query(args...).Next();
@@ -76,7 +76,7 @@ class Database {
  public:
   enum class Mode { kCreate, kReadWrite, kReadOnly };
 
-  // kReadOnly still opens the file for writing, as a WAL needs it, but refuses to change anything.
+  // kReadOnly still opens the file for writing, as a WAL requires, but refuses all changes.
   Database(const std::string& path, Mode mode);
   Database(Database&& other) noexcept;
   Database& operator=(Database&&) = delete;
@@ -87,7 +87,7 @@ class Database {
   // First value of the first row of a query, as in `PRAGMA user_version`.
   std::int64_t QueryInt(const char* sql);
   Statement Prepare(std::string_view sql);
-  // Rows changed by the last INSERT, UPDATE or DELETE.
+  // Number of rows changed by the last INSERT, UPDATE or DELETE.
   std::int64_t changes() const;
   const std::string& path() const { return path_; }
 
@@ -97,7 +97,7 @@ class Database {
   sqlite3* handle_ = nullptr;
 };
 
-// BEGIN IMMEDIATE ... COMMIT; rolled back when destroyed before Commit.
+// BEGIN IMMEDIATE ... COMMIT; rolled back if destroyed before Commit.
 class Transaction {
  public:
   explicit Transaction(Database& database);
@@ -110,10 +110,10 @@ class Transaction {
   Database& database_;
 };
 
-// Opens a database for writing, creates it when it is not there, and brings it to the newest format: `formats[i]`
-// is the SQL that makes format i + 1 of format i, format 0 being an empty file. Before an upgrade a copy is left in
-// PATH.format-N.backup. Durable: WAL with synchronous FULL. Throws StoreError when the file is of a newer format, or of
-// another application.
+// Opens a database for writing, creates it if it does not exist, and upgrades it to the newest format: `formats[i]` is
+// the SQL that converts format i to format i + 1, where format 0 is an empty file. Before an upgrade a copy is saved as
+// PATH.format-N.backup. Durable: WAL with synchronous FULL. Throws StoreError if the file has a newer format or belongs
+// to another application.
 Database OpenFormatted(const std::string& path, int application_id, std::span<const char* const> formats,
                        int page_size = 4096);
 

@@ -84,7 +84,7 @@ bool IsNetworkFilesystem(std::uint64_t statfs_type) {
       0xFF534D42,  // CIFS
       0xFE534D42,  // SMB 2
       0x564C,      // NCP
-      0x01021997,  // 9p: the host behind it decides what is locked and what is on the disk
+      0x01021997,  // 9p: locks and durability depend on the host behind it
       0x65735546,  // FUSE: sshfs, s3fs, virtiofs and the like; a local one cannot be told apart
       0x00C36400,  // Ceph
       0x5346414F,  // AFS

@@ -6,14 +6,14 @@
 
 namespace fascicle::server {
 
-// What the standard library leaves out about files. Errors are thrown as StoreError with the file's name.
+// File operations that the standard library lacks. Errors are thrown as StoreError with the file's name.
 
-// Waits until the contents of a file are on the disk.
+// Waits until the contents of a file are on disk.
 void SyncFile(const std::string& path);
-// Waits until the names in the folder of `path` are on the disk: needed after creating or renaming a file.
+// Waits until the entries of the folder of `path` are on disk: needed after creating or renaming a file.
 void SyncParent(const std::string& path);
 
-// A file that is written from its start to its end.
+// A file that is written sequentially.
 class FileWriter {
  public:
   explicit FileWriter(const std::string& path);
@@ -21,7 +21,7 @@ class FileWriter {
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
   void Write(const char* bytes, std::size_t size);
-  // Waits until all is on the disk, and closes.
+  // Waits until everything is on disk, and closes.
   void Finish();
 
  private:
@@ -29,10 +29,10 @@ class FileWriter {
   int descriptor_;
 };
 
-// Held by one process at a time; released when destroyed, or by the system when the process ends.
+// A lock held by one process at a time; released by the destructor, or by the system when the process ends.
 class DirectoryLock {
  public:
-  // Throws StoreError when somebody else holds it.
+  // Throws StoreError if another process holds it.
   explicit DirectoryLock(const std::string& directory);
   ~DirectoryLock();
   DirectoryLock(const DirectoryLock&) = delete;
@@ -42,9 +42,10 @@ class DirectoryLock {
   int descriptor_;
 };
 
-// True for the types of statfs(2) whose locks and fsync depend on another machine or program: SQLite is not safe there.
+// Whether locks and fsync of a filesystem type (statfs(2)) depend on another machine or program: SQLite is not safe
+// there.
 bool IsNetworkFilesystem(std::uint64_t statfs_type);
-// Throws StoreError when `directory` is on one of these.
+// Throws StoreError if `directory` is on such a filesystem.
 void CheckLocal(const std::string& directory);
 
 }  // namespace fascicle::server

@@ -11,11 +11,11 @@ namespace fascicle::server {
 namespace {
 
 constexpr int kApplicationId = 0x46534346;  // "FSCF"
-// A chunk of a frame fills 32 pages; larger pages read and write large blobs faster, but cost more for small frames.
+// A chunk of a frame fills 32 pages. Larger pages make large blobs faster, but small frames larger.
 constexpr int kPageSize = 32768;
 
 constexpr std::array<const char*, 1> kFormats = {
-    // Format 1. Frame -1 of `chunks` would be the geometry, were it a frame: it is not, so it has its own table.
+    // Format 1.
     R"(CREATE TABLE frames (
          idx INTEGER PRIMARY KEY,
          time REAL NOT NULL,
@@ -39,7 +39,7 @@ constexpr std::array<const char*, 1> kFormats = {
          bytes BLOB NOT NULL
        ) STRICT;)"};
 
-// Calls put(number, bytes) for each chunk; at least once, so that nothing is something too.
+// Calls put(number, bytes) for each chunk; empty data has one empty chunk.
 template <class Put>
 void ForEachChunk(std::string_view bytes, const Put& put) {
   constexpr auto kSize = static_cast<std::size_t>(FrameStore::kChunkSize);
@@ -93,7 +93,7 @@ FrameDatabase::~FrameDatabase() {
 }
 
 void FrameDatabase::Remove(const std::string& path) {
-  std::error_code ignored;  // what stays is removed when the store is opened the next time
+  std::error_code ignored;  // the file is removed when the store is opened the next time
   for (const char* suffix : {"-wal", "-shm", ""}) std::filesystem::remove(path + suffix, ignored);
 }
 
@@ -165,7 +165,7 @@ void FrameDatabase::InsertFrame(const FrameRecord& frame, std::string_view bytes
 }
 
 void FrameDatabase::DeleteFramesFrom(std::int64_t index) {
-  connections_->delete_frames.Run(index);  // with their chunks
+  connections_->delete_frames.Run(index);  // and their chunks
   connections_->delete_checkpoint.Run(index);
 }
 
@@ -180,7 +180,7 @@ std::optional<std::string> FrameDatabase::GetCheckpoint() {
 std::vector<FrameRecord> FrameDatabase::ListFrames(std::int64_t start, int limit) {
   return connections_->readers.With([&](Reader& reader) {
     std::vector<FrameRecord> frames;
-    Rows rows = reader.frames.Query(start, limit < 0 ? 0 : limit);  // a negative LIMIT has none
+    Rows rows = reader.frames.Query(start, limit < 0 ? 0 : limit);  // SQL: LIMIT < 0 is no limit
     while (rows.Next()) frames.push_back(ReadFrame(rows));
     return frames;
   });

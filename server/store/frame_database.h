@@ -18,7 +18,7 @@ namespace fascicle::server {
 // The frames of one job, in jobs/{id}.db. Thread-safe.
 class FrameDatabase final : public FrameStore {
  public:
-  // `held` lives as long as this: the lock of the directory.
+  // `held`, the lock of the directory, is kept as long as this object lives.
   FrameDatabase(const std::string& path, std::shared_ptr<void> held);
   ~FrameDatabase() override;
 
@@ -31,15 +31,15 @@ class FrameDatabase final : public FrameStore {
   std::int64_t stored_bytes() override { return stored_bytes_; }
   std::optional<std::string> ReadChunk(std::int64_t index, std::int64_t chunk) override;
 
-  // The file goes when this does: its job has been deleted.
+  // Removes the file with this object: its job has been deleted.
   void RemoveWhenClosed() { remove_ = true; }
 
-  // Removes the file of a job and what SQLite keeps beside it.
+  // Removes the file of a job and SQLite's files beside it.
   static void Remove(const std::string& path);
 
  private:
   struct Reader;
-  struct Connections;  // all that has the file open
+  struct Connections;  // everything that has the file open
 
   void InsertFrame(const FrameRecord& frame, std::string_view bytes);
   void DeleteFramesFrom(std::int64_t index);

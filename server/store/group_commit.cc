@@ -11,7 +11,7 @@ void GroupCommit::Run(const std::function<void()>& write) {
   done_.wait(lock, [&] { return own.done || !committing_; });
   if (!own.done) {
     committing_ = true;
-    const std::vector<Entry*> batch = std::exchange(waiting_, {});  // own is among them
+    const std::vector<Entry*> batch = std::exchange(waiting_, {});  // includes the caller's own
     lock.unlock();
     Commit(batch);
     lock.lock();
@@ -32,7 +32,7 @@ void GroupCommit::Commit(const std::vector<Entry*>& batch) {
       batch.front()->error = std::current_exception();
       return;
     }
-    // One that fails must not take the others with it: each for itself.
+    // One failed write must not affect the others: commit each by itself.
     for (Entry* entry : batch) Commit({entry});
   }
 }

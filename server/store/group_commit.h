@@ -11,14 +11,14 @@
 
 namespace fascicle::server {
 
-// Lets concurrent writers share a transaction, and so its fsync. The first to come commits at once; all that come
+// Lets concurrent writers share a transaction and its fsync. The first writer commits at once; those that arrive
 // meanwhile are committed together by one of them. Thread-safe.
 class GroupCommit {
  public:
   explicit GroupCommit(Database& database) : database_(database) {}
 
-  // Runs `write` within a transaction and returns when it is durable. What it throws is thrown here, and nothing of it
-  // is kept. `write` may be run more than once, and only the last run counts.
+  // Runs `write` within a transaction and returns when it is durable. An exception of `write` is rethrown here, and its
+  // changes are rolled back. `write` may run more than once; only the last run counts.
   void Run(const std::function<void()>& write);
 
  private:

@@ -139,7 +139,7 @@ class MemoryStore final : public Store {
     const std::unique_lock lock(mutex_);
     const auto found = jobs_.find(job.id);
     if (found == jobs_.end()) return;
-    JobRecord updated = job;  // what a client has asked for stays as it was
+    JobRecord updated = job;  // the client's request stays as it was
     JobRecord& record = found->second.record;
     updated.request_id = std::move(record.request_id);
     updated.request_digest = std::move(record.request_digest);

@@ -10,13 +10,13 @@
 
 namespace fascicle::server {
 
-// Connections for reading, each used by one thread at a time and kept for the next one. Thread-safe.
+// Read connections, each used by one thread at a time and then reused. Thread-safe.
 template <class Reader>
 class ReaderPool {
  public:
   explicit ReaderPool(std::function<std::unique_ptr<Reader>()> open) : open_(std::move(open)) {}
 
-  // Calls use(reader) and returns its result; a reader whose use has thrown is closed.
+  // Calls use(reader) and returns its result. The reader is closed if `use` throws.
   template <class Use>
   auto With(const Use& use) {
     std::unique_ptr<Reader> reader = Take();

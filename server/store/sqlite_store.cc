@@ -49,7 +49,8 @@ class SqliteStore final : public Store {
 
   bool DeleteJob(std::string_view id) override {
     const std::lock_guard lock(mutex_);
-    // The row goes first: a file without a row is removed at the next start, a row without its file would be a lie.
+    // The row is deleted first: a file without a row is removed at the next start, whereas a row without its file would
+    // be inconsistent.
     if (!jobs_.DeleteJob(id)) return false;
     const auto open = open_frames_.find(std::string(id));
     const std::shared_ptr<FrameDatabase> frames = open == open_frames_.end() ? nullptr : open->second.lock();
@@ -84,7 +85,7 @@ class SqliteStore final : public Store {
  private:
   std::string FramesPath(std::string_view id) const { return directory_ + "/jobs/" + std::string(id) + ".db"; }
 
-  // Files of jobs that are not in the control database: a deletion was interrupted.
+  // Removes files of jobs that are not in the control database, left by interrupted deletions.
   void RemoveOrphans() {
     const std::unordered_set<std::string> ids = jobs_.AllIds();
     std::error_code error;
@@ -99,7 +100,7 @@ class SqliteStore final : public Store {
   const std::shared_ptr<DirectoryLock> lock_;
   ControlDatabase jobs_;
   AssetDirectory assets_;
-  std::mutex mutex_;  // guards open_frames_, and that a job is not deleted while its frames are opened
+  std::mutex mutex_;  // guards open_frames_; no job is deleted while its frames are being opened
   std::unordered_map<std::string, std::weak_ptr<FrameDatabase>> open_frames_;
 };
 

@@ -11,9 +11,9 @@
 
 namespace fascicle::server {
 
-// The store is the only truth of the server: what is in it survives, what is not never happened. It knows bytes and
-// records; it never sees a solver or a wire message. All functions are thread-safe, block on disk, and throw
-// StoreError when the storage fails (disk full, damaged file); everything else is in the return value.
+// The store holds the entire state of the server: only what is stored survives a restart. It contains bytes and
+// records, and knows neither solvers nor wire messages. All functions are thread-safe, block on disk, and throw
+// StoreError if the storage fails (disk full, damaged file); all other outcomes are return values.
 
 class StoreError : public std::exception {
  public:
@@ -41,39 +41,39 @@ inline bool IsFinal(JobState s) {
 struct JobRecord {
   std::string id;              // 26 characters, sortable by creation
   std::string request_id;      // may be empty; unique otherwise
-  std::string request_digest;  // of the request, to tell a repeat from a reuse of the id
+  std::string request_digest;  // of the request, to tell a repetition from a different request with the same id
   std::string scene_name;
   std::string spec;  // serialized job specification, opaque here
   int threads = 1;
   JobState state = JobState::kQueued;
-  std::string failure;  // serialized failure, opaque here; empty when none
-  std::string profile;  // serialized profile, opaque here; empty when none
+  std::string failure;  // serialized failure, opaque here; empty: none
+  std::string profile;  // serialized profile, opaque here; empty: none
   std::int64_t attempt = 0;
   std::int64_t generation = 1;
   std::int64_t create_time_us = 0;  // since the Unix epoch
   std::int64_t start_time_us = 0;   // 0: not yet
   std::int64_t end_time_us = 0;     // 0: not yet
-  double fraction = 0;              // of simulated time, when last written
-  double time = 0;                  // [s] of simulated time, when last written
-  std::int64_t step = 0;            // when last written
-  std::int64_t frame_count = 0;     // when last written; exact once the state is final
-  std::int64_t stored_bytes = 0;    // of frames and geometry, when last written; exact once the state is final
+  double fraction = 0;              // of simulated time, as last stored
+  double time = 0;                  // simulated time, as last stored [s]
+  std::int64_t step = 0;            // as last stored
+  std::int64_t frame_count = 0;     // as last stored; exact once the state is final
+  std::int64_t stored_bytes = 0;    // of frames and geometry, as last stored; exact once the state is final
 };
 
-// Jobs: durable (fsync) before each function returns.
+// Jobs. Changes are durable (fsync) when a function returns.
 class JobStore {
  public:
   virtual ~JobStore() = default;
-  // False, and nothing written, when the request id is taken: `existing` (not null) is then that job.
+  // False, without any change, if the request id is taken; `existing` (not null) is then that job.
   virtual bool CreateJob(const JobRecord& job, JobRecord* existing) = 0;
   virtual std::optional<JobRecord> GetJob(std::string_view id) = 0;
-  // Newest first, without `spec`; ids below `before_id` (empty: from the newest), states in `states` (empty: all).
+  // Newest first, without `spec`: ids below `before_id` (empty: from the newest), states in `states` (empty: all).
   virtual std::vector<JobRecord> ListJobs(int limit, std::string_view before_id,
                                           const std::vector<JobState>& states) = 0;
-  // Writes state, failure, profile, attempt, generation, start and end time, progress and counts of an existing job;
-  // without effect when there is none.
+  // Writes state, failure, profile, attempt, generation, start and end time, progress and counts of a job. Does nothing
+  // if the job does not exist.
   virtual void UpdateJob(const JobRecord& job) = 0;
-  // Removes the job with its frames. False when there is none.
+  // Removes the job with its frames. False if it does not exist.
   virtual bool DeleteJob(std::string_view id) = 0;
 };
 
@@ -85,61 +85,62 @@ struct FrameRecord {
   std::string digest;  // 32 bytes
 };
 
-// Frames of one job, in a file of their own. Writers wait for each other, readers for nobody.
+// The frames of one job, in a file of their own. Writers wait for each other; readers do not wait.
 class FrameStore {
  public:
-  static constexpr std::int64_t kChunkSize = 1 << 20;  // frames and geometry are kept in chunks of this size
+  static constexpr std::int64_t kChunkSize = 1 << 20;  // size of the chunks in which frames and geometry are stored
 
   virtual ~FrameStore() = default;
-  // Replaces the geometry; without effect when it is the same.
+  // Replaces the geometry; does nothing if it is the same.
   virtual void PutGeometry(std::string_view bytes) = 0;
   virtual std::optional<std::string> GetGeometry() = 0;
-  // Appends a frame and, when not empty, replaces the checkpoint, in one transaction. A frame that is already there
-  // with the same digest is left as it is (a restart replays from its checkpoint); with another digest it and all
-  // later frames are replaced, a checkpoint that goes with one of them is removed, and true is returned: the caller
-  // must then change the job's generation. Needs 0 <= index <= frame_count(), else throws std::invalid_argument;
-  // `frame.size` is not looked at, the size of `bytes` is kept.
+  // Appends a frame and, if `checkpoint` is not empty, replaces the checkpoint, in one transaction. If a frame with
+  // this index and digest is already stored, it is left as it is (a restart repeats frames after its checkpoint). If
+  // the digest differs, this frame and all later ones are replaced, a checkpoint that belongs to one of them is
+  // removed, and true is returned. The caller must increment the job's generation before such a call, so that no reader
+  // sees the new frame under the old generation. Throws std::invalid_argument unless 0 <= index <= frame_count().
+  // `frame.size` is ignored; the size of `bytes` is stored.
   virtual bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) = 0;
   virtual std::optional<std::string> GetCheckpoint() = 0;
   // Frames with index >= start, at most `limit`, in order.
   virtual std::vector<FrameRecord> ListFrames(std::int64_t start, int limit) = 0;
-  // Indices 0 .. count - 1 are there.
+  // Frames 0 .. count - 1 are stored.
   virtual std::int64_t frame_count() = 0;
   virtual std::int64_t stored_bytes() = 0;
-  // Chunk number `chunk` of a frame; nothing where there is none.
+  // Chunk number `chunk` of a frame; nothing if it does not exist.
   virtual std::optional<std::string> ReadChunk(std::int64_t index, std::int64_t chunk) = 0;
 };
 
-// Files that scenes need, by digest.
+// Files that scenes need, identified by digest.
 class AssetStore {
  public:
-  // An upload in progress; destroyed without Commit it leaves nothing.
+  // An upload in progress. Without Commit, its destructor removes everything.
   class Upload {
    public:
     virtual ~Upload() = default;
     virtual void Write(std::string_view bytes) = 0;
-    // False, and nothing kept, when size or digest are not as announced, or the digest is not 64 digits 0-9a-f.
+    // False, and nothing stored, if size or digest are not as announced, or if the digest is not 64 digits 0-9a-f.
     virtual bool Commit() = 0;
   };
 
   virtual ~AssetStore() = default;
   virtual bool HasAsset(std::string_view sha256_hex) = 0;
   virtual std::unique_ptr<Upload> BeginUpload(std::string_view sha256_hex, std::int64_t size) = 0;
-  // Throws StoreError when the stored bytes have been damaged.
+  // Throws StoreError if the stored bytes are damaged.
   virtual std::optional<std::string> ReadAsset(std::string_view sha256_hex) = 0;
 };
 
-// All of it. The shared frame store of a job stays usable until it is released, also when the job is deleted.
+// The complete store. The shared frame store of a job stays usable until it is released, even if the job is deleted.
 class Store : public JobStore, public AssetStore {
  public:
-  // Opens (and for a job without frames, creates) the frame store. nullptr when there is no such job.
+  // Opens the frame store, and creates it for a job without frames. Null if there is no such job.
   virtual std::shared_ptr<FrameStore> OpenFrames(std::string_view job_id) = 0;
 };
 
-// In memory, for tests and for `run`; nothing survives it.
+// In memory, for tests and for an EmbeddedServer without a data directory; nothing survives it.
 std::unique_ptr<Store> MakeMemoryStore();
-// In a directory: control.db, jobs/{id}.db, assets/ab/{sha256}. Creates it; throws StoreError when it is in use by
-// another process, on a network filesystem, or written by a newer version.
+// In a directory: control.db, jobs/{id}.db, assets/ab/{sha256}. Creates the directory. Throws StoreError if it is in
+// use by another process, on a network filesystem, or written by a newer version.
 std::unique_ptr<Store> OpenSqliteStore(const std::string& directory);
 
 }  // namespace fascicle::server

@@ -1,4 +1,4 @@
-// The arrows between rooms point one way: who may include whom, and which room may touch which library.
+// Dependencies between rooms have one direction: which room may include which, and which room may use which library.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -21,7 +21,7 @@ struct Include {
   std::string target;
 };
 
-// A room is the folder of a file, and belongs to the first two levels: core/geometry, server/store, proto/rules.
+// The room of a file is the first two levels of its folder: core/geometry, server/store, proto/rules.
 std::string RoomOf(const std::string& path) {
   const std::size_t first = path.find('/');
   if (first == std::string::npos) return "";
@@ -58,11 +58,11 @@ const Arrows& LinkedBy() {
   return arrows;
 }
 
-// The one door through which other programs start a server in their own process.
+// The only interface by which other programs start a server in their own process.
 constexpr const char* kDoor = "server/embedded_server.h";
 constexpr const char* kBehindTheDoor = "fascicle_server_embedded";
 
-// What a room must link to include a header of the project; empty for headers of others.
+// The room or library to link for a header; empty for headers from elsewhere.
 std::string LinkedFor(const std::string& header) {
   if (header == kDoor) return kBehindTheDoor;
   if (std::regex_search(header, std::regex("^(fascicle/v1|google/rpc)/"))) return "proto";
@@ -89,7 +89,7 @@ TEST(IncludeDirection, RoomsIncludeWhatTheyLinkAndLinkWhatTheyInclude) {
   }
 }
 
-// All that comes with a room.
+// The room and everything that it links, directly or not.
 std::set<std::string> Reached(const std::string& room) {
   std::set<std::string> reached;
   std::vector<std::string> open = {room};
@@ -134,7 +134,7 @@ TEST(IncludeDirection, ArrowsPointOneWay) {
   }
 }
 
-// Libraries that only some rooms may see.
+// Libraries that only some rooms may include.
 TEST(IncludeDirection, LibrariesStayInTheirRooms) {
   struct Rule {
     const char* library;

@@ -9,14 +9,14 @@
 
 namespace fascicle {
 
-// What must be reported: a field path, and a part of its message or hint.
+// An expected problem: its field path, and a part of its message or hint.
 struct Expectation {
   std::string path;
   std::string text;
 };
 
-// A folder of tests/bad_input/cases: scene.json, the files it names, and expect.txt with a line `path | text` for each
-// problem that must be among those reported.
+// A folder of tests/bad_input/cases: scene.json, the files it refers to, and expect.txt with a line `path | text` for
+// each problem that must be reported.
 struct BadCase {
   std::string name;
   std::filesystem::path folder;
@@ -29,7 +29,7 @@ void PrintTo(const BadCase& bad, std::ostream* out);
 // All cases, by name.
 std::vector<BadCase> AllCases();
 
-// Files and folders below `folder`, to any depth.
+// All files and folders below `folder`.
 std::set<std::filesystem::path> Listing(const std::filesystem::path& folder);
 
 }  // namespace fascicle

@@ -1,4 +1,4 @@
-// Wrong scene files against what reads them in process: the client's reader, then the server's translation.
+// Wrong scene files, checked in process: by the client's reader, then by the server's translation.
 #include <algorithm>
 #include <fstream>
 
@@ -14,7 +14,7 @@
 namespace fascicle {
 namespace {
 
-// All that is said about a scene file.
+// All problems reported for a scene file.
 Problems ProblemsOf(const std::filesystem::path& file) {
   Problems problems;
   EXPECT_EQ(testing::ReadScene(file, problems), nullptr);
@@ -58,7 +58,7 @@ TEST(BadInputFiles, ASceneThatIsNotThereOrIsAFolder) {
   EXPECT_EQ(problems.count(), 2u);
 }
 
-// Links and sparse files can't be kept in a repository everywhere.
+// Links and sparse files cannot be stored in a repository on every system.
 class GeneratedFiles : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -78,7 +78,7 @@ TEST_F(GeneratedFiles, ALinkOutOfTheFolder) {
 
 TEST_F(GeneratedFiles, AFileOf5Gigabytes) {
   std::ofstream(folder_ / "scene/mesh.msh") << "";
-  std::filesystem::resize_file(folder_ / "scene/mesh.msh", std::uintmax_t{5} << 30);  // sparse: takes no disk
+  std::filesystem::resize_file(folder_ / "scene/mesh.msh", std::uintmax_t{5} << 30);  // sparse: needs no disk space
   EXPECT_TRUE(IsReported(ProblemsOf(folder_ / "scene/scene.json"), {"bodies[0].mesh.file.path", "4 GiB"}));
 }
 

@@ -1,5 +1,5 @@
-// The same wrong scenes against the real programs: exit code 2, every problem printed, nothing left behind, and a
-// server that goes on serving.
+// The same wrong scenes with the real programs: exit code 2, every problem printed, no files left behind, and a server
+// that continues to work.
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -75,7 +75,7 @@ TEST_F(BadInputService, ProgramsRefuseEveryCase) {
     EXPECT_FALSE(fs::exists(scratch_ / "results")) << bad.name;
   }
   ExpectServes();
-  // Whole assets are kept for later jobs; jobs and parts of uploads are not.
+  // Complete assets are kept for later jobs; jobs and incomplete uploads are not.
   for (const fs::path& path : Listing(data_.path())) {
     if (!fs::is_regular_file(path) || path.filename().string().starts_with("control.db")) continue;
     if (path.filename() == "lock" || path.filename().string().ends_with(".lock")) continue;

@@ -8,8 +8,8 @@
 
 namespace fascicle::bench {
 
-// A mesh as a deformable body of Bullet, in float, whose law is the stable neo-Hookean one of [Smith, de Goes & Kim
-// 2018]: P = mu (1 - 1/(I1 + 1)) F + (lambda (J - 1) - 3/4 mu) cof F.
+// A mesh as a deformable body of Bullet, in float, with the stable neo-Hookean law of [Smith, de Goes & Kim 2018]: P =
+// mu (1 - 1/(I1 + 1)) F + (lambda (J - 1) - 3/4 mu) cof F.
 class BulletBox {
  public:
   // mu, lambda [Pa].
@@ -17,7 +17,7 @@ class BulletBox {
   ~BulletBox();
 
   void SetPositions(const NodalVector& x);
-  // Deformation gradients and what follows from them, then forces on nodes: what Bullet does before each step.
+  // Deformation gradients and derived quantities, then nodal forces: what Bullet does before each step.
   void Evaluate();
   // Of the last Evaluate [N].
   NodalVector Forces() const;

@@ -11,20 +11,20 @@
 #include <new>
 #include <type_traits>
 
-// A piece of work in a process of its own, so that its CPU time and its peak of memory are its own too.
+// Runs work in a process of its own, so that its CPU time and peak memory can be measured separately.
 namespace fascicle::bench {
 
 template <class Report>
 struct ChildRun {
   enum class End { kFinished, kOutOfTime, kCrashed };
   End end = End::kCrashed;
-  Report report;        // as far as the child came
-  double cpu = 0;       // of the process, from its start [s]
+  Report report;        // what the child has reported
+  double cpu = 0;       // of the process, since its start [s]
   double peak_rss = 0;  // [bytes]
 };
 
-// Calls work(report), which fills the report as it goes, and ends it after `limit` seconds of wall time (at least 1).
-// To be called while the process has one thread.
+// Calls work(report), which fills in the report as it proceeds, and kills it after `limit` seconds of wall time (at
+// least 1). Call only while the process has one thread.
 template <class Report, class Work>
 ChildRun<Report> RunInChild(unsigned limit, const Work& work) {
   static_assert(std::is_trivially_copyable_v<Report>);

@@ -8,7 +8,7 @@
 
 namespace fascicle::bench {
 
-// CHOLMOD's supernodal L L^T of a CondensedMatrix, with METIS's ordering; one thread where the BLAS has one.
+// CHOLMOD's supernodal L L^T of a CondensedMatrix, with METIS's ordering; single-threaded if the BLAS is.
 class CholmodSolver {
  public:
   // Analyzes; the matrix must outlive the solver.
@@ -17,7 +17,7 @@ class CholmodSolver {
 
   // False when the matrix is not positive definite.
   bool Factor();
-  // After a Factor that was good.
+  // Only after a successful Factor.
   std::vector<double> Solve(const std::vector<double>& right_side);
   // Entries of L, and operations of a factorization.
   double entries() const;

@@ -116,7 +116,7 @@ void CondensedMatrix::AddElements(const FibreDrive& drive, const NodalVector& x,
               AddCofactorTangent(pressure, F, H);
               if (projection > 0) H += projection * (NearestPositive(H) - H);
               const auto G = ShapeGradients<Element>(model_, e, q);
-              // dF/dx of the element: component (i, j) of F changes by G(j, a) with component i of node a.
+              // dF/dx of the element: G(j, a) is the derivative of F_ij with respect to component i of node a.
               Eigen::Matrix<double, 9, 3 * Element::kNodes> dF;
               dF.setZero();
               for (int a = 0; a < Element::kNodes; ++a) {
@@ -164,7 +164,7 @@ void CondensedMatrix::AddPatches() {
   }
 }
 
-// Blocks above the diagonal, or of held nodes, go nowhere.
+// Blocks above the diagonal or of supported nodes are not stored.
 void CondensedMatrix::AddBlock(std::int32_t row_node, std::int32_t column_node, const Mat3& block) {
   if (column_node < 0 || row_node < column_node) return;
   const std::size_t k = PlaceOf(neighbours_[column_node], row_node);

@@ -8,19 +8,18 @@
 
 namespace fascicle::bench {
 
-// The derivative -df/dx of the elastic force on all free nodes as one sparse symmetric matrix, the pressures of the
+// The derivative -df/dx of the elastic force on all free nodes as one sparse symmetric matrix, with the pressures of
 // patches eliminated:
 //   K = A + B^T C^-1 B,   B = V_n dtheta_n/dx,   C = V_n / U''(theta_n),
-// written the obvious way from the laws, element by element. For models whose nodes are free or held in all three
-// components and whose patches are not smoothed (quadratic elements, or no patches at all).
+// assembled element by element from the laws in the simplest way. For models whose nodes are free or supported in all
+// three components, and whose patches are not smoothed (quadratic elements, or no patches).
 class CondensedMatrix {
  public:
   explicit CondensedMatrix(const TetModel& model);
 
   struct Changes {
-    double projection =
-        0;               // part of every point's tangent that the nearest positive semidefinite one replaces, in [0, 1]
-    double inertia = 0;  // times its mass is added to each node's diagonal [1/s^2]
+    double projection = 0;  // fraction of each tangent replaced by its nearest positive semidefinite one
+    double inertia = 0;     // added to each node's diagonal, times its mass [1/s^2]
   };
   // Sets all values at positions x [m].
   void Assemble(const FibreDrive& drive, const NodalVector& x, const Changes& changes, ThreadTeam& team);
@@ -28,7 +27,8 @@ class CondensedMatrix {
   // Norm of the forces of all elements on their nodes at the x of the last Assemble [N].
   double element_force_norm() const { return element_force_norm_; }
 
-  // Free components, three for each free node in the model's order, and back; held ones are left alone.
+  // Free components, three for each free node in the model's order, and the inverse map; supported components are
+  // unchanged.
   std::vector<double> ToComponents(const NodalVector& values) const;
   void AddComponents(const std::vector<double>& components, double part, NodalVector& values) const;
 
@@ -49,14 +49,14 @@ class CondensedMatrix {
 
   const TetModel& model_;
   std::int32_t free_nodes_ = 0;
-  std::vector<std::int32_t> unknown_;                  // of each node, -1: held
-  std::vector<std::vector<std::int32_t>> neighbours_;  // of each free node: free nodes from itself on, ascending
+  std::vector<std::int32_t> unknown_;                  // of each node; -1: supported
+  std::vector<std::vector<std::int32_t>> neighbours_;  // of each free node: itself and its later free neighbours
   std::vector<std::int32_t> column_begin_, rows_;
   std::vector<double> values_;
   ForceWorkspace workspace_;
   double element_force_norm_ = 0;
-  std::vector<std::vector<std::int32_t>> patch_nodes_;  // free nodes that each patch's volume depends on, ascending
-  std::vector<NodalVector> patch_gradients_;            // a row of B
+  std::vector<std::vector<std::int32_t>> patch_nodes_;  // free nodes on which each patch's volume depends, ascending
+  std::vector<NodalVector> patch_gradients_;            // one row of B
 };
 
 }  // namespace fascicle::bench

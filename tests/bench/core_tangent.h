@@ -5,8 +5,8 @@
 
 namespace fascicle::bench {
 
-// What core does for a force and a tangent at one state, behind one name for all benchmarks: the force of explicit
-// steps, and the block-sparse matrix of implicit ones.
+// The core's force and tangent at one state, with one interface for all benchmarks: the force of explicit steps and the
+// block-sparse matrix of implicit steps.
 class CoreTangent {
  public:
   // Both must outlive this.

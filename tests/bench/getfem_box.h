@@ -8,8 +8,8 @@
 
 namespace fascicle::bench {
 
-// A mesh of linear tetrahedra as a model of GetFEM with its finite-strain brick of the law that NeoHookean is,
-// "Compressible_Neo_Hookean_Bonet"; no supports.
+// A mesh of linear tetrahedra as a GetFEM model with the finite-strain brick that corresponds to NeoHookean,
+// "Compressible_Neo_Hookean_Bonet"; without supports.
 class GetfemBox {
  public:
   // mu, lambda [Pa].

@@ -1,4 +1,4 @@
-// In place of a program whose rows all compare with a library that is not installed.
+// Replaces a program if the library that all its rows compare with is not installed.
 #include <cstdio>
 
 int main() { std::printf("left out: %s\n", LEFT_OUT); }

@@ -28,7 +28,7 @@ bool PlainNewton::Equilibrate(double activation, double tolerance) {
   const FibreDrive drive(activations);
   for (int i = 0; i < kMostIterations; ++i) {
     if (!ElasticForce(model_, drive, x_, team_, workspace_, force_).valid) return false;
-    // Element forces of the iteration before: near the end they are the same.
+    // Element forces of the previous iteration, which differ little near convergence.
     if (i > 0 && NormOfFreeForce() <= tolerance * matrix_.element_force_norm()) return true;
     ++iterations_;
     if (!Factor(drive)) return false;
@@ -37,8 +37,8 @@ bool PlainNewton::Equilibrate(double activation, double tolerance) {
   return false;
 }
 
-// With the exact tangent where that is positive definite, or else with one that is projected in part. What an iteration
-// needed the next one tries a quarter of, as core does.
+// With the exact tangent if it is positive definite, otherwise with a partly projected one. The next iteration starts
+// with a quarter of the fraction that this one needed, as the core does.
 bool PlainNewton::Factor(const FibreDrive& drive) {
   projection_ = projection_ > kLeastProjection ? projection_ / 4 : 0;
   for (;;) {
@@ -50,7 +50,7 @@ bool PlainNewton::Factor(const FibreDrive& drive) {
   }
 }
 
-// Goes the largest part of the step that lowers the energy.
+// Takes the largest fraction of the step that lowers the energy.
 bool PlainNewton::Search(const FibreDrive& drive, const std::vector<double>& step) {
   const std::vector<double> force = matrix_.ToComponents(force_);
   double slope = 0;

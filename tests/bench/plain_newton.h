@@ -5,23 +5,23 @@
 
 namespace fascicle::bench {
 
-// A quasi-static run as textbooks have it: load steps of equal size, in each Newton's method on positions alone with
-// the exact tangent, one factorization an iteration, and a step that is halved until the energy falls. One body without
-// loads, supports at rest.
+// A textbook quasi-static run: equal load steps; in each, Newton's method on positions with the exact tangent, one
+// factorization per iteration, and a step that is halved until the energy decreases. One body without loads and with
+// fixed supports.
 class PlainNewton {
  public:
-  // The model must outlive this. Finds the pattern and has it analyzed.
+  // The model must outlive this. Analyzes the sparsity pattern.
   explicit PlainNewton(const TetModel& model);
 
-  // From activation `from` to `to` in so many steps, each until the force on free nodes is below `tolerance` of the
-  // norm of all element forces. False where it does not converge.
+  // Steps from activation `from` to `to` in equal load steps, each until the force on free nodes is below `tolerance`
+  // times the norm of all element forces. False if it does not converge.
   bool Run(double from, double to, int steps, double tolerance);
 
   const NodalVector& positions() const { return x_; }
   // Of the elements on the nodes at the end [N].
   const NodalVector& force() const { return force_; }
   int iterations() const { return iterations_; }
-  // Those that failed among them.
+  // The failed ones among them.
   int factorizations() const { return factorizations_; }
   const CholmodSolver& solver() const { return solver_; }
 
@@ -40,7 +40,7 @@ class PlainNewton {
   NodalVector x_, trial_, force_;
   int iterations_ = 0;
   int factorizations_ = 0;
-  double projection_ = 0;  // part of the last factored matrix's tangents
+  double projection_ = 0;  // projected fraction of the last factored matrix's tangents
 };
 
 }  // namespace fascicle::bench

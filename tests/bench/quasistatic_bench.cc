@@ -1,6 +1,6 @@
-// A quasi-static muscle (reference problem d, activation 0 to 0.3) at growing sizes: time, iterations, memory and
-// growth in one table, each size in a process of its own, beside the figures of FEBio 4.11 for the same grids. A
-// program to see where a solver stands; the row tet_quasistatic_vs_newton_cholmod is measured by tet_static_bench.
+// A quasi-static muscle (reference problem d, activation 0 to 0.3) of increasing size: one table of time, iterations,
+// memory and their growth beside FEBio 4.11's figures for the same grids. Each size runs in a process of its own. A
+// tool for development; tet_static_bench measures the row tet_quasistatic_vs_newton_cholmod.
 #include <getopt.h>
 
 #include <cstdio>
@@ -19,10 +19,10 @@ namespace {
 using namespace fascicle::testing;
 
 constexpr double kActivation = 0.3;
-// Of FEBio's ten-node elements with straight edges (6 x 6 x 20); its finest hexahedra say 25.338 N.
+// FEBio's ten-node elements with straight edges (6 x 6 x 20); its finest mesh of hexahedra gives 25.338 N.
 constexpr double kReferenceForce = 25.499;  // [N]
 
-// FEBio 4.11, three steps, on a machine like the one that the project's bars are for; not in this run.
+// FEBio 4.11, three steps, measured earlier on a comparable machine.
 struct ReferenceRun {
   int components;
   int iterations;
@@ -91,7 +91,7 @@ void PrintReference(const MuscleGrid& grid, const ChildRun<Report>& run) {
   std::printf("\n");
 }
 
-// Prints a row; 0 where there is no time to compare.
+// Prints a row; 0 if there is no time to compare with.
 double MeasureRow(const MuscleGrid& grid, const Options& options, double components_before, double cpu_before) {
   const auto run = RunInChild<Report>(options.limit, [&](Report& report) { RunMuscle(grid, options, report); });
   const Report& report = run.report;

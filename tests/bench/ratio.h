@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-// Comparisons in one run: A and B take turns, and only their ratio within a round counts, since absolute figures move
-// with whatever else the machine does.
+// Comparisons within one run: A and B alternate, and only the ratio of their times within a round counts, because
+// absolute times depend on the load of the machine.
 namespace fascicle::bench {
 
-// CPU seconds of the whole machine and of this process (with the children it has waited for) since their start.
+// CPU time of the whole machine and of this process (including children it has waited for) since their start [s].
 struct CpuTime {
   double machine = 0;  // busy, all cores
   double own = 0;
@@ -69,24 +69,24 @@ Duration DurationOf(const Function& function) {
   return {wall, cpu_now() - cpu};
 }
 
-// How much one call of A or B does: 0.105456 "Mtets" is printed as Mtets/s of each.
+// The amount of work of one call of A or B: 0.105456 "Mtets" is printed as Mtets/s of each.
 struct Amount {
   double count = 0;
   const char* unit = "";
 };
 
-// Rounds of a comparison; fewer only where one takes minutes.
+// Rounds of a comparison; fewer only if one takes minutes.
 inline constexpr int kRounds = 9;
 
-// Runs A and B in turns and prints the medians of their times, a warning when other processes took more than 5 % of the
-// machine meanwhile (then with the ratio of CPU times, which says more of programs of one thread), and the line
+// Runs A and B alternately and prints the medians of their times and the line
 //
 //   ratio NAME VALUE
 //
-// with the median over the rounds of time(B) / time(A): how many times faster A is. Both must do the same amount of
-// work. Each runs once before the first round, so that caches and memory are warm, unless a round takes minutes and
-// there are fewer than kRounds.
-//   rounds  each swaps who goes first
+// with the median over the rounds of time(B) / time(A): how many times faster A is. If other processes took more than 5
+// % of the machine meanwhile, it also prints a warning and the ratio of CPU times, which is more reliable for
+// single-threaded programs. Both must do the same amount of work. Each runs once before the first round to warm up
+// caches and memory, unless a round takes minutes and there are fewer than kRounds.
+//   rounds  the order of A and B alternates from round to round
 template <class FunctionA, class FunctionB>
 double MedianRatio(const std::string& name, int rounds, const FunctionA& a, const FunctionB& b,
                    const Amount& amount = {}) {

@@ -7,17 +7,17 @@
 #include "core/base/instruction_set.h"
 #include "ratio.h"
 
-// What one core can do at best, measured: to say how far below its roofs a loop is [Williams, Waterman & Patterson
-// 2009].
+// The measured peak performance of one core, to compare loops with it: the roofline model [Williams, Waterman &
+// Patterson 2009].
 namespace fascicle::bench {
 
 typedef double Doubles2 __attribute__((vector_size(16)));
 typedef double Doubles4 __attribute__((vector_size(32)));
 typedef double Doubles8 __attribute__((vector_size(64)));
 
-// Rounds of 8 additions and 5 multiplications, about as many of each as a voxel's forces take, that wait for nothing
-// but what the same place made a round ago. All stays in registers.
-//   x  a number for each place; different ones, or compilers make one of them
+// Rounds of 8 additions and 5 multiplications, about the ratio of a voxel's forces. Each depends only on the previous
+// round of the same lane. Everything stays in registers.
+//   x  one number per lane; they must differ, otherwise compilers merge them
 template <class Vector>
 [[gnu::always_inline]] inline void AddAndMultiply(long rounds, double (&x)[13]) {
   Vector places[13];
@@ -42,7 +42,7 @@ inline void AddAndMultiplyBaseline(long rounds, double (&x)[13]) { AddAndMultipl
 }
 #endif
 
-// Additions of doubles in a second, with multiplications among them, by the instructions that kernels run with.
+// Additions of doubles per second, with multiplications among them, with the instruction set of the kernels.
 inline double AdditionsPerSecond() {
   constexpr long kSteps = 1'000'000;
   void (*loop)(long, double(&)[13]) = AddAndMultiplyBaseline;
@@ -60,7 +60,7 @@ inline double AdditionsPerSecond() {
   return best;
 }
 
-// Bytes a second of a = b + 3 c, 24 a number, of vectors far larger than caches [McCalpin 1995, STREAM triad].
+// Bytes per second of a = b + 3 c (24 per number) for vectors far larger than the caches [McCalpin 1995, STREAM triad].
 inline double TriadBytesPerSecond() {
   const std::size_t count = std::size_t{1} << 24;
   std::vector<double> a(count), b(count, 1.0), c(count, 2.0);

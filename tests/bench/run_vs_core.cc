@@ -1,5 +1,5 @@
-// The same scene through the whole service (embedded server, store on disk, stream over loopback, client that reads
-// every frame) and through the core alone with a sink that drops the frames. Ends in `ratio run_vs_core VALUE`: time of
+// The same scene through the whole service (embedded server, store on disk, stream over loopback, a client that reads
+// every frame) and through the core alone with a sink that drops the frames. Prints `ratio run_vs_core VALUE`: time of
 // the core over time of the service.
 #include <cstdio>
 #include <cstdlib>
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr int kThreads = 1;
 constexpr int kRounds = 9;
 
-// The demonstration, shortened to 20 frames of some hundred steps each, and with a bulk modulus that fixes the step.
+// The demonstration, shortened to 20 frames of some hundred steps each; a given bulk modulus fixes the step.
 v1::Scene BenchScene() {
   Problems problems;
   auto package = client::LoadScene(testing::ProjectRoot() / "client/examples/fusiform_isometric.json", problems);
@@ -49,7 +49,7 @@ class NullSink final : public FrameSink {
   Digest last_digest = {};
 };
 
-// Translating the scene is part of a run through the service, so it is part of this one.
+// A run through the service includes translating the scene, so this does too.
 NullSink RunCore(const v1::Scene& scene) {
   Problems problems;
   const auto translated = server::TranslateScene(scene, {}, problems);

@@ -8,9 +8,9 @@
 
 #include "core/tet/model.h"
 
-// What anyone would write first: a loop over linear tetrahedra, one after the other, with fixed-size Eigen matrices:
-// F = Ds Dm^-1, P from the law, [f1 f2 f3] = -V P Dm^-T added to the nodes [Teran 2003, 4.1]. The yardstick of the
-// vectorized loops, in double or float.
+// The straightforward implementation: a loop over linear tetrahedra, one after the other, with fixed-size Eigen
+// matrices: F = Ds Dm^-1, P from the law, [f1 f2 f3] = -V P Dm^-T added to the nodes [Teran 2003, 4.1]. The vectorized
+// loops are compared with it, in double and in float.
 namespace fascicle::bench {
 
 template <class Scalar>
@@ -18,7 +18,7 @@ using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
 template <class Scalar>
 using Matrix3 = Eigen::Matrix<Scalar, 3, 3>;
 
-// The held muscle of core/materials/muscle.h, written out for any scalar.
+// The isometric muscle of core/materials/muscle.h for any scalar.
 template <class ScalarType>
 struct PlainMuscle {
   using Scalar = ScalarType;
@@ -83,7 +83,7 @@ struct PlainMuscle {
   }
 };
 
-// Copies of a model's arrays in another scalar, and the loops. Models of linear elements of one law.
+// A model's arrays in another scalar type, and the loops. For models of linear elements with one law.
 template <class Law>
 class ScalarReference {
  public:
@@ -104,7 +104,7 @@ class ScalarReference {
     }
   }
 
-  // x [m] of all nodes; force [N] gets their size.
+  // x [m] of all nodes; force [N] is resized.
   void Force(const std::vector<Vector>& x, std::vector<Vector>& force) {
     force.assign(nodes_, Vector::Zero());
     if (!patches_.empty()) UpdatePressures(x);
@@ -126,7 +126,7 @@ class ScalarReference {
     Ds << x[c[1]] - x[c[0]], x[c[2]] - x[c[0]], x[c[3]] - x[c[0]];
     return Ds * Dm_inverse_[e];
   }
-  // W U'(W theta), theta the mean of J around each node: see VolumePatches.
+  // W U'(W theta), with theta the mean of J around each node; see VolumePatches.
   void UpdatePressures(const std::vector<Vector>& x) {
     std::vector<double> theta(patches_.size(), 0.0), smooth(patches_.size()), own(patches_.size());
     for (std::size_t e = 0; e < corners_.size(); ++e) {

@@ -1,5 +1,5 @@
-// Frames in and out of the store, and acknowledged submissions by several clients against raw SQLite commits of the
-// same durability (WAL, synchronous FULL, one row and one commit each, one connection).
+// Writing and reading frames of the store, and acknowledged submissions by several clients compared with plain SQLite
+// commits of the same durability (WAL, synchronous FULL, one row and one commit each, one connection).
 #include <sqlite3.h>
 
 #include <atomic>

@@ -1,6 +1,6 @@
-// StreamFrames of a stored job against a raw gRPC stream of the same messages from memory, GetJob against a raw answer,
-// and StreamFrames beside readers that have stopped reading against the same alone. Servers of all kinds live in this
-// process, each with its own connection, and the same client reads from them.
+// StreamFrames of a stored job compared with a plain gRPC stream of the same messages from memory; GetJob with a plain
+// response; and StreamFrames beside stalled readers with the same alone. All servers run in this process, each with its
+// own connection, and the same client reads from them.
 #include <stdlib.h>
 
 #include <chrono>
@@ -138,10 +138,10 @@ void ReadAll(v1::FrameService::Stub& stub, const std::string& name) {
   v1::StreamFramesResponse message;
   std::int64_t bytes = 0;
   while (reader->Read(&message)) bytes += static_cast<std::int64_t>(message.chunk().data().size());
-  if (!reader->Finish().ok() || bytes != kFrames * kFrameSize) throw std::runtime_error("the stream was cut");
+  if (!reader->Finish().ok() || bytes != kFrames * kFrameSize) throw std::runtime_error("the stream was interrupted");
 }
 
-// Readers that take the header of a stream and nothing more, each with a connection of its own, until destroyed.
+// Readers that take the header of a stream and nothing more, each with its own connection, until destroyed.
 class StalledReaders {
  public:
   StalledReaders(int port, const std::string& name) {
@@ -152,9 +152,9 @@ class StalledReaders {
       one.stub = v1::FrameService::NewStub(ChannelTo(port));
       one.stream = one.stub->StreamFrames(&one.context, request);
       v1::StreamFramesResponse header;
-      if (!one.stream->Read(&header)) throw std::runtime_error("the stream was cut");
+      if (!one.stream->Read(&header)) throw std::runtime_error("the stream was interrupted");
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until what fits in between is written
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until the buffers between are full
   }
   ~StalledReaders() {
     for (auto& one : readers_) {
@@ -172,7 +172,8 @@ class StalledReaders {
   std::vector<std::unique_ptr<Reader>> readers_;
 };
 
-// How fast one reads beside stalled readers, over alone. They come and go between the rounds, untimed.
+// The speed of one reader beside stalled readers, relative to alone. The stalled readers start and stop between the
+// rounds, untimed.
 void CompareBesideStalled(v1::FrameService::Stub& stub, int port, const std::string& name) {
   std::vector<double> beside, alone, ratios;
   for (int round = 0; round < bench::kRounds; ++round) {

@@ -1,5 +1,5 @@
 // Speed of the tet method: force evaluations and whole steps on a box of 105,456 tetrahedra with the full muscle law.
-// Comparisons with others stand in tet_force_bench, tet_tangent_bench and tet_solve_bench.
+// Comparisons with other programs are in tet_force_bench, tet_tangent_bench and tet_solve_bench.
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -61,7 +61,7 @@ BENCHMARK(TetForce)
 void TetStep(benchmark::State& state) {
   const auto stepping = static_cast<Stepping>(state.range(0));
   Box box(static_cast<int>(state.range(1)), stepping);
-  // Always the same step, so that the state stays as it is.
+  // Repeats the same step, so that the state does not change.
   const double next_time = 0.9 * box.solver.StableStepAt(box.state);
   TetState next;
   box.EvaluateForce();

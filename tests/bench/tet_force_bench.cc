@@ -1,5 +1,6 @@
-// Forces of linear tetrahedra on boxes of three sizes: over the obvious scalar loop, over Bullet, and two threads over
-// one. Each comparison first checks that both sides compute the same, then prints both figures and `ratio NAME VALUE`.
+// Forces of linear tetrahedra on boxes of three sizes, compared with the straightforward scalar loop and with Bullet,
+// and with two threads compared with one. Each comparison first checks that both sides compute the same, then prints
+// both figures and `ratio NAME VALUE`.
 //   tet_force_bench [PART]    only the rows whose name contains PART
 #include <cstdlib>
 #include <string>
@@ -31,7 +32,7 @@ void CheckAgreement(const std::string& row, double difference, double tolerance)
   std::exit(1);
 }
 
-// The loops of core on a box, one set of scratch for each team.
+// The loops of the core on a box, with scratch memory for each team.
 class CoreForce {
  public:
   CoreForce(const TetBox& box, int threads) : box_(box), team_(threads), x_(box.Bent()) {}
@@ -50,7 +51,7 @@ class CoreForce {
   NodalVector force_;
 };
 
-// The law says in what scalar the reference computes.
+// The law defines the scalar type of the reference.
 template <class Law>
 void CompareWithScalar(const std::string& row, const TetBox& box, const Law& law, double tolerance) {
   CoreForce ours(box, 1);
@@ -72,7 +73,7 @@ void CompareWithScalar(const std::string& row, const TetBox& box, const Law& law
       {calls * box.Megatets(), "Mtets"});
 }
 
-// Full muscle law in double, each element with its own volume.
+// The full muscle law in double; each element has its own volume ratio.
 void CompareWithEigen(const BoxSize& size) {
   const std::string row = std::string("tet_force_vs_eigen") + size.suffix;
   if (!IsWanted(row)) return;
@@ -88,12 +89,12 @@ void CompareFloatWithEigen(const BoxSize& size) {
   CompareWithScalar(row, box, PlainMuscle<float>(kMuscle), 1e-4);
 }
 
-// As the first, with volumes averaged around nodes on both sides.
+// As the first, with volume ratios averaged around nodes on both sides.
 void CompareNodalWithEigen(const BoxSize& size) {
   const std::string row = std::string("tet_force_nodal_vs_eigen") + size.suffix;
   if (!IsWanted(row)) return;
   const TetBox box(size.divisions, Muscle(kMuscle), VolumeForm::kNodal);
-  // What is left of K to each element.
+  // The part of K that remains with each element.
   const auto& laws = std::get<std::vector<Muscle>>(box.model.groups().at(0).laws);
   std::array<double, 8> values = kMuscle;
   values[2] = laws.at(0).VolumeModulus();
@@ -101,7 +102,7 @@ void CompareNodalWithEigen(const BoxSize& size) {
 }
 
 #ifdef FASCICLE_WITH_BULLET
-// What BulletBox says it computes, element by element in double.
+// What BulletBox is documented to compute, element by element in double.
 NodalVector StableNeoHookeanForce(const TetBox& box, double mu, double lambda) {
   struct Law {
     using Scalar = double;
@@ -146,7 +147,7 @@ void CompareLawsWithBullet(const BoxSize& size) {
 void CompareLawsWithBullet(const BoxSize&) {}
 #endif
 
-// Two threads over one, full muscle law; 0 where it is not wanted.
+// Two threads compared with one, full muscle law; 0 if not requested.
 double CompareThreads(const BoxSize& size) {
   const std::string row = std::string("tet_threads_2") + (*size.suffix == '\0' ? "_105k" : size.suffix);
   if (!IsWanted(row)) return 0;

@@ -1,5 +1,5 @@
-// Implicit and quasi-static steps over CHOLMOD, one thread. Each comparison first checks that both sides come to the
-// same answer, then prints both figures and `ratio NAME VALUE`.
+// Implicit and quasi-static steps compared with CHOLMOD, one thread. Each comparison first checks that both sides have
+// the same result, then prints both figures and `ratio NAME VALUE`.
 //   tet_solve_bench [PART] [ROUNDS]    only the rows whose name contains PART; ROUNDS of each muscle
 #include <cstdlib>
 #include <string>
@@ -23,7 +23,7 @@ void CheckAgreement(const std::string& row, const char* what, double difference,
   std::exit(1);
 }
 
-// Displacements: the largest difference over the largest [1].
+// The largest difference of displacements relative to the largest displacement [1].
 double Difference(const NodalVector& a, const NodalVector& b, const NodalVector& from) {
   double difference = 0, largest = 0;
   for (std::size_t n = 0; n < a.size(); ++n) {
@@ -33,7 +33,7 @@ double Difference(const NodalVector& a, const NodalVector& b, const NodalVector&
   return difference / largest;
 }
 
-// CHOLMOD solves for the first Newton step of the very step that core makes, so both are one move of the same body.
+// CHOLMOD solves for the first Newton step of the same time step that the core makes.
 void CompareImplicit(const std::string& row) {
   const Scene scene = FallingBox(21);  // 55,566 tetrahedra, 30,492 free components
   const double dt = *scene.tet.time_step;
@@ -82,7 +82,7 @@ MuscleRun RunCore(const Scene& scene) {
   return {run.state.positions, run.state.iterations};
 }
 
-// Everything counts on both sides: model, pattern, analysis and steps.
+// Both sides include model, sparsity pattern, analysis and steps.
 void CompareMuscle(const std::string& row, const MuscleGrid& grid, int rounds) {
   const Scene scene = IsometricMuscle(grid);
   MuscleRun ours;

@@ -1,6 +1,6 @@
-// Force and tangent of a neo-Hookean box of linear tetrahedra, one thread, over GetFEM's finite-strain brick on the
-// same mesh. Checks that forces and the products of both matrices agree, then prints both figures and `ratio NAME
-// VALUE`.
+// Force and tangent of a neo-Hookean box of linear tetrahedra, one thread, compared with GetFEM's finite-strain brick
+// on the same mesh. Checks that forces and the products of both matrices agree, then prints both figures and `ratio
+// NAME VALUE`.
 //   tet_tangent_bench [PART]    only the rows whose name contains PART
 #include <cstdlib>
 #include <string>

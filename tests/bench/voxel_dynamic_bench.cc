@@ -1,5 +1,5 @@
 // The paper's dynamic release [Zhu, Chen & Kaufman 1998, 6: 219 voxels, 450 nodes, 22 frames in 0.76 s on a 195 MHz
-// R10000]: time per frame of 1/60 s, for bodies of about as many voxels as theirs.
+// R10000]: time per frame of 1/60 s for bodies with about as many voxels.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kFrames = 22;
 
-// A spindle four times as long as it is thick, of at least that many voxels; 0.2 m long.
+// A spindle with at least that many voxels, four times as long as thick; 0.2 m long.
 VoxelGrid Spindle(std::int64_t voxels) {
   for (std::int32_t length = 4;; ++length) {
     const std::int32_t width = length / 3 + 1;
@@ -23,7 +23,7 @@ VoxelGrid Spindle(std::int64_t voxels) {
   }
 }
 
-// Bent by a force at its top and let go.
+// Bent by a force at its top, then released.
 bool Release(std::int64_t voxels, VoxelRotation rotation, int threads) {
   VoxelGrid grid = Spindle(voxels);
   KeepLargestIsland(grid);

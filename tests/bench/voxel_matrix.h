@@ -8,12 +8,12 @@
 
 namespace fascicle::bench {
 
-// K of a mesh of one material, assembled; unknown 3 n + d is component d of node n. With a row order Matrix gives CSR.
+// The assembled K of a mesh of one material; unknown 3 n + d is component d of node n. In row order, Matrix is CSR.
 template <class Matrix>
 Matrix AssembleVoxels(const VoxelMesh& mesh, const VoxelMaterial& material) {
   const BrickMatrix K = BrickStiffness(mesh.spacing(), ModuliOf(material, Dilatation::kFull));
   Matrix matrix(3 * mesh.nodes(), 3 * mesh.nodes());
-  // Columns of a node in each of its rows: of 27 nodes around.
+  // Column indices in each row of a node: of its 27 neighbours.
   matrix.reserve(Eigen::VectorXi::Constant(3 * mesh.nodes(), 81));
   ForVoxels(mesh, [&](std::int32_t, const GridIndex&, const std::array<std::int32_t, 8>& nodes) {
     for (int a = 0; a < 24; ++a) {

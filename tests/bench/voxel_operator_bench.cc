@@ -1,4 +1,4 @@
-// y = K x of 64^3 bricks: without a matrix, and by Eigen's product with the assembled one.
+// y = K x of 64^3 bricks: matrix-free, and by Eigen's product with the assembled matrix.
 #include <cstdio>
 #include <cstdlib>
 
@@ -11,11 +11,11 @@ namespace fascicle::bench {
 namespace {
 
 constexpr std::int32_t kSide = 64;
-// What a voxel takes in double precision: additions as compiled (82 multiplications can be made meanwhile), and its
-// share of a node: three numbers read, three written after they were read.
+// Work per voxel in double precision: additions as compiled (82 multiplications can overlap), and the memory of a node:
+// three numbers read, three read and written.
 constexpr double kAdditions = 145, kBytes = 72;
 
-// Mvoxels/s, the median of some rounds.
+// Mvoxels/s, the median over some rounds.
 template <class S>
 void PrintSpeed(const char* name, const VoxelStiffness& stiffness, int threads) {
   const VoxelMesh& mesh = *stiffness.mesh;

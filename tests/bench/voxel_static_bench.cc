@@ -1,5 +1,5 @@
-// Static solutions of voxels over CHOLMOD (one thread), and beside the figures of ParOSol.
-//   voxel_static_bench [SIDE] [ROUNDS]    a cube of SIDE^3 voxels, and the biceps of 2 mm
+// Static solutions of voxels compared with CHOLMOD (one thread), and beside ParOSol's figures.
+//   voxel_static_bench [SIDE] [ROUNDS]    a cube of SIDE^3 voxels, and the biceps with voxels of 2 mm
 #include <cholmod.h>
 
 #include <cstdio>
@@ -13,7 +13,7 @@
 namespace fascicle::bench {
 namespace {
 
-// A body, clamped at the bottom, whose top is moved.
+// A body clamped at the bottom whose top is displaced.
 struct Body {
   Body(VoxelGrid solid, const VoxelMaterial& m, std::int32_t layers, const Vec3& top)
       : grid(std::move(solid)), material(m), model(grid, {m}, Dilatation::kFull), largest(top.norm()) {
@@ -35,7 +35,7 @@ VoxelGrid FullGrid(std::int32_t side) {
   return grid;
 }
 
-// K of the free components by CHOLMOD's supernodal L L^T with METIS's ordering. Assembled outside of the comparison.
+// K of the free components, solved by CHOLMOD's supernodal L L^T with METIS's ordering. Its assembly is not timed.
 class Direct {
  public:
   explicit Direct(const Body& body) : scale_(body.largest) {
@@ -110,7 +110,7 @@ class Direct {
   std::size_t size() const { return b_.size(); }
   double entries() const { return entries_; }
   double most_bytes() const { return most_bytes_; }
-  // Of the largest displacement.
+  // Relative to the largest displacement.
   double DifferenceTo(const VoxelField<double>& u) const {
     double difference = 0;
     for (std::size_t k = 0; k < x_.size(); ++k) {
@@ -126,12 +126,12 @@ class Direct {
   double scale_, entries_ = 0, most_bytes_ = 0;
 };
 
-// tolerance: of the residual, at which both displacements agree to 1e-6; thin tendons need more of it than a cube.
+// tolerance: of the residual, such that displacements agree to 1e-6; thin tendons need a smaller one than a cube.
 bool Compare(const std::string& name, const Body& body, double tolerance, int rounds) {
   Direct direct(body);
   StaticSolution solution;
   std::size_t bytes = 0;
-  // Everything counts: levels, their stiffness, the coarsest factorization.
+  // Includes levels, their stiffness and the coarsest factorization.
   const auto ours = [&] {
     ThreadTeam team(1);
     VoxelStaticSolver solver(body.model, body.supports, team);
@@ -151,7 +151,7 @@ bool Compare(const std::string& name, const Body& body, double tolerance, int ro
 
 int Main(std::int32_t side, int rounds) {
   bool good = Compare("voxel_static_vs_cholmod", Body(FullGrid(side), {1, 0.3}, 0, Vec3(0, 0, 0.64)), 1e-8, rounds);
-  // Of the levels of the biceps of 1 mm, the finest whose L fits into some GB.
+  // The finest level of the biceps of 1 mm whose L fits into some GB.
   std::optional<VoxelGrid> label = testing::ReadLabel(testing::LabelVolumePath(), 1);
   if (!label) {
     std::printf("voxel_static_vs_cholmod_biceps left out: %s is not there; set FASCICLE_DATA\n",
@@ -169,7 +169,7 @@ int Main(std::int32_t side, int rounds) {
 }  // namespace fascicle::bench
 
 int main(int argc, char** argv) {
-  // L of 40^3 takes 3 GB and minutes, of 64^3 more than most machines have.
+  // L of 40^3 takes 3 GB and minutes; of 64^3, more than most machines have.
   const int side = argc > 1 ? std::atoi(argv[1]) : 32;
   return fascicle::bench::Main(side, argc > 2 ? std::atoi(argv[2]) : 3);
 }

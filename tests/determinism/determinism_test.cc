@@ -10,15 +10,15 @@ namespace {
 
 using namespace fascicle::testing;
 
-// Sanitized programs are ten times slower and more: theirs is a quarter of the time.
+// Sanitized programs are at least ten times slower, so they run a quarter of the time.
 #ifdef FASCICLE_SANITIZED
 constexpr bool kSlow = true;
 #else
 constexpr bool kSlow = false;
 #endif
 
-// A contracting muscle beside a bar that is bent, twisted and loaded; enough elements and nodes for every thread to
-// get a share (`across` hexahedra), and everything a step can do.
+// A contracting muscle beside a bar that is bent, twisted and loaded, with every feature of a step; large enough that
+// every thread has work (`across` hexahedra).
 Scene BusyScene(Stepping stepping, ElementOrder element, int across) {
   Body muscle = MakeBody("muscle",
                          MakeFusiform({.length = 0.1,
@@ -57,7 +57,7 @@ std::vector<Digest> DigestsOf(const std::vector<Frame>& frames) {
 
 class DeterminismTest : public ::testing::TestWithParam<std::tuple<Stepping, ElementOrder>> {
  protected:
-  // Implicit and quadratic steps take longer: they get fewer elements, and explicit ones of the latter less time.
+  // Implicit and quadratic steps take longer: they get fewer elements, and explicit quadratic ones a shorter time.
   static Scene SceneOf() {
     const auto& [stepping, element] = GetParam();
     const bool is_explicit = stepping == Stepping::kExplicit || stepping == Stepping::kMixed;
@@ -81,7 +81,7 @@ TEST_P(DeterminismTest, AnyNumberOfThreads) {
   }
 }
 
-// Restored at random frames, each time with another number of threads and from the checkpoint of a restored run.
+// Restored at random frames, each time with a different number of threads and from the checkpoint of a restored run.
 TEST_P(DeterminismTest, CheckpointAndRestart) {
   const Scene scene = SceneOf();
   const RunResult reference = RunScene(scene, 2);
@@ -102,7 +102,7 @@ TEST_P(DeterminismTest, CheckpointAndRestart) {
   }
 }
 
-// The digest sees every bit of a frame.
+// The digest depends on every bit of a frame.
 TEST(DigestTest, ChangesWithAnyPart) {
   const Frame frame = RunScene(BusyScene(Stepping::kExplicit, ElementOrder::kLinear, 8), 2).frames[1];
   EXPECT_EQ(DigestOf(frame), frame.digest);

@@ -10,7 +10,7 @@ namespace fascicle::server {
 
 constexpr int kJobsPerRound = 2000;  // the first has frames
 
-// Small ones and some of more than one chunk.
+// Small ones, and some of several chunks.
 inline SampleFrame CrashFrame(int job, std::int64_t index) {
   const auto size = static_cast<std::size_t>(index % 7 == 3 ? 1'200'000 : 1'000 + 37 * index);
   return MakeSampleFrame(index, size, static_cast<std::uint64_t>(job) + 1);

@@ -14,12 +14,12 @@
 
 namespace fascicle::server {
 
-// Counts the calls of a store and makes those from one to another fail. Thread-safe.
+// Counts the calls of a store and makes a range of them fail. Thread-safe.
 class Faults {
  public:
   static constexpr int kForEver = std::numeric_limits<int>::max();
 
-  // The calls number first (from 0, counted from now), first + 1, ... up to `count` of them fail.
+  // Calls first, first + 1, ... fail, `count` of them; `first` counts from 0, from now on.
   void FailFrom(int first, int count = kForEver) {
     calls_ = 0;
     count_ = count;
@@ -39,7 +39,7 @@ class Faults {
   std::atomic<int> count_ = kForEver;
 };
 
-// A store that fails when told to; otherwise the store behind it. What fails has no effect.
+// A store that fails on request and otherwise forwards to another one. A failed call has no effect.
 class FailingStore final : public Store {
  public:
   struct Points {

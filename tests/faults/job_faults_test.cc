@@ -1,4 +1,4 @@
-// A store that fails at any point ends at most the job concerned; the server lives on.
+// A store that fails at any point ends at most the job concerned; the server survives.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ using ::testing::StartsWith;
 
 class JobFaultsTest : public ::testing::Test {
  protected:
-  // The next job comes through, whatever has happened to the one before.
+  // The next job succeeds, whatever happened to the previous one.
   void ExpectGoodService(JobManager& manager) {
     store_.faults().reads.Heal();
     store_.faults().job_writes.Heal();
@@ -57,7 +57,7 @@ TEST_F(JobFaultsTest, EveryCallMayFailOnce) {
           try {
             return IsFinal(manager.Get(id)->record.state);
           } catch (const StoreError&) {
-            return false;  // it was the question that failed
+            return false;  // only the query failed
           }
         }));
         faults.Heal();
@@ -82,7 +82,7 @@ TEST_F(JobFaultsTest, WhenNotEvenTheFailureCanBeStoredTheNextProcessGoesOn) {
   std::string id;
   {
     JobManager manager(store_, BoxCodec(), Workers(1));
-    store_.faults().job_writes.FailFrom(3);  // accepted, starting, running, and then no more
+    store_.faults().job_writes.FailFrom(3);  // accepted, starting, running, then failing
     id = manager.Submit(BoxJob(spec_), nullptr).record.id;
     const JobView done = WaitForEnd(manager, id);
     EXPECT_EQ(done.record.state, JobState::kFailed);

@@ -1,5 +1,6 @@
-// Kills a writing process at random times: what the store has acknowledged is there, bit-equal, and the store opens
-// quickly and whole. (The kernel lives on, so this shows the order of commits and acknowledgements, not fsync.)
+// Kills a writing process at random times: everything that the store has acknowledged exists with the same bits, and
+// the store opens quickly and complete. (The kernel survives, so this tests the order of commits and acknowledgements,
+// not fsync.)
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -48,10 +49,10 @@ struct Acknowledged {
   }
 };
 
-// Runs the writer and kills it `delay` after it has reported something; returns all that it has reported.
+// Runs the writer, kills it `delay` after its first report, and returns all its reports.
 std::string RunAndKill(const std::string& directory, int round, std::chrono::microseconds delay) {
   ChildProcess writer({Program("store_crash_writer"), directory, std::to_string(round)});
-  // One round in four is not given the time to open the store: it dies wherever it is then.
+  // One round in four is killed before the store can open, at any point.
   const std::string first = round % 4 == 3 ? ""
                                            : writer.ReadLine() +
                                                  "
@@ -75,7 +76,7 @@ void ExpectFrames(Store& store, int number, std::int64_t acknowledged) {
   const std::shared_ptr<FrameStore> frames = store.OpenFrames(SampleJob(number).id);
   ASSERT_NE(frames, nullptr);
   const std::int64_t count = frames->frame_count();
-  // One more may have been committed and not been reported any more.
+  // One more may have been committed without being reported.
   EXPECT_GE(count, acknowledged);
   EXPECT_LE(count, acknowledged + 1);
   const std::vector<FrameRecord> records = frames->ListFrames(0, 1 << 20);
@@ -118,7 +119,7 @@ TEST(StoreCrash, NothingAcknowledgedIsLost) {
   }
   EXPECT_LT(slowest_opening, 2.0);
 
-  // Later rounds have not touched what earlier ones have left.
+  // Later rounds have not changed what earlier ones left.
   const std::unique_ptr<Store> store = OpenSqliteStore(directory.path());
   const std::vector<JobRecord> jobs = store->ListJobs(1 << 20, "", {});
   std::set<std::string> ids;

@@ -2,7 +2,7 @@
 //
 //   store_crash_writer DIRECTORY ROUND
 //
-// "J number" for a job, "F number index" for a frame of a job; see store_samples.h for what they hold.
+// "J number" for a job, "F number index" for a frame of a job; store_samples.h defines their contents.
 #include <unistd.h>
 
 #include <cstdlib>
@@ -17,7 +17,7 @@ namespace fascicle::server {
 namespace {
 
 void Report(const std::string& line) {
-  // Short enough to be written whole or not at all.
+  // Short enough to be written atomically.
   if (write(STDOUT_FILENO, line.data(), line.size()) != static_cast<ssize_t>(line.size())) std::abort();
 }
 

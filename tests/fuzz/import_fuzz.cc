@@ -1,5 +1,5 @@
-// Any bytes at all as a FEBio model: the first picks the options. What comes of it is a scene whose files a server
-// would take, or problems.
+// Any bytes as a FEBio model; the first byte selects the options. The result is a scene whose files a server would
+// accept, or problems.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

@@ -1,4 +1,4 @@
-// import_fuzz_corpus FOLDER: writes the models of the importer's tests, as import_fuzz takes them.
+// import_fuzz_corpus FOLDER: writes the models of the importer's tests as inputs of import_fuzz.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,5 @@
-// Any bytes at all as a mesh file: the first picks the format. What is read must be consistent and survive the checks.
+// Any bytes as a mesh file; the first byte selects the format. What is read must be consistent and pass through the
+// checks.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -32,7 +33,7 @@ void ReadAnything(std::string_view data) {
   MeshFile file;
   file.name = kNames[static_cast<unsigned char>(data[0]) % std::size(kNames)];
   file.bytes = data.substr(1);
-  // TetGen's two files follow each other, parted by a zero.
+  // TetGen's two files, separated by a zero.
   if (const std::size_t cut = file.bytes.find('\0'); file.name == "m.node" && cut != std::string_view::npos) {
     file.element_bytes = file.bytes.substr(cut + 1);
     file.bytes = file.bytes.substr(0, cut);

@@ -1,4 +1,4 @@
-// mesh_fuzz_corpus FOLDER: writes the small files of the readers' tests, as mesh_fuzz takes them.
+// mesh_fuzz_corpus FOLDER: writes the small files of the readers' tests as inputs of mesh_fuzz.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

@@ -1,5 +1,5 @@
-// Any bytes at all as a scene file: read, then translated. Start it with the scenes of tests/bad_input and
-// client/examples as its corpus.
+// Any bytes as a scene file: read, then translated. Start it with the scenes of tests/bad_input and client/examples as
+// its corpus.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto scene = fascicle::client::ParseScene(std::string(reinterpret_cast<const char*>(data), size), problems);
   FASCICLE_CHECK(scene.has_value() == problems.empty(), "a scene or problems");
   if (!scene) return 0;
-  // Small enough for thousands of runs a second, large enough for every shape.
+  // Small enough for thousands of runs per second, large enough for every shape.
   fascicle::server::TranslateLimits limits;
   limits.max_elements = 2000;
   limits.max_frame_bytes = 1'000'000;

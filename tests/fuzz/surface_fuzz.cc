@@ -1,4 +1,4 @@
-// Any bytes at all as a surface file: the first picks the format. What is read must survive the repair.
+// Any bytes as a surface file; the first byte selects the format. What is read must pass through the repair.
 #include <cstddef>
 #include <cstdint>
 #include <optional>

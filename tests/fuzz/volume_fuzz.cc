@@ -1,4 +1,5 @@
-// Any bytes at all as an image: the first picks the format. An image or problems, and none that a small limit forbids.
+// Any bytes as an image; the first byte selects the format. The result is an image within a small limit of size, or
+// problems.
 #include <cstddef>
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,5 @@
-// The battery's checks must find a broken law. Each law here is broken in one place, as such mistakes are made; the
-// check that is meant for it must report it, and those that have nothing to do with it must not.
+// The battery's checks must find broken laws. Each law here has one typical mistake; the check for it must report it,
+// and the checks unrelated to it must not.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct WrongSign : NeoHookean {
   }
 };
 
-// P = K dU/dJ on top of U = K/2 (ln J)^2: K counted twice, as a paper prints it.
+// P = K dU/dJ with U = K/2 (ln J)^2: K counted twice, as printed in a paper.
 struct BulkCountedTwice : Muscle {
   BulkCountedTwice() : Muscle(kMuscle) {}
   Mat3 Stress(const Mat3& F, const FibreState& fibre) const {
@@ -50,7 +50,7 @@ struct WrongFibreDerivative : Muscle {
   }
 };
 
-// The derivative of F^-T forgotten in the tangent.
+// The derivative of F^-T is missing in the tangent.
 struct TangentWithoutGeometricTerm : NeoHookean {
   TangentWithoutGeometricTerm() : NeoHookean(kYoungPoisson) {}
   Mat9 Tangent(const Mat3& F, const FibreState& fibre) const {
@@ -62,7 +62,7 @@ struct TangentWithoutGeometricTerm : NeoHookean {
   }
 };
 
-// dR/dF forgotten: the rotation held fixed.
+// dR/dF is missing: the rotation is treated as constant.
 struct TangentWithFrozenRotation : CorotatedLinear {
   TangentWithFrozenRotation() : CorotatedLinear(kYoungPoisson) {}
   Mat9 Tangent(const Mat3& F, const FibreState&) const {
@@ -71,7 +71,7 @@ struct TangentWithFrozenRotation : CorotatedLinear {
   }
 };
 
-// Curvature of the fibre energy forgotten.
+// The curvature of the fibre energy is missing.
 struct TangentWithoutFibreCurvature : Muscle {
   TangentWithoutFibreCurvature() : Muscle(kMuscle) {}
   Mat9 Tangent(const Mat3& F, const FibreState& fibre) const {
@@ -115,7 +115,7 @@ struct NotObjective : NeoHookean {
   }
 };
 
-// Adds a function of C_11: objective, but the material x axis is singled out.
+// Adds a function of C_11: objective, but the material x axis is distinguished.
 struct NotIsotropic : NeoHookean {
   NotIsotropic() : NeoHookean(kYoungPoisson) {}
   double Energy(const Mat3& F, const FibreState& fibre) const {
@@ -129,7 +129,7 @@ struct NotIsotropic : NeoHookean {
   }
 };
 
-// The constant pressure that keeps the undeformed body free of stress forgotten: W + mu (J - 1).
+// The constant pressure that makes the rest state stress-free is missing: W + mu (J - 1).
 struct StressAtRest : NeoHookean {
   StressAtRest() : NeoHookean(kYoungPoisson) {}
   double Energy(const Mat3& F, const FibreState& fibre) const {
@@ -140,7 +140,7 @@ struct StressAtRest : NeoHookean {
   }
 };
 
-// The constant of integration of the energy forgotten: W + mu.
+// The constant of integration of the energy is missing: W + mu.
 struct EnergyAtRest : NeoHookean {
   EnergyAtRest() : NeoHookean(kYoungPoisson) {}
   double Energy(const Mat3& F, const FibreState& fibre) const { return NeoHookean::Energy(F, fibre) + ShearModulus(); }
@@ -152,7 +152,7 @@ struct WrongModulus : Muscle {
   double ShearModulus() const { return 0.5 * Muscle::ShearModulus(); }
 };
 
-// Reads its volume term as k (ln J)^2 instead of k/2 (ln J)^2.
+// Takes its volume term as k (ln J)^2 instead of k/2 (ln J)^2.
 struct WrongVolumeModulus : NeoHookean {
   WrongVolumeModulus() : NeoHookean(kYoungPoisson) {}
   double VolumeModulus() const { return 0.5 * NeoHookean::VolumeModulus(); }

@@ -1,4 +1,4 @@
-// Every law of the list, with its default and with other parameters, against the checks of law_checks.h.
+// Every law of the list, with default and other parameters, against the checks of law_checks.h.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -22,7 +22,7 @@ constexpr int kParameterSets = 4;
 constexpr std::array kActivations = {0.0, 0.3, 1.0};
 constexpr double kMaxVelocity = 8;  // [1/s]
 
-// Values for what has no default.
+// Values of parameters without a default.
 double Given(std::string_view parameter) {
   if (parameter == "young_modulus") return 2e5;
   if (parameter == "c1") return 3e4;
@@ -45,20 +45,20 @@ std::vector<double> ParameterValues(const LawInfo& law, int set) {
   }
   // Fibres slack at rest, as in [Teran 2003]: the passive curve starts at stretch one.
   if (set == 1 && std::string_view(law.name) == "muscle") values[4] = 1;
-  // Fibres whose pull depends on their speed.
+  // Fibres whose stress depends on their rate.
   if (set == 3 && std::string_view(law.name) == "muscle") values[8] = kMaxVelocity;
-  // An active stress of the order of the matrix, where the default is none.
+  // An active stress of the order of the matrix if the default is zero.
   for (std::size_t i = 0; set > 0 && i < values.size(); ++i) {
     if (std::string_view(law.parameters[i].name) == "active_stress") values[i] = 2e4 * set;
   }
-  // A low bulk modulus, beside which no term of the matrix or the fibres is small.
+  // A low bulk modulus, so that no term of the matrix or the fibres is negligible.
   for (std::size_t i = 0; set == 2 && i < values.size(); ++i) {
     if (std::string_view(law.parameters[i].name) == "bulk_modulus") values[i] = 10 * values[0];
   }
   return values;
 }
 
-// Isochoric fibre stretches at which a curve changes its formula.
+// Isochoric fibre stretches at which a curve has a kink.
 std::vector<double> Kinks(std::string_view law, const std::vector<double>& values) {
   std::vector<double> kinks;
   if (law == "muscle") {
@@ -111,8 +111,8 @@ class LawBattery : public testing::TestWithParam<Case> {
         material_);
   }
 
-  // Away from kinks, with a fibre that shortens or lengthens: from standstill to faster than it can pull, for fibres
-  // that heed it.
+  // Away from kinks, for fibres that depend on the rate: from standstill to faster than the largest speed of
+  // shortening, and lengthening.
   laws::Sample Draw(laws::Sampler& sampler, int index, double activation) const {
     for (;;) {
       laws::Sample sample = sampler.Draw(index, activation);
@@ -130,7 +130,7 @@ class LawBattery : public testing::TestWithParam<Case> {
 
   bool IsLinear() const { return std::string_view(GetParam().law->name) == "linear_elastic"; }
 
-  // Laws in ln J have a volume term to split off, and are not finite where J <= 0.
+  // Laws with ln J have a separable volume term, and are not finite where J <= 0.
   bool HasLogarithm() const {
     const std::string_view name = GetParam().law->name;
     return name != "linear_elastic" && name != "st_venant_kirchhoff" && name != "corotated_linear";
@@ -157,7 +157,7 @@ TEST_P(LawBattery, ObjectiveUnderRotation) {
   const double worst = Worst(
       [](const auto& law, const auto& s, auto& sampler) { return laws::ObjectivityError(law, s, sampler.Rotation()); });
   if (IsLinear()) {
-    // Small strain is not objective by nature; SmallStrain below holds for it instead.
+    // Small strain is not objective; SmallStrain below tests its counterpart.
     EXPECT_GT(worst, 0.1);
   } else {
     EXPECT_LE(worst, kExactTolerance);
@@ -166,7 +166,7 @@ TEST_P(LawBattery, ObjectiveUnderRotation) {
 
 TEST_P(LawBattery, KnowsNoDirectionButTheFibre) {
   if (IsLinear()) {
-    // Both sides must turn for a small-strain law: W(Q^T F Q) = W(F).
+    // For a small-strain law both sides rotate: W(Q^T F Q) = W(F).
     EXPECT_LE(Worst([](const auto& law, const auto& s, auto& sampler) {
                 const Mat3 Q = sampler.Rotation();
                 const double W = law.Energy(s.F, s.fibre);
@@ -217,8 +217,8 @@ TEST_P(LawBattery, SmallStrainModuliAreThoseStated) {
   }
 }
 
-// P(I + t H) = C : t H + O(t^2), C Hooke's law with the stated moduli: with t halved the error falls fourfold. For the
-// linear law it is zero at every t. Fibres are slack: they lie across while the volume grows.
+// P(I + t H) = C : t H + O(t^2) with Hooke's C of the stated moduli: halving t divides the error by four. For the
+// linear law it is zero at every t. Fibres are slack: they are perpendicular to the growth of volume.
 TEST_P(LawBattery, SmallStrain) {
   std::visit(
       [&](const auto& law) {

@@ -10,8 +10,8 @@
 
 #include "core/materials/constitutive_model.h"
 
-// What every law must satisfy, as functions that return the largest relative error: usable on the laws of the list and
-// on laws that are broken on purpose.
+// Properties of every law as functions that return the largest relative error; usable for the laws of the list and for
+// laws that are broken on purpose.
 namespace fascicle::laws {
 
 struct Sample {
@@ -82,8 +82,8 @@ class Sampler {
   std::mt19937 random_;
 };
 
-// Whether a difference stencil around the sample may cross one of `kinks` of the isochoric fibre stretch: there the
-// curves are checked by themselves (fibre_curves_test.cc).
+// Whether a difference stencil around the sample may cross one of `kinks` of the isochoric fibre stretch;
+// fibre_curves_test.cc checks the curves there.
 inline bool NearKink(const Sample& s, std::span<const double> kinks) {
   const Vec3 a = s.F * s.fibre.direction;
   const double J_third = std::cbrt(s.F.determinant());
@@ -154,8 +154,8 @@ double ObjectivityError(const Law& law, const Sample& s, const Mat3& Q) {
   return std::max(energy, stress);
 }
 
-// W(F Q; Q^T a0) = W(F; a0), and likewise P(F Q; Q^T a0) = P(F; a0) Q: the fibre is the only direction a law knows. An
-// isotropic law gets a fibre that does not turn along, so that it must ignore it.
+// W(F Q; Q^T a0) = W(F; a0), and likewise P(F Q; Q^T a0) = P(F; a0) Q: the fibre is the only distinguished direction.
+// An isotropic law gets a fibre that does not rotate, so that it must ignore it.
 template <class Law>
 double SymmetryError(const Law& law, const Sample& s, const Mat3& Q) {
   const double W = law.Energy(s.F, s.fibre);
@@ -167,8 +167,8 @@ double SymmetryError(const Law& law, const Sample& s, const Mat3& Q) {
   return std::max(energy, stress);
 }
 
-// W - W' = (k - k')/2 (ln J)^2 for the same law with another coefficient k' of its volume term, and the first and
-// second derivatives of that; each relative to the larger of the law's own and the shear modulus.
+// W - W' = (k - k')/2 (ln J)^2 for the same law with another coefficient k' of its volume term, and its first and
+// second derivatives; each relative to the larger of the law's own and the shear modulus.
 template <class Law>
 double VolumeSplitError(const Law& law, const Sample& s, double other_modulus) {
   const Law other = law.WithVolumeModulus(other_modulus);
@@ -199,9 +199,8 @@ double RestError(const Law& law, const Vec3& direction) {
   return std::max(law.Stress(F, fibre).norm(), std::abs(law.Energy(F, fibre))) / ModulusOf(law);
 }
 
-// dP/dF at rest against Hooke's law with the moduli that the law states, shape and volume each relative to its own.
-// Along a coordinate axis the fibre stretch is 1 without a rounding error, so that fibres which pull from 1 on are
-// slack.
+// dP/dF at rest against Hooke's law with the law's stated moduli, deviatoric and volumetric part each relative to its
+// own. Along a coordinate axis the fibre stretch is 1 without round-off, so that fibres which pull above 1 are slack.
 template <class Law>
 double ModuliError(const Law& law, int axis) {
   const Mat9 tangent = law.Tangent(Mat3::Identity(), {Vec3::Unit(axis), 0});
@@ -219,7 +218,7 @@ double ModuliError(const Law& law, int axis) {
     spin(i, j) = 1;
     spin(j, i) = -1;
     const double mu = law.ShearModulus();
-    // The tangents' entries are of the order of the bulk modulus, so are their rounding errors.
+    // The entries of the tangents are of the order of the bulk modulus, and so are their rounding errors.
     const double scale = std::max(2 * mu, 1e-6 * std::abs(law.BulkModulus()));
     error = std::max({error, (respond(shear) - 2 * mu * shear).norm() / scale,
                       (respond(stretch) - 2 * mu * stretch).norm() / scale, respond(spin).norm() / scale});

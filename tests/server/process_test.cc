@@ -1,4 +1,4 @@
-// The real program as a child process: its command line, its signals, and what survives a kill.
+// The real program as a child process: command line, signals, and what survives a kill.
 #include <atomic>
 #include <random>
 #include <string>
@@ -65,7 +65,7 @@ TEST(CommandLine, SignalsStopIt) {
 
 class ProcessTest : public ::testing::Test {
  protected:
-  // Starts a server on the data of this test, on the same port each time.
+  // Starts a server on this test's data, on the same port each time.
   void Start() {
     process_ = std::make_unique<ServerProcess>(
         std::vector<std::string>{"--listen", address_, "--data", data_.path(), "--checkpoint", "0.05"});
@@ -140,7 +140,7 @@ TEST_F(ProcessTest, KilledInMidJobItGoesOnAndNoWatcherNotices) {
     const auto begin = std::chrono::steady_clock::now();
     Start();
     EXPECT_LT(std::chrono::steady_clock::now() - begin, 2s) << "ready again";
-    // What any client had received is there, bit for bit.
+    // Every frame that a client has received still exists, with the same bits.
     Received again;
     client::WatchOptions stored;
     stored.follow = false;
@@ -222,7 +222,7 @@ TEST_F(ProcessTest, DrainsWithOpenStreamsAndTheClientsResume) {
 TEST_F(ProcessTest, ASecondSignalEndsItAtOnce) {
   Start();
   Stubs stubs(address_);
-  // A reader that stands still keeps the first phase of stopping busy for seconds.
+  // A stalled reader keeps the first phase of stopping busy for seconds.
   const std::string name = stubs.Submit(LargeFrames(12));
   ASSERT_TRUE(stubs.AwaitState(name, v1::Job::STATE_SUCCEEDED));
   grpc::ClientContext context;
@@ -234,8 +234,8 @@ TEST_F(ProcessTest, ASecondSignalEndsItAtOnce) {
   EXPECT_EQ(process_->Wait(1s), 1);
 }
 
-// [SERVICE.md, slow consumers]: at most 8 MiB for each reader that stands still, and the others don't feel them.
-// How much they slow the others is in tests/bench (stream_beside_stalled).
+// [SERVICE.md, slow consumers]: at most 8 MiB for each stalled reader, without effect on others. tests/bench
+// (stream_beside_stalled) measures how much they slow down others.
 TEST_F(ProcessTest, ReadersThatStandStillCostLittleAndHoldUpNobody) {
   Start();
   Stubs stubs(address_);
@@ -268,7 +268,7 @@ TEST_F(ProcessTest, ReadersThatStandStillCostLittleAndHoldUpNobody) {
   EXPECT_LE(process_->ResidentBytes() - before, kStalled * (std::int64_t{8} << 20));
 #endif
   for (int i = 0; i < 5; ++i) read_all();
-  // And a job runs as ever.
+  // Another job runs as usual.
   const std::string other = stubs.Submit(SwingingBox(0.1, 0.01));
   EXPECT_TRUE(stubs.AwaitState(other, v1::Job::STATE_SUCCEEDED));
   for (auto& one : stalled) {

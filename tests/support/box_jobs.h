@@ -18,7 +18,7 @@
 #include "server/jobs/job_manager.h"
 #include "tests/support/eventually.h"
 
-// Jobs small enough for tests, with real simulations behind them: an elastic box, held at one end, under gravity.
+// Small jobs with real simulations: an elastic box under gravity, fixed at one end.
 namespace fascicle::server {
 
 // The specification of such a job; its bytes are JobRecord::spec.
@@ -26,13 +26,13 @@ struct BoxSpec {
   double duration = 0.4;               // [s]
   double frame_interval = 0.02;        // [s]
   double time_step = 1e-4;             // [s]
-  double gravity = 1;                  // [m/s^2] at the end; grows from 0
-  double crush = 0;                    // [m] that the other end is moved against the wall; more than 0.2 m is too much
+  double gravity = 1;                  // [m/s^2] at the end; increases from 0
+  double crush = 0;                    // [m] of the other end towards the fixed one; fails beyond 0.2 m
   std::int64_t cannot_be_decoded = 0;  // a number of this size, so that the bytes hold no padding
 };
 static_assert(std::is_trivially_copyable_v<BoxSpec> && sizeof(BoxSpec) == 6 * 8);
 
-inline BoxSpec Longest() { return {.duration = 1000, .frame_interval = 0.01}; }  // minutes: only to be stopped
+inline BoxSpec Longest() { return {.duration = 1000, .frame_interval = 0.01}; }  // takes minutes: only to be stopped
 inline BoxSpec Collapsing() { return {.crush = 0.4}; }                           // fails after some frames
 
 inline std::string Serialize(const BoxSpec& spec) {
@@ -75,7 +75,7 @@ inline std::string EncodeFrame(const Frame& frame) {
   return bytes;
 }
 
-// A line for each stage: its name and calls, those of earlier runs first.
+// One line per stage: its name and calls, those of earlier runs first.
 inline std::string EncodeProfile(const RunProfile& profile) {
   std::string text = profile.earlier;
   for (const Profile* thread : {&profile.working, &profile.storing}) {
@@ -84,7 +84,7 @@ inline std::string EncodeProfile(const RunProfile& profile) {
   return text;
 }
 
-// Plain bytes. What a test wants to happen besides, it puts around these functions.
+// Plain bytes. A test that needs more wraps these functions.
 inline JobCodec BoxCodec() {
   JobCodec codec;
   codec.decode_scene = [](const std::string& bytes, AssetStore&, Profile*) {
@@ -126,7 +126,7 @@ inline bool WaitForFrames(JobManager& manager, const std::string& id, std::int64
   return Eventually([&] { return manager.Get(id)->frame_count >= count; });
 }
 
-// The digests of a run by the core alone.
+// The digests of a run with the core alone.
 inline std::vector<std::string> DigestsByCore(const BoxSpec& spec) {
   struct Sink final : FrameSink {
     std::vector<std::string> digests;

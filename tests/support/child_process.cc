@@ -51,7 +51,7 @@ ChildProcess::~ChildProcess() {
 std::string ChildProcess::ReadLine(std::chrono::milliseconds timeout) {
   const auto deadline = steady_clock::now() + timeout;
   for (;;) {
-    const bool ended = Wait(std::chrono::milliseconds(0)).has_value();  // asked first: then nothing more is written
+    const bool ended = Wait(std::chrono::milliseconds(0)).has_value();  // asked first: nothing is written afterwards
     const std::string text = Output();
     const std::size_t end = text.find('\n', read_);
     if (end != std::string::npos || ended) {

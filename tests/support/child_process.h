@@ -14,14 +14,14 @@
 
 namespace fascicle::testing {
 
-// What a program left behind.
+// The result of a program.
 struct Finished {
   int exit_code = -1;  // negative: the signal that ended it
   std::string out;
   std::string err;
 };
 
-// A program that runs beside the test, and ends with it at the latest. Not thread-safe.
+// A program that runs beside the test and is killed with it at the latest. Not thread-safe.
 class ChildProcess {
  public:
   // `environment` is added to this process's own; an empty value removes a variable.
@@ -30,18 +30,18 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  // The next line of its stdout; empty at the end, or when none comes within `timeout`.
+  // The next line of its stdout; empty at the end, or if none arrives within `timeout`.
   std::string ReadLine(std::chrono::milliseconds timeout = std::chrono::seconds(30));
   void Signal(int signal) const;
-  // The exit code, or the signal that ended it, negative; nothing when it still runs after `timeout`.
+  // The exit code, or minus the signal that ended it; nothing if it still runs after `timeout`.
   std::optional<int> Wait(std::chrono::milliseconds timeout);
-  // Waits for its end; `out` is what ReadLine has not returned.
+  // Waits for its end; `out` is the output that ReadLine has not returned.
   Finished Wait();
 
-  // All that it has written until now.
+  // Everything written so far.
   std::string Output() const { return ReadFile(output_ / "out"); }
   std::string ErrorOutput() const { return ReadFile(output_ / "err"); }
-  // Memory of the process that is in RAM and not of files [byte].
+  // Resident memory of the process without files [byte].
   std::int64_t ResidentBytes() const;
 
  private:

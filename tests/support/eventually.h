@@ -7,7 +7,7 @@
 
 namespace fascicle::testing {
 
-// Waits until `condition` holds; false when it does not within `timeout`.
+// Waits until `condition` holds; false if it does not within `timeout`.
 inline bool Eventually(const std::function<bool()>& condition,
                        std::chrono::milliseconds timeout = std::chrono::seconds(30)) {
   const auto deadline = std::chrono::steady_clock::now() + timeout;

@@ -14,7 +14,7 @@
 
 #include "core/geometry/shapes.h"
 
-// Writes models as FEBio reads them, version 3.0 and 4.0, for tests: of the reference problems among others.
+// Writes FEBio models of versions 3.0 and 4.0 for tests, among others the reference problems.
 namespace fascicle::testing {
 
 using Point = std::array<double, 3>;
@@ -146,7 +146,7 @@ inline FebMesh Box(const Vec3& size, const std::array<int, 3>& divisions) {
   return mesh;
 }
 
-// The mesh of a result with every node.
+// The mesh of a result with all its nodes.
 inline FebMesh MeshOf(const nlohmann::json& field) {
   FebMesh mesh;
   mesh.type = field.at("element_type");
@@ -157,7 +157,7 @@ inline FebMesh MeshOf(const nlohmann::json& field) {
   return mesh;
 }
 
-// The corner facets of tetrahedra of which all corners are `inside`, with the middles of their edges for ten nodes.
+// Corner facets of tetrahedra with all corners `inside`, with mid-edge nodes for ten-node elements.
 inline std::vector<std::vector<int>> Facets(const FebMesh& mesh, const std::function<bool(const Point&)>& inside) {
   constexpr int kSides[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
   constexpr int kMiddle[4][4] = {{-1, 4, 6, 7}, {4, -1, 5, 8}, {6, 5, -1, 9}, {7, 8, 9, -1}};
@@ -178,7 +178,7 @@ inline std::vector<std::vector<int>> Facets(const FebMesh& mesh, const std::func
   return facets;
 }
 
-// The parts of problem d's law that FEBio has names for: the fibres of its muscle material in a Mooney-Rivlin matrix.
+// The parts of problem d's law that FEBio provides: the fibres of its muscle material in a Mooney-Rivlin matrix.
 inline std::string MuscleOf(const nlohmann::json& material) {
   const auto value = [&](const char* key) { return Text(material.at(key).get<double>()); };
   return "      <k>" + value("k") + "</k>\n      <solid type=\"Mooney-Rivlin\"><c1>" + value("c1") + "</c1><c2>" +

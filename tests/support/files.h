@@ -7,7 +7,7 @@
 // Files of tests. Thread-safe.
 namespace fascicle::testing {
 
-// An empty folder, removed in the end with all that is in it.
+// An empty folder, removed at the end with its contents.
 class TemporaryFolder {
  public:
   TemporaryFolder();
@@ -16,7 +16,7 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  // The path of something in the folder.
+  // The path of an entry of the folder.
   std::string operator/(const std::string& name) const { return (path_ / name).string(); }
   // Writes a file in the folder, and returns its path.
   std::string Write(const std::string& name, const std::string& bytes) const;
@@ -25,7 +25,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-// All bytes of a file; none when it can't be read.
+// All bytes of a file; none if it cannot be read.
 std::string ReadFile(const std::filesystem::path& path);
 void WriteFile(const std::filesystem::path& path, const std::string& bytes);
 

@@ -7,8 +7,8 @@
 #include "tests/support/reference_problems.h"
 #include "tests/support/static_run.h"
 
-// Problem d of the reference problems, a muscle held at both ends, in the sizes that are measured: quadratic elements
-// with curved edges on n x n x lengthwise hexahedra of six tetrahedra each.
+// Reference problem d, a muscle with fixed ends, in the sizes of the benchmarks: quadratic elements with curved edges
+// on n x n x lengthwise hexahedra of six tetrahedra each.
 namespace fascicle::testing {
 
 struct MuscleGrid {
@@ -22,7 +22,7 @@ struct MuscleGrid {
 inline constexpr std::array<MuscleGrid, 9> kMuscleGrids = {
     {{2, 8}, {3, 12}, {4, 20}, {6, 20}, {8, 28}, {10, 38}, {12, 54}, {16, 64}, {20, 80}}};
 
-// The one whose free components are nearest to a number, by ratio.
+// The one whose number of free components is closest to a given one, by ratio.
 inline MuscleGrid NearestMuscleGrid(double components) {
   MuscleGrid best = kMuscleGrids[0];
   const auto distance = [&](const MuscleGrid& grid) { return std::abs(std::log(grid.FreeComponents() / components)); };

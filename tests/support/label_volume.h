@@ -14,7 +14,7 @@ namespace fascicle::testing {
 
 inline std::string LabelVolumePath() { return DataFolder() / "voxel_labels/upper_arm_biceps1_triceps2_1mm.mha"; }
 
-// The voxels of one label of an image; none when it can't be read.
+// The voxels of one label of an image; none if it cannot be read.
 inline std::optional<VoxelGrid> ReadLabel(const std::string& path, std::uint8_t label) {
   Problems problems;
   const std::optional<VolumeImage> image = ReadVolumeFiles({path}, {}, problems);

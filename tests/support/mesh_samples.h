@@ -11,12 +11,12 @@
 namespace fascicle {
 
 // One small mesh as a file of every format: the unit corner tetrahedron and its mirror image above the slanted side,
-// physical tags 10 and 20, a triangle in x = 0 tagged 7.
+// physical tags 10 and 20, a triangle in x = 0 with tag 7.
 struct MeshSample {
   std::string name;
   std::string bytes;
   std::string element_bytes;
-  // Cuts of `bytes` (for TetGen of `element_bytes`) up to this length lose data.
+  // `bytes` (for TetGen `element_bytes`) truncated to at most this length has lost data.
   std::size_t incomplete_below = 0;
 };
 
@@ -244,7 +244,7 @@ inline std::vector<MeshSample> MeshSamples() {
     return MeshSample{std::move(name), bytes, "", bytes.size() - spare};
   };
   // The end of the last line may be missing, and the end of the XML after raw data. A legacy VTK file is complete
-  // without its attributes, too: it may be cut before the section `last`.
+  // without its attributes, so it may be truncated before the section `last`.
   const auto legacy = [](std::string name, std::string bytes, const std::string& last) {
     return MeshSample{std::move(name), bytes, "", bytes.rfind(last) - 1};
   };

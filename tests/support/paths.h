@@ -11,7 +11,7 @@ namespace fascicle::testing {
 std::filesystem::path ProjectRoot();
 // A program of this build: "fascicle", "fascicled" or one of a test's own.
 std::string Program(const std::string& name);
-// Real anatomy: $FASCICLE_DATA, or ../shared/data beside the project. May be absent: a test that needs it then skips.
+// Real anatomy: $FASCICLE_DATA, or ../shared/data beside the project. If it is absent, tests that need it are skipped.
 std::filesystem::path DataFolder();
 // Results of other solvers: $FASCICLE_REFERENCE, or ../shared/reference beside the project. May be absent likewise.
 std::filesystem::path ReferenceFolder();

@@ -11,7 +11,7 @@
 
 namespace fascicle::testing {
 
-// One of the FEBio reference results; none when it is not there.
+// One of the FEBio reference results; none if it is absent.
 inline std::optional<nlohmann::json> ReadReference(const std::string& name) {
   std::ifstream file(ReferenceFolder() / "febio" / (name + ".json"));
   if (!file) return std::nullopt;

@@ -8,12 +8,12 @@
 #include "core/tet/element.h"
 #include "tests/support/tet_scenes.h"
 
-// The bodies of the FEBio reference problems, loaded and held as there over one second.
+// The bodies of the FEBio reference problems, with the same loads and supports over one second.
 namespace fascicle::testing {
 
 inline MooneyRivlin NearlyIncompressible() { return MooneyRivlin(std::array{0.03e6, 0.01e6, 80e6}); }  // K/mu = 1000
 
-// 10 x 1 x 1 mm, clamped at x = 0, with a dead downward force on the other end [N]; 10 n x n x n hexahedra.
+// 10 x 1 x 1 mm, clamped at x = 0, with a downward dead load on the other end [N]; 10 n x n x n hexahedra.
 inline Body CantileverBody(int n, const Material& law, double force, const Curve& scale) {
   Body body = BoxBody(Vec3(0.01, 0.001, 0.001), {10 * n, n, n}, law);
   body.constraints = {Fix(kX0)};
@@ -30,7 +30,7 @@ inline Body LockingCantilever(int n, const Curve& scale) {
 }
 inline const Vec3 kCantileverTip(0.01, 0.0005, 0.0005);
 
-// Problem b: a cube of 10 mm, its top pulled up along `lift` [m]; n^3 hexahedra.
+// Problem b: a cube of 10 mm whose top is displaced upwards along `lift` [m]; n^3 hexahedra.
 inline Body ClampedCube(int n, const Material& law, const Curve& lift) {
   Body body = BoxBody(Vec3::Constant(0.01), {n, n, n}, law);
   Constraint top = Fix(kZ1);
@@ -39,7 +39,7 @@ inline Body ClampedCube(int n, const Material& law, const Curve& lift) {
   return body;
 }
 
-// Puts a mesh of parameter space in place, the middles of all its edges too.
+// Maps a mesh from parameter space, including its mid-edge nodes.
 template <class Map>
 void Place(const Map& place, TetMesh& mesh) {
   std::set<std::array<std::int32_t, 2>> edges;
@@ -53,7 +53,8 @@ void Place(const Map& place, TetMesh& mesh) {
   for (Vec3& X : mesh.nodes) X = place(X);
 }
 
-// Problem d: a muscle of rounded-square section fixed at both ends, n x n x lengthwise hexahedra of parameter space.
+// Problem d: a muscle with rounded-square cross-section and fixed ends, n x n x lengthwise hexahedra of parameter
+// space.
 inline Body ReferenceMuscle(int n, int lengthwise, const Curve& activation) {
   const auto place = [](const Vec3& p) {
     const double radius = 0.006 + 0.008 * std::pow(std::sin(std::numbers::pi * p[2]), 2);  // [m]

@@ -17,7 +17,7 @@ std::string Bytes(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-// A spindle along z of 100 mm, made by hand, whose frames shorten and bulge it by a known map.
+// A handmade spindle along z of 100 mm, whose frames shorten and bulge it by a known map.
 class SampleJob {
  public:
   static constexpr int kAcross = 6, kAlong = 16;
@@ -61,7 +61,7 @@ class SampleJob {
     return geometry;
   }
 
-  // x and y grow by 1 + 0.03 index sin^2(pi z / L); the stress is 1000 z / L, one value for each tetrahedron.
+  // x and y grow by 1 + 0.03 index sin^2(pi z / L); the stress is 1000 z / L, constant per tetrahedron.
   v1::Frame frame(int index) const {
     v1::Frame frame;
     frame.set_index(index);
@@ -97,7 +97,7 @@ class SampleJob {
   void AddNode(double u, double v, double w) {
     const double s = std::sin(std::numbers::pi * w);
     const double radius = 0.006 + 0.010 * s * s;
-    // A square onto a disc.
+    // Maps a square to a disc.
     positions_.insert(positions_.end(),
                       {radius * u * std::sqrt(1 - v * v / 2), radius * v * std::sqrt(1 - u * u / 2), kLength * w});
   }

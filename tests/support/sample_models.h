@@ -4,7 +4,7 @@
 // Models for tests, and the first corpus of the importer's fuzz target.
 namespace fascicle::testing {
 
-// Two tetrahedra on a common side, held below and pulled above.
+// Two tetrahedra with a common side, fixed below and pulled above.
 inline constexpr const char* kSmallModel = R"(<?xml version="1.0" encoding="ISO-8859-1"?>
 <febio_spec version="4.0">
   <Module type="solid"/>
@@ -73,7 +73,7 @@ inline constexpr const char* kSmallModel = R"(<?xml version="1.0" encoding="ISO-
 </febio_spec>
 )";
 
-// A muscle of hexahedra, a wedge and a tendon of tetrahedra, with most of what a model can say.
+// A muscle of hexahedra, a wedge and a tendon of tetrahedra, with most features of a model.
 inline constexpr const char* kRichModel = R"(<febio_spec version="3.0">
   <Module type="solid"><units>mm-N-s</units></Module>
   <Control>

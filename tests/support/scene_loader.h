@@ -11,8 +11,8 @@
 
 namespace fascicle::testing {
 
-// A scene file and the files that it names as the core has them, read by the client and translated by the server;
-// nullptr with what is wrong in `problems`.
+// Reads a scene file and its files with the client, and translates them with the server; nullptr and `problems` if that
+// fails.
 inline std::shared_ptr<const Scene> ReadScene(const std::filesystem::path& file, Problems& problems) {
   const auto package = client::LoadScene(file.string(), problems);
   if (!package) return nullptr;

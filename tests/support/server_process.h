@@ -16,7 +16,7 @@ class ServerProcess : public ChildProcess {
  public:
   explicit ServerProcess(std::vector<std::string> options) : ChildProcess(Command(std::move(options))) {}
 
-  // HOST:PORT once the server is ready; empty when it has ended or takes longer than `timeout`. To be called once.
+  // HOST:PORT once the server is ready; empty if it has ended or takes longer than `timeout`. Call once.
   std::string AwaitAddress(std::chrono::seconds timeout = std::chrono::seconds(20)) {
     const std::string prefix = "listening on ";
     const std::string line = ReadLine(timeout);

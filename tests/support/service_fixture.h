@@ -23,7 +23,7 @@ namespace fascicle::service_test {
 
 using namespace std::chrono_literals;
 
-// A box of soft tissue that hangs from its upper end and swings: about a hundred tetrahedra.
+// A box of soft tissue that hangs from its upper end and vibrates: about a hundred tetrahedra.
 //   duration, frame_interval  [s]
 inline v1::Scene SwingingBox(double duration, double frame_interval) {
   v1::Scene scene;
@@ -48,10 +48,10 @@ inline v1::Scene SwingingBox(double duration, double frame_interval) {
   return scene;
 }
 
-// A job of `frames` + 1 frames that takes some seconds: ten thousand steps a second or so.
+// A job of `frames` + 1 frames that takes some seconds, at about ten thousand steps per second.
 inline v1::Scene LongScene(int frames = 90'000) { return SwingingBox(0.01 * frames, 0.01); }
 
-// A job of small frames, a few milliseconds of work each: 3,000 tetrahedra.
+// A job of small frames that take a few milliseconds each: 3,000 tetrahedra.
 inline v1::Scene LargeSteps(int frames) {
   v1::Scene scene = SwingingBox(0.01 * (frames - 1), 0.01);
   for (const int i : {0, 1, 2})
@@ -59,7 +59,7 @@ inline v1::Scene LargeSteps(int frames) {
   return scene;
 }
 
-// A job whose frames have more than one chunk: 2.6 MiB each, of 48,000 tetrahedra.
+// A job whose frames have several chunks: 2.6 MiB each, of 48,000 tetrahedra.
 inline v1::Scene LargeFrames(int frames) {
   v1::Scene scene = SwingingBox(0.004 * (frames - 1), 0.004);
   for (int i = 0; i < 3; ++i) scene.mutable_bodies(0)->mutable_mesh()->mutable_box()->set_divisions(i, 20);
@@ -78,7 +78,7 @@ std::optional<Detail> DetailOf(const grpc::Status& status) {
   return std::nullopt;
 }
 
-// Code and ErrorInfo of an error, such as "5 NOT_FOUND". Every error must have an ErrorInfo of the domain `fascicle`.
+// Code and ErrorInfo of an error, such as "5 NOT_FOUND". Every error must have an ErrorInfo with the domain `fascicle`.
 inline std::string ReasonOf(const grpc::Status& status) {
   const auto info = DetailOf<google::rpc::ErrorInfo>(status);
   if (!info) return std::to_string(status.error_code()) + " without ErrorInfo: " + status.error_message();
@@ -88,9 +88,9 @@ inline std::string ReasonOf(const grpc::Status& status) {
 
 using testing::Eventually;
 
-// The stubs of a server, without any help of the client library. Connected when they are there: gRPC 1.51 asks for the
-// errno of connect() after other calls that may have changed it (grpc/grpc pull request 35064), so that one attempt in
-// thousands fails with an error that has nothing to do with it, and a call that was made meanwhile fails with it.
+// The stubs of a server, without the client library. They connect on construction: gRPC 1.51 reads the errno of
+// connect() after other calls that may have changed it (grpc/grpc pull request 35064), so that one attempt in thousands
+// fails with an unrelated error, together with any call made meanwhile.
 struct Stubs {
   explicit Stubs(const std::string& address, const grpc::ChannelArguments& arguments = {})
       : channel(grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), Own(arguments))),
@@ -164,8 +164,8 @@ struct Stubs {
   std::unique_ptr<v1::ServerService::Stub> server;
 };
 
-// All that one StreamFrames call delivered. Checks the contract of the stream on the way: a header first, chunks in
-// order with right offsets and checksums, heartbeats between frames only, nothing after the end.
+// Everything delivered by one StreamFrames call. Checks the contract of the stream: a header first, chunks in order
+// with correct offsets and checksums, heartbeats between frames only, nothing after the end.
 struct StreamRecord {
   std::optional<v1::StreamFramesResponse::Header> header;
   std::vector<v1::Frame> frames;
@@ -174,7 +174,7 @@ struct StreamRecord {
   grpc::Status status;
 };
 
-// Reads a stream; `keep_going` is asked after each complete frame, false cuts the stream there.
+// Reads a stream; `keep_going` is called after each complete frame and stops the stream if it returns false.
 inline StreamRecord ReadStream(Stubs& stubs, const v1::StreamFramesRequest& request,
                                const std::function<bool(const StreamRecord&)>& keep_going = {}) {
   StreamRecord record;

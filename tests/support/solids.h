@@ -10,7 +10,7 @@
 
 namespace fascicle::testing {
 
-// The surface of a cube around the origin, in n x n squares a side; `round`: of the ball in it.
+// The surface of a cube around the origin with n x n squares per side; `round`: of the ball in it.
 inline TriangleMesh CubeSurface(double side, int n, bool round = false) {
   TriangleMesh surface;
   std::map<std::array<int, 3>, std::int32_t> numbers;
@@ -54,7 +54,7 @@ inline TriangleMesh CubeSurface(double side, int n, bool round = false) {
 
 inline constexpr double kSide = 0.1;  // [m]
 
-// Neo-Hookean, in a box of 2.2 sides of n^3 cells around it; its surface in so many squares a side.
+// A neo-Hookean body in a box of 2.2 sides of n^3 cells around it; `squares` per side of its surface.
 inline EulerianBody MakeSolid(int n, bool round, double young, double poisson, ThreadTeam& team, int squares = 12) {
   EulerianGrid grid;
   grid.cells = {n, n, n};
@@ -67,14 +67,14 @@ inline EulerianBody MakeSolid(int n, bool round, double young, double poisson, T
   return body;
 }
 
-// Material above a height rests.
+// Fixes the material above a height.
 inline void HoldAbove(double z, EulerianBody& body) {
   body.supports = 1;
   body.support_of = [z](const Vec3& X) { return X[2] > z ? 0 : -1; };
   body.support_velocity = [](int, const Vec3&, double, double) { return Vec3(Vec3::Zero()); };
 }
 
-// The volume on the surface, relative to that at rest.
+// The volume inside of the surface, relative to that at rest.
 inline double VolumeRatio(const EulerianBody& body, const EulerianState& state) {
   return SurfaceVolume(body, state) / body.shape.volume();
 }

@@ -6,11 +6,11 @@
 
 namespace fascicle::testing {
 
-// A scene stepped by hand, one thread.
+// Steps a scene directly, with one thread.
 struct SteppedRun {
   explicit SteppedRun(Scene s) : scene(std::move(s)), model(scene), solver(model, team), state(solver.InitialState()) {}
 
-  // As many steps to `end` [s] as it takes; false on a problem.
+  // Steps to `end` [s]; false on a problem.
   bool To(double end) {
     while (state.time < end) {
       if (solver.Advance(state, end).problem != StepProblem::kNone) return false;
@@ -23,7 +23,7 @@ struct SteppedRun {
     for (const Vec3& m : model.inverse_mass()) free += (m.array() != 0).count();
     return free;
   }
-  // The node at rest position X, of mesh or edges.
+  // The mesh or mid-edge node at rest position X.
   std::size_t NodeAt(const Vec3& X) const {
     std::size_t best = 0;
     for (std::size_t n = 0; n < model.nodes(); ++n) {
@@ -43,10 +43,10 @@ struct SteppedRun {
   TetState state;
 };
 
-// Rises from 0 at 0 s to `value` at 1 s.
+// Increases from 0 at 0 s to `value` at 1 s.
 inline Curve Ramp(double value) { return {{0, 1}, {0, value}, Curve::Interpolation::kLinear}; }
 
-// A scene of one second without inertia, all settings but the element as they are by default.
+// A scene of one second without inertia; all settings except the element have their defaults.
 inline Scene StaticScene(Body body, ElementOrder element) {
   Scene scene = OneBody(std::move(body));
   scene.output.frame_interval = 1;

@@ -10,7 +10,7 @@
 
 namespace fascicle::server {
 
-// `size` bytes that follow from `seed` and look like nothing in particular.
+// `size` pseudo-random bytes that depend on `seed`.
 inline std::string SampleBytes(std::uint64_t seed, std::size_t size) {
   std::string bytes(size, '\0');
   std::uint64_t state = seed * 0x9E3779B97F4A7C15u + 1;
@@ -23,7 +23,7 @@ inline std::string SampleBytes(std::uint64_t seed, std::size_t size) {
   return bytes;
 }
 
-// A job whose every field says something.
+// A job with a value in every field.
 inline JobRecord SampleJob(int number) {
   const std::string digits = std::to_string(1000000 + number);
   JobRecord job;
@@ -36,7 +36,7 @@ inline JobRecord SampleJob(int number) {
   return job;
 }
 
-// Frame `index` of a run: `size` bytes, with a digest that stands for them.
+// Frame `index` of a run: `size` bytes and a digest.
 struct SampleFrame {
   FrameRecord record;
   std::string bytes;
@@ -55,7 +55,7 @@ inline bool operator==(const FrameRecord& a, const FrameRecord& b) {
   return a.index == b.index && a.time == b.time && a.step == b.step && a.size == b.size && a.digest == b.digest;
 }
 
-// All chunks of a frame, one after the other.
+// All chunks of a frame, concatenated.
 inline std::string ReadFrame(FrameStore& frames, std::int64_t index) {
   std::string bytes;
   for (std::int64_t chunk = 0;; ++chunk) {
@@ -65,7 +65,7 @@ inline std::string ReadFrame(FrameStore& frames, std::int64_t index) {
   }
 }
 
-// The message of the StoreError that `action` throws; empty when it throws none.
+// The message of the StoreError that `action` throws; empty if it throws none.
 inline std::string ErrorOf(const std::function<void()>& action) {
   try {
     action();

@@ -7,12 +7,12 @@
 #include "core/tet/forces.h"
 #include "tests/support/tet_scenes.h"
 
-// The boxes of linear tetrahedra whose speed and memory are measured, in several sizes.
+// The boxes of linear tetrahedra for measurements of speed and memory, in several sizes.
 namespace fascicle::testing {
 
 struct BoxSize {
   int divisions;
-  // What the row's name ends in; nothing at the size that PERFORMANCE names.
+  // The suffix of the row's name; empty for the standard size.
   const char* suffix;
 };
 inline constexpr std::array<BoxSize, 3> kBoxSizes = {{{12, "_10k"}, {26, ""}, {55, "_1M"}}};  // 6 n^3 tetrahedra
@@ -22,7 +22,7 @@ inline constexpr std::array<double, 8> kMuscle = {5e2, 5e2, 1e7, 3e5, 1.2, 0.05,
 inline constexpr std::array<double, 2> kNeoHookean = {1e4, 0.3};
 inline constexpr double kActivation = 0.5;
 
-// A cube of 0.1 m with fibres askew, made ready for stepping.
+// A cube of 0.1 m with oblique fibres, ready for stepping.
 struct TetBox {
   TetBox(int divisions, const Material& material, VolumeForm volume, Precision precision = Precision::kDouble)
       : scene(MakeScene(divisions, material, volume, precision)) {}
@@ -44,8 +44,8 @@ struct TetBox {
     return scene;
   }
 
-  // Stretched along x by 1 at one end to 1.3 at the other, narrower across and sheared: fibres from 0.85 to 1.08 of
-  // their optimal length, so that all branches of their curves but the outermost are taken.
+  // Stretched along x by 1 at one end to 1.3 at the other, narrower and sheared: fibre stretches from 0.85 to 1.08 of
+  // the optimal one, so that all branches of the curves except the outermost are evaluated.
   NodalVector Bent() const {
     NodalVector x = model.rest_positions();
     for (Vec3& p : x) p = Vec3(p[0] + 1.5 * p[0] * p[0], 0.95 * p[1] + 0.05 * p[0], 0.93 * p[2]);
@@ -58,8 +58,8 @@ struct TetBox {
   const TetModel model{scene};
 };
 
-// A neo-Hookean box held at one side that falls under its weight, in steps of 10 ms of backward Euler to a force of
-// 1e-4.
+// A neo-Hookean box fixed at one side that falls under its weight, in backward Euler steps of 10 ms to a residual force
+// of 1e-4.
 inline Scene FallingBox(int divisions) {
   Body body = BoxBody(Vec3::Constant(0.1), {divisions, divisions, divisions}, NeoHookean(kNeoHookean));
   body.constraints = {Fix(kX0)};

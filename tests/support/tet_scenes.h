@@ -68,7 +68,7 @@ inline Scene OneBody(Body body) {
   return scene;
 }
 
-// Nodes moved at random by at most `amplitude` along each axis.
+// Nodes displaced at random by at most `amplitude` along each axis.
 inline NodalVector Shaken(const NodalVector& X, double amplitude, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> shift(-amplitude, amplitude);
@@ -95,7 +95,7 @@ inline double LargestDifference(const NodalVector& a, const NodalVector& b) {
   return largest;
 }
 
-// Keeps everything that a run puts out.
+// Keeps all output of a run.
 class CollectingSink : public FrameSink {
  public:
   bool PutFrame(Frame frame, std::string checkpoint) override {

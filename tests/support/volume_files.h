@@ -8,10 +8,10 @@
 
 #include "core/geometry/voxel_grid.h"
 
-// Image files by hand, byte by byte.
+// Handmade image files, byte by byte.
 namespace fascicle::testing {
 
-// The bytes of a number, the most significant first or last.
+// The bytes of a number, most significant first or last.
 template <class T>
 std::string Number(T value, bool big_endian = false) {
   std::string bytes(sizeof(T), '\0');
@@ -20,7 +20,7 @@ std::string Number(T value, bool big_endian = false) {
   return bytes;
 }
 
-// A NIfTI-1 file of shorts by hand: an sform of `spacing` [mm] along the axes, and values slope * number + intercept.
+// A handmade NIfTI-1 file of shorts: an sform of `spacing` [mm] along the axes, and values slope * number + intercept.
 inline std::string NiftiBytes(const GridIndex& size, const std::string& voxels, bool big_endian, float slope = 0,
                               float intercept = 0) {
   std::string header(352, '\0');
@@ -41,7 +41,7 @@ inline std::string NiftiBytes(const GridIndex& size, const std::string& voxels, 
   return header + voxels;
 }
 
-// What a slice of a DICOM series says [mm].
+// The fields of a slice of a DICOM series [mm].
 struct DicomSlice {
   int rows = 3, columns = 4;
   std::string series = "1.2.3.4";
@@ -49,10 +49,10 @@ struct DicomSlice {
   std::string orientation = "1\\0\\0\\0\\1\\0";
   std::string spacing = "1.5\\0.75";  // between rows, between columns
   std::string slope = "1", intercept = "0";
-  int first_value = 0;  // of the first voxel; the others count on
+  int first_value = 0;  // of the first voxel; the others increase by one
 };
 
-// A file of DICOM's explicit little-endian syntax with that slice.
+// A file of that slice in DICOM's explicit little-endian syntax.
 inline std::string DicomBytes(const DicomSlice& slice) {
   const auto element = [](int group, int number, const std::string& type, std::string value) {
     if (value.size() % 2 == 1) value += type == "UI" ? '\0' : ' ';

@@ -17,7 +17,7 @@ inline VoxelGrid BoxGrid(const GridIndex& size, const Vec3& spacing) {
   return grid;
 }
 
-// Two materials with holes, and factors between 0.5 and 1.5: all by chance, the same every time.
+// Two materials with holes, and factors between 0.5 and 1.5, pseudo-random with a fixed seed.
 inline VoxelGrid SpongeGrid(const GridIndex& size, const Vec3& spacing) {
   VoxelGrid grid = MakeVoxelGrid(size, spacing);
   grid.stiffness.resize(grid.voxels());

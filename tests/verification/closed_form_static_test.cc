@@ -16,7 +16,7 @@ using namespace fascicle::testing;
 
 const Muscle kMuscle(std::array{500.0, 500.0, 1e6, 3e5, 1.2, 0.05, 6.6, 1.4});
 
-// Where a fibre that pulls against nothing but its own body comes to rest.
+// The stretch at which an unloaded active body comes to rest along its fibres.
 UniaxialPoint FreeContraction(const Material& law, double activation) {
   double low = 0.3, high = 1;
   for (int i = 0; i < 60; ++i) {
@@ -46,8 +46,8 @@ TEST(ContractionTest, MuscleWithAFreeEnd) {
   }
 }
 
-// Held at three points only, it contracts along its fibres, 30 degrees off its axis: x = R U X, U known, R any
-// rotation.
+// Supported at three points only, it contracts along its fibres, 30 degrees off its axis: x = R U X with a known U and
+// any rotation R.
 TEST(ContractionTest, BarWithFibresAcross) {
   for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
     const Vec3 fibre(0.5, 0, std::sqrt(0.75));
@@ -73,8 +73,8 @@ TEST(ContractionTest, BarWithFibresAcross) {
   }
 }
 
-// A round rod, its surface curved, twisted with its length held [Rivlin 1948]: the torque and the axial force of a
-// Mooney-Rivlin law without compressibility, which K/mu = 1000 comes near to.
+// A round rod with a curved surface, twisted at constant length [Rivlin 1948]: the torque and the axial force of an
+// incompressible Mooney-Rivlin law, which K/mu = 1000 approximates.
 TEST(TorsionTest, RoundRod) {
   const double c1 = 0.03e6, c2 = 0.01e6;
   const double twist = kRodAngle / kRodLength, fourth = std::pow(kRodRadius, 4);

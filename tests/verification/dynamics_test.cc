@@ -11,7 +11,7 @@ namespace {
 
 using namespace fascicle::testing;
 
-// The paper's torus, undamped, ringing after it was squashed: its energy stays within 1 % over more than 1,000 steps.
+// The paper's torus, undamped, vibrating after it was squashed: its energy stays within 1 % over more than 1,000 steps.
 class TorusEnergy : public ::testing::TestWithParam<int> {};
 
 TEST_P(TorusEnergy, DriftStaysBelowOnePercent) {
@@ -48,7 +48,7 @@ TEST_P(TorusEnergy, DriftStaysBelowOnePercent) {
 
 INSTANTIATE_TEST_SUITE_P(Laws, TorusEnergy, ::testing::Values(0, 1));
 
-// Every node prescribed to turn: it is where the curve says, at the speed of the curve, without stress.
+// Every node has a prescribed rotation: its position and velocity are those of the curve, without stress.
 TEST(PrescribedMotionTest, RigidRotation) {
   Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
   Region all{"all", {}, {}, {}, {}};
@@ -77,13 +77,13 @@ TEST(PrescribedMotionTest, RigidRotation) {
     }
     for (const double stress : frame.bodies[0].fields[1].values) EXPECT_LT(stress, 1e-8);  // of 1e4 Pa
   }
-  // Over a step the path is a chord: with theta the turn in it, the strain rate is theta^2 / (2 dt) across the axis,
-  // which takes 5e-9 J of the kinetic energy of 6e-4 J here, and goes to zero with the square of the step.
+  // Over a step the path is a chord: with theta the rotation per step, the strain rate is theta^2 / (2 dt) across the
+  // axis, which dissipates 5e-9 J of the kinetic energy of 6e-4 J here, and vanishes with the square of the step.
   EXPECT_LT(run.Last("energy/dissipated"), 1e-8);
   EXPECT_LT(std::abs(run.Last("energy/elastic")), 1e-15);
 }
 
-// One end prescribed to move out and back smoothly: the probe on it follows the curve, and the work is given back.
+// One end is moved out and back smoothly: the probe on it follows the curve, and the work is returned.
 TEST(PrescribedMotionTest, StretchedAndReleased) {
   Body body = BoxBody(Vec3(0.04, 0.02, 0.02), {4, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
   Constraint pull = Fix(kX1);
@@ -101,7 +101,7 @@ TEST(PrescribedMotionTest, StretchedAndReleased) {
     EXPECT_NEAR(run.At(k, "probe/end/x"), curve.At(run.frames[k].time), 1e-16);
     EXPECT_EQ(run.At(k, "probe/end/y"), 0);
   }
-  // Pulled out by 25 %: about E times strain on the section, opposite at both ends.
+  // Pulled by 25 %: about E times strain times area, opposite at both ends.
   EXPECT_NEAR(run.At(4, "box/reaction/x1/x"), 0.25 * 1e4 * 4e-4, 0.25);
   EXPECT_NEAR(run.At(4, "box/reaction/x0/x"), -run.At(4, "box/reaction/x1/x"), 0.05);
   EXPECT_NEAR(run.Last("energy/elastic"), 0, 1e-3 * run.At(4, "energy/elastic"));
@@ -122,7 +122,7 @@ TEST(PrescribedMotionTest, ReactionIsMassTimesAcceleration) {
   for (std::size_t k = 1; k < run.frames.size(); ++k) {
     const double acceleration = 0.5 * (6 - 12 * run.frames[k].time);
     const double mass = 1060 * 8e-6;
-    // The stiff body rings a little after the sudden start.
+    // The stiff body vibrates a little after the sudden start.
     EXPECT_NEAR(run.At(k, "box/reaction/x0/x"), mass * acceleration, 0.02 * mass * 3) << run.frames[k].time;
   }
 }

@@ -1,4 +1,4 @@
-// The FEBio reference problems by quasi-static stepping with default settings: figures and fields.
+// The FEBio reference problems, quasi-static with default settings: figures and fields.
 #include <gtest/gtest.h>
 
 #include "tests/support/reference_file.h"
@@ -12,7 +12,7 @@ using namespace fascicle::testing;
 
 constexpr ElementOrder kLinear = ElementOrder::kLinear, kQuadratic = ElementOrder::kQuadratic;
 
-// Prints a figure beside its reference, and checks it to a part of that.
+// Prints a figure beside its reference, and checks its relative error.
 void Compare(const SteppedRun& run, const std::string& what, double ours, double reference, double part) {
   std::printf("%s, %s, %zu free components: %.5g, reference %.5g (%+.2f %%); %lld iterations\n", what.c_str(),
               run.model.order() == kQuadratic ? "quadratic" : "linear", run.FreeComponents(), ours, reference,
@@ -79,7 +79,7 @@ TEST(FebioStaticTest, NearlyIncompressibleCantilever) {
   check(kLinear, 4, 0.2);
 }
 
-// The same mesh, elements and loads as one of FEBio's plain runs: the displacement of every node.
+// The same mesh, elements and loads as one of FEBio's runs: the displacement of every node.
 void CompareField(const Scene& scene, const std::string& file, const std::string& key, const std::string& element,
                   const std::string& name, double part) {
   const auto reference = ReadReference(file);
@@ -111,7 +111,7 @@ TEST(FebioStaticTest, QuadraticElementsNodeByNode) {
                "full_fields_coarsest_mesh", "tet10", "a_tet10_20", 0.001);
 }
 
-// Linear elements that each keep their own volume lock as FEBio's do.
+// Linear elements with their own volume ratios lock as FEBio's do.
 TEST(FebioStaticTest, LockingElementsNodeByNode) {
   Scene scene = StaticScene(LockingCantilever(2, Ramp(1)), kLinear);
   scene.tet.volume = VolumeForm::kElement;

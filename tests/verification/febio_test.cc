@@ -11,8 +11,8 @@ namespace {
 using namespace fascicle::testing;
 
 // 20 x 2 x 2 hexahedra of six tetrahedra; E = 1000 MPa, nu = 0.3, 1 N downwards on the free end. Brought to rest by
-// mass damping: the lowest bending mode, omega = 3.516 sqrt(E/rho) h / (sqrt(12) L^2) = 1e4 1/s, is damped by 0.4 of
-// critical. The density does not matter at rest.
+// mass damping of the lowest bending mode, omega = 3.516 sqrt(E/rho) h / (sqrt(12) L^2) = 1e4 1/s, by 0.4 of the
+// critical damping. The density does not matter at rest.
 TEST(FebioTest, CantileverNodeByNode) {
   const auto results = ReadReference("a_cantilever_neohookean");
   if (!results) GTEST_SKIP() << NoReference();

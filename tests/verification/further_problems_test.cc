@@ -1,4 +1,5 @@
-// Problems of other geometries than the reference's: curved and tapered bodies, fibres at an angle, twisting, snapping.
+// Problems with other geometries than the references: curved and tapered bodies, oblique fibres, twisting,
+// snap-through.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +17,7 @@ using namespace fascicle::testing;
 
 constexpr double kPi = std::numbers::pi;
 
-// A box in parameter space, put in place with all its edges; sides keep the names of the box's.
+// A box in parameter space, mapped with its mid-edge nodes; sides keep their names.
 Body MappedBody(const Vec3& size, const std::array<int, 3>& divisions, const std::function<Vec3(const Vec3&)>& place,
                 const Material& law) {
   Body body = BoxBody(size, divisions, law);
@@ -24,9 +25,9 @@ Body MappedBody(const Vec3& size, const std::array<int, 3>& divisions, const std
   return body;
 }
 
-// A rod of muscle whose fibres wind around its axis at an angle, active, twisted with its length held. Every cylinder
-// in it is sheared evenly, so that torque and axial force follow from the law's stress by integrals over the radius: in
-// the basis r, theta, z, F = [1 0 0; 0 1 kR; 0 0 1] with twist k; radial equilibrium gives the pressure.
+// A rod of muscle with helical fibres, active, twisted at constant length. Every cylinder in it is sheared uniformly,
+// so that torque and axial force are integrals of the law's stress over the radius: in the basis r, theta, z, F = [1 0
+// 0; 0 1 kR; 0 0 1] with twist k; radial equilibrium determines the pressure.
 struct TwistedRod {
   double radius, twist, winding;
   Muscle law;
@@ -93,14 +94,15 @@ double CookDeflection(int n, ElementOrder element) {
   return deflection;
 }
 
-// A quarter of a ring, clamped at one end, its other end pushed outwards: bends a lot and turns. n x n x 4 n hexahedra.
+// A quarter of a ring, clamped at one end, its other end pushed outwards: large bending and rotation. n x n x 4 n
+// hexahedra.
 double RingDeflection(int n, ElementOrder element) {
   const auto place = [](const Vec3& p) {
     const double angle = 0.5 * kPi * p[2], r = 0.018 + 0.004 * p[0];
     return Vec3(r * std::cos(angle), r * std::sin(angle), 0.004 * p[1]);
   };
   Body body = MappedBody(Vec3(1, 1, 1), {n, n, 6 * n}, place, NearlyIncompressible());
-  // The mapping turns the box's handedness.
+  // The map reverses the orientation of the box.
   for (Tetrahedron& tet : body.tet().mesh.tetrahedra) std::swap(tet[2], tet[3]);
   for (Region& region : body.regions) {
     for (Triangle& t : region.triangles) std::swap(t[1], t[2]);
@@ -116,8 +118,8 @@ double RingDeflection(int n, ElementOrder element) {
   return moved.norm();
 }
 
-// Against their own answers on finer meshes. Of Cook's membrane the singular corner at the clamped side takes the most:
-// all meshes approach the answer as 1/n.
+// Compared with results on finer meshes. The singular corner at the clamped side dominates Cook's membrane: all meshes
+// converge as 1/n.
 TEST(FurtherProblems, CookMembrane) {
   const double fine = CookDeflection(16, ElementOrder::kQuadratic);
   EXPECT_NEAR(CookDeflection(4, ElementOrder::kQuadratic), fine, 0.06 * fine);
@@ -132,8 +134,8 @@ TEST(FurtherProblems, QuarterRing) {
   EXPECT_NEAR(RingDeflection(4, ElementOrder::kLinear), fine, 0.12 * fine);
 }
 
-// A flat arch, clamped at both ends, pressed down in the middle by a dead load that it can't carry: it snaps through,
-// and comes to rest where an arch that is drawn down by its middle pushes back as hard.
+// A flat arch, clamped at both ends, under a dead load in the middle beyond its limit load: it snaps through, and comes
+// to rest where an arch with prescribed displacement of the middle has the same force.
 Body Arch(int n) {
   const auto place = [](const Vec3& p) {
     return Vec3(0.04 * p[0], 0.004 * p[1], 0.0035 * std::pow(std::sin(kPi * p[0]), 2) + 0.001 * p[2]);
@@ -150,14 +152,14 @@ Body Arch(int n) {
 constexpr std::int32_t kMiddle = 6;
 
 TEST(FurtherProblems, AnArchSnapsThrough) {
-  // Drawn down: the push back has a maximum, the load at which it snaps, and falls below it.
+  // With a prescribed displacement the force has a maximum, the limit load, and decreases beyond it.
   Body drawn = Arch(1);
   Constraint down{kMiddle, {false, false, true}, {}};
   down.motion.translation[2] = Ramp(-0.008);
   drawn.constraints.push_back(down);
   SteppedRun path(StaticScene(std::move(drawn), ElementOrder::kQuadratic));
   double snap_load = 0, valley = INFINITY, before = 0;
-  std::vector<std::array<double, 2>> curve;  // way [m] and load [N]
+  std::vector<std::array<double, 2>> curve;  // displacement [m] and load [N]
   for (int k = 1; k <= 40; ++k) {
     ASSERT_TRUE(path.To(k / 40.0));
     const double load = -path.Reaction(2)[2];

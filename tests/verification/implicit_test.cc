@@ -1,4 +1,4 @@
-// Steps that solve for their end: order of convergence, conservation, rest, cancelling.
+// Implicit steps: order of convergence, conservation, rest, cancelling.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 using namespace fascicle::testing;
 
-// A free box that rings after a push along its long axis, in steps of a fixed length.
+// A free box that vibrates after a push along its long axis, in steps of a fixed length.
 Scene RingingBox(Stepping stepping, ElementOrder element, const Material& law, double time_step) {
   Scene scene = OneBody(BoxBody(Vec3(0.04, 0.02, 0.02), {2, 1, 1}, law));
   scene.tet.stepping = stepping;
@@ -61,10 +61,10 @@ TEST_P(ImplicitTest, OrderOfConvergence) {
   const double order = std::log2(LargestDifference(fine, finer) / LargestDifference(finer, finest));
   std::printf("order %.3f\n", order);
   EXPECT_NEAR(order, SteppingOf() == Stepping::kBackwardEuler ? 1 : 2, 0.2);
-  EXPECT_GT(LargestDifference(fine, finer), 1e-9);  // far above what Newton's method leaves
+  EXPECT_GT(LargestDifference(fine, finer), 1e-9);  // far above the residual of Newton's method
 }
 
-// Nothing outside acts: momentum stays, and energy never grows.
+// Without external forces momentum is conserved, and energy never grows.
 TEST_P(ImplicitTest, Momentum) {
   SteppedRun run(RingingBox(SteppingOf(), Element(), NeoHookean(std::array{1e4, 0.3}), kPeriod / 20));
   Push(run);
@@ -98,11 +98,11 @@ double EnergyDrift(const Material& law, ElementOrder element) {
     drift = std::max(drift, std::abs(energy / start - 1));
     largest_elastic = std::max(largest_elastic, elastic / start);
   }
-  EXPECT_GT(largest_elastic, 0.02);  // it does ring
+  EXPECT_GT(largest_elastic, 0.02);  // it does vibrate
   return drift;
 }
 
-// Exact for a linear law; for others the energy comes and goes by little.
+// Exact for a linear law; for others the energy fluctuates slightly.
 TEST(NewmarkTest, KeepsEnergy) {
   for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
     const double linear = EnergyDrift(LinearElastic(std::array{1e4, 0.3}), element);
@@ -113,7 +113,7 @@ TEST(NewmarkTest, KeepsEnergy) {
   }
 }
 
-// A nearly incompressible body that hangs: quasi-static steps find the place where explicit ones come to rest.
+// A nearly incompressible hanging body: quasi-static steps reach the state in which explicit steps come to rest.
 TEST(QuasiStaticTest, IsWhereExplicitStepsComeToRest) {
   for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
     Body body = BoxBody(Vec3(0.02, 0.02, 0.04), {1, 1, 2}, MooneyRivlin(std::array{2e3, 1e3, 6e5}));
@@ -137,7 +137,7 @@ TEST(QuasiStaticTest, IsWhereExplicitStepsComeToRest) {
   }
 }
 
-// Asks to stop after a number of steps.
+// Requests a stop after a number of steps.
 class StoppingSink : public CollectingSink {
  public:
   explicit StoppingSink(int steps) : steps_(steps) {}

@@ -1,5 +1,5 @@
-// Linear systems solved iteratively: the same answers as by factorization, the same bits for any number of threads and
-// after a restart, and a time that grows with the size.
+// Iterative linear solvers: the same results as with factorization, the same bits for any number of threads and after a
+// restart, and a time that grows moderately with the size.
 #include <gtest/gtest.h>
 
 #include "tests/support/reference_problems.h"
@@ -81,7 +81,7 @@ TEST_P(IterativeTest, DynamicStepsToo) {
   EXPECT_LE(LargestDistance(direct.state.positions, iterative.state.positions), 1e-9);
 }
 
-// A soft box that falls from one side: inertia dominates and nothing locks, so conjugate gradients solve.
+// A soft box that falls from one side: inertia dominates and nothing locks, so conjugate gradients are used.
 Scene FallingScene(ElementOrder element, LinearSolver solver) {
   Body body = BoxBody(Vec3::Constant(0.1), {6, 6, 6}, NeoHookean(std::array{1e4, 0.3}));
   body.constraints = {Fix(kX0)};

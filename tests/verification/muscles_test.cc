@@ -1,4 +1,4 @@
-// The example scenes of isometric contraction, on the built-in spindle and on two real muscles, brought to rest.
+// The example scenes of isometric contraction, with the built-in spindle and two real muscles, brought to rest.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace fascicle::testing;
 
-// Reads an example scene as a user would, with its data files copied beside it.
+// Reads an example scene as a user would, with copies of its data files.
 std::shared_ptr<const Scene> LoadExample(const std::string& name, const std::vector<std::filesystem::path>& data) {
   const TemporaryFolder folder;
   std::filesystem::copy(ProjectRoot() / "client/examples" / name, folder.path());
@@ -32,7 +32,7 @@ Vec3 CentreOf(const std::vector<Vec3>& positions, const Region& region) {
   return sum / static_cast<double>(region.nodes.size());
 }
 
-// Area of the widest of ten slices between two points: the volume whose centroid lies in it over its thickness [m^2].
+// Area of the widest of ten slices between two points: the volume with centroids in it over its thickness [m^2].
 double WidestSlice(const TetMesh& mesh, const std::vector<Vec3>& positions, const Vec3& from, const Vec3& to) {
   constexpr int kSlices = 10;
   const double length = (to - from).norm();
@@ -47,13 +47,13 @@ double WidestSlice(const TetMesh& mesh, const std::vector<Vec3>& positions, cons
   return *std::max_element(volume.begin(), volume.end()) * kSlices / length;
 }
 
-// Contracts at fixed ends: comes to rest, keeps its volume, bulges, and pulls harder the more it is activated.
+// Contracts with fixed ends: comes to rest, preserves its volume, bulges, and its force increases with activation.
 void CheckIsometricContraction(const Scene& scene) {
   const RunResult run = RunScene(scene, 2);
   ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded) << run.outcome.failure.message;
   const Body& body = scene.bodies[0];
   const std::string& name = body.name;
-  // Settled: it ended before the duration, which happens only below settle_speed.
+  // Settled: it ended before the duration, which requires a speed below settle_speed.
   EXPECT_LT(run.frames.back().time, scene.duration);
 
   EXPECT_EQ(run.Last(name + "/activation"), 1);
@@ -69,10 +69,10 @@ void CheckIsometricContraction(const Scene& scene) {
   const Vec3 axis = (CentreOf(body.tet().mesh.nodes, two) - CentreOf(body.tet().mesh.nodes, one)).normalized();
   const std::size_t last = run.frames.size() - 1;
   const Vec3 end_force = reaction(last, two);
-  // In equilibrium, and the muscle pulls its ends together: the supports hold against that.
+  // In equilibrium, with tension in the muscle: the supports pull its ends apart.
   EXPECT_LT((end_force + reaction(last, one)).norm(), 0.02 * end_force.norm());
   EXPECT_GT(end_force.dot(axis), 0.9 * end_force.norm());
-  // Rises with activation: from each frame in which it grew by a tenth to the next.
+  // Increases with activation: compares frames between which it rose by a tenth.
   double activation = 0, force = 0;
   int rises = 0;
   for (std::size_t k = 0; k <= last; ++k) {
@@ -122,7 +122,7 @@ TEST(MusclesTest, BicepsFemoris) {
   CheckIsometricContraction(*scene);
 }
 
-// Tendon at both ends and aponeuroses: the part of the scene in which it is activated at its own length.
+// Tendon at both ends and aponeuroses: the part of the scene in which the muscle is activated at constant length.
 void CheckTendonScene(const std::string& muscle) {
   const auto mesh = DataFolder() / ("opendihu_upper_arm/" + muscle + "_coarse.msh");
   if (!std::filesystem::exists(mesh)) GTEST_SKIP() << "no real anatomy in " << DataFolder() << " (set FASCICLE_DATA)";

@@ -1,4 +1,4 @@
-// Hard steps of the quasi-static method, all with default settings: large loads and deformations at once.
+// Difficult steps of the quasi-static method, all with default settings: large loads and deformations at once.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -17,7 +17,7 @@ class RobustnessTest : public ::testing::TestWithParam<ElementOrder> {
  protected:
   Scene SceneOf(Body body) const { return StaticScene(std::move(body), GetParam()); }
 
-  // Steps to the end and prints what it took; the state there is in equilibrium and nowhere inverted.
+  // Steps to the end and prints the effort; the final state is in equilibrium without inverted elements.
   static void Finish(SteppedRun& run, const std::string& what) {
     const bool arrived = run.To(1);
     std::printf("%s, %s: %lld steps, %lld iterations, smallest ratio %.3f%s\n", what.c_str(),

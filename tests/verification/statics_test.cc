@@ -11,7 +11,7 @@ namespace {
 
 using namespace fascicle::testing;
 
-// A bar pulled along x, free to contract: held on three sides, each along its normal.
+// A bar pulled along x, free to contract: three sides on rollers.
 Scene PulledBar(const Material& law, double traction, double density = 1000) {
   Body body = BoxBody(Vec3(0.04, 0.02, 0.02), {4, 2, 2}, law);
   body.density = density;

@@ -1,4 +1,4 @@
-// Starts whose mesh is tangled: inverted elements in a body that wants to be at rest.
+// Tangled initial meshes: inverted elements in a body that should come to rest.
 #include <gtest/gtest.h>
 
 #include "core/tet/diagnostics.h"
@@ -12,7 +12,7 @@ using namespace fascicle::testing;
 constexpr double kSize = 0.01;
 constexpr int kDivisions = 3;
 
-// A block held at one end, its nodes moved at random by up to 0.8 of their distance along each axis.
+// A block fixed at one end, its nodes displaced at random by up to 0.8 of their distance along each axis.
 Scene TangledBlock(unsigned seed, ElementOrder element) {
   Body body =
       BoxBody(Vec3::Constant(kSize), {kDivisions, kDivisions, kDivisions}, MooneyRivlin(std::array{3e4, 1e4, 8e7}));

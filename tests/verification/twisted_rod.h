@@ -7,7 +7,7 @@
 
 #include "tests/support/static_run.h"
 
-// A round rod along z, its surface curved, whose one end is turned while its length is held.
+// A round rod along z with a curved surface, one end of which is rotated at constant length.
 namespace fascicle::testing {
 
 constexpr double kRodRadius = 0.005, kRodLength = 0.02, kRodAngle = std::numbers::pi / 2;  // [m], [m], [rad]
@@ -32,13 +32,13 @@ inline TetMesh RodMesh() {
   return mesh;
 }
 
-// Torque about the axis [N m] and force along it [N] that the turned end takes.
+// Torque about the axis [N m] and force along it [N] at the rotated end.
 struct RodForces {
   double torque = 0, axial = 0;
 };
 
-// Turns the end of a body on RodMesh in four steps; its activation is then `activation`. Prints both forces beside the
-// exact ones.
+// Rotates the end of a body with RodMesh in four steps, then sets its activation. Prints both forces beside the exact
+// ones.
 inline RodForces TwistRod(Body body, double activation, const RodForces& exact) {
   Constraint turn = Fix(kZ1);
   turn.motion.rotation = Rotation{Vec3::Zero(), Vec3::UnitZ(), Ramp(kRodAngle)};

@@ -1,4 +1,4 @@
-// Against ParOSol's solutions (shared/reference/voxel), units mm, N, MPa: those of its README's table.
+// Against ParOSol's solutions (shared/reference/voxel), units mm, N, MPa; the values are those of its README's table.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -64,7 +64,7 @@ VoxelGrid Gyroid() {
   return grid;
 }
 
-// Cropped, filled up to even sizes (as Coarsen does), joined where half is set.
+// Cropped, padded to even sizes (as Coarsen does), and coarsened where at least half is solid.
 VoxelGrid BicepsOf2mm(const VoxelGrid& label) {
   VoxelGrid grid = Coarsen(CropToSolid(label), 0.5);
   KeepLargestIsland(grid);
@@ -72,7 +72,7 @@ VoxelGrid BicepsOf2mm(const VoxelGrid& label) {
   return grid;
 }
 
-// Nodes up to `layers` from the bottom and from the top.
+// Nodes within `layers` of the bottom and of the top.
 struct Ends {
   std::vector<GridIndex> bottom, top;
 };
@@ -136,8 +136,8 @@ TEST(ParOSol, EveryRowIsMetToOneInAMillion) {
   }
 }
 
-// Iterations to 1e-8 of a body of 1 mm voxels and of its coarser levels that are not factored at once, finest first.
-// The ends are held over 10 mm, and pulled by 3 mm.
+// Iterations to 1e-8 for a body of 1 mm voxels and for its coarser levels that are not factored directly, finest first.
+// The ends are fixed over 10 mm, and pulled by 3 mm.
 std::vector<int> IterationsOfLevels(const VoxelGrid& grid, double nu) {
   std::vector<int> iterations;
   for (VoxelLevel& level : MakeHierarchy(grid, 0.5, 5)) {
@@ -158,7 +158,7 @@ std::vector<int> IterationsOfLevels(const VoxelGrid& grid, double nu) {
   return iterations;
 }
 
-// A spindle as long and thick as the biceps.
+// A spindle of the length and thickness of the biceps.
 TEST(Multigrid, IterationsDoNotGrowWithTheLevelsOfASpindle) {
   const std::vector<int> iterations = IterationsOfLevels(testing::SpindleGrid({60, 60, 320}, 1e-3, 10, 30), 0.45);
   ASSERT_GE(iterations.size(), 4u);
@@ -166,7 +166,7 @@ TEST(Multigrid, IterationsDoNotGrowWithTheLevelsOfASpindle) {
   EXPECT_LE(*std::max_element(iterations.begin(), iterations.end()), 15);
 }
 
-// The real one has tendons of six voxels across and 70 along, which bricks as large are too stiff for in bending.
+// The real one has tendons six voxels across and 70 long, whose bending stiffness bricks of that size overestimate.
 TEST(Multigrid, IterationsHardlyGrowWithTheLevelsOfTheBiceps) {
   const std::optional<VoxelGrid> label = ReadLabel(LabelVolumePath(), 1);
   if (!label) GTEST_SKIP() << LabelVolumePath() << " is not there; set FASCICLE_DATA";

@@ -1,4 +1,4 @@
-// The command line as its users see it: child processes, exit codes, what they print and leave behind.
+// The command line as users see it: child processes, exit codes, output and files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ using ::testing::Not;
 
 constexpr const char* kNobody = "127.0.0.1:1";
 
-// A block of rubber that shivers: `frames` frames of `steps` steps each.
+// A vibrating block of rubber: `frames` frames of `steps` steps each.
 std::string SceneText(int frames, int steps) {
   return R"({"name": "block", "bodies": [{"name": "block", "unit": "cm",
     "mesh": {"box": {"size": [1, 1, 1], "divisions": [3, 3, 3]}},
@@ -174,7 +174,7 @@ TEST_F(CliTest, SettingsChangeTheScene) {
   EXPECT_EQ(shorter.exit_code, 0) << shorter.err;
   EXPECT_EQ(json::parse(shorter.out)["frames"], 2);
   EXPECT_EQ(set("bodies[0].density=900").exit_code, 0) << "adds what is not there";
-  // What is wrong is told under the path that was set.
+  // Problems are reported with the path that was set.
   const Finished negative = set("bodies[0].density=-1");
   EXPECT_EQ(negative.exit_code, 2);
   EXPECT_THAT(negative.err, HasSubstr("bodies[0].density: "));
@@ -217,7 +217,7 @@ TEST_F(CliTest, EveryExampleCanBeWrittenAndIsValid) {
   EXPECT_EQ(written.exit_code, 0) << written.err;
   int valid = 0;
   for (const json& example : Lines(Fascicle({"examples", "--json"}).out)) {
-    if (!example["needs"].empty()) continue;  // a mesh that is not ours
+    if (!example["needs"].empty()) continue;  // a mesh of another user
     const Finished checked =
         Fascicle({"validate", folder_ / ("examples/" + example["example"].get<std::string>() + ".json")});
     EXPECT_EQ(checked.exit_code, 0) << example["example"] << checked.err;
@@ -294,7 +294,7 @@ TEST_F(CliTest, CompletionKnowsCommandsAndOptions) {
   EXPECT_EQ(complete("fascicle materials curve muscle --act", 4), "--activation\n");
 }
 
-// The same through a server of its own.
+// The same through an external server.
 class ServerTest : public CliTest {
  protected:
   void SetUp() override {
@@ -349,7 +349,7 @@ TEST_F(ServerTest, AJobsWholeLife) {
   EXPECT_EQ(series[0]["values"].size(), 6u);
   EXPECT_THAT(Call({"plot", job, "--series", "energy/kinetic"}).out, HasSubstr("energy/kinetic"));
   EXPECT_EQ(Call({"plot", job, "--series", "none*"}).exit_code, 2);
-  // Series over each other, of two jobs in one picture, from a time on.
+  // Series plotted against each other, of two jobs in one picture, from a given time on.
   const std::string other = Submit(5, 20);
   EXPECT_EQ(Call({"watch", other, "--json"}).exit_code, 0);
   const std::vector<json> lines = Lines(Call({"plot", job, other, "--series", "energy/kinetic", "--x", "energy/elastic",
@@ -384,12 +384,12 @@ TEST_F(ServerTest, CtrlCLeavesAWatchedJobRunning) {
   watch.Signal(SIGINT);
   const Finished finished = watch.Wait();
   EXPECT_EQ(finished.exit_code, 4);
-  EXPECT_THAT(finished.err, HasSubstr("it goes on"));
+  EXPECT_THAT(finished.err, HasSubstr("it continues"));
   EXPECT_EQ(json::parse(Call({"show", job, "--json"}).out)["state"], "running");
   EXPECT_EQ(Call({"cancel", job}).exit_code, 0);
 }
 
-// A watcher killed at frame k and restarted with --from k + 1 sees what one that was never killed sees.
+// A watcher killed at frame k and restarted with --from k + 1 sees the same as one that was never killed.
 TEST_F(ServerTest, AKilledWatcherGoesOnWithTheSameDigests) {
   const std::string job = Submit(30, 100);
   std::vector<std::string> seen;

@@ -26,7 +26,7 @@ inline std::vector<std::string> FrameLines(const std::string& text) {
   return lines;
 }
 
-// A job of a scene file through a server that may be killed on the way: what every method promises.
+// A job of a scene file through a server that may be killed meanwhile. These promises hold for every method.
 class DigestJob {
  public:
   void StartServer() {
@@ -46,8 +46,8 @@ class DigestJob {
     return submitted.out.substr(0, submitted.out.find('\n'));
   }
 
-  // A scene of `frames` frames: those that a client saw, those of a server that was killed in between, and those of
-  // `run` on two threads are the same.
+  // A scene of `frames` frames. A client's frames, those of a server that was killed meanwhile, and those of `run` on
+  // two threads are identical.
   void ExpectSameDigestsAsRunAlsoWhenKilled(const std::string& scene, std::size_t frames) {
     StartServer();
     const std::string job = Submit(scene);
@@ -68,7 +68,7 @@ class DigestJob {
     EXPECT_EQ(seen, std::vector<std::string>(streamed.begin(), streamed.begin() + 4));
   }
 
-  // A scene that would take long.
+  // A scene with a long run time.
   void ExpectCanBeCancelled(const std::string& scene) {
     StartServer();
     const std::string job = Submit(scene);

@@ -13,10 +13,10 @@
 
 namespace fascicle::testing {
 
-// `fascicle` as its users see it, with a folder for its files.
+// `fascicle` as users see it, with a folder for its files.
 class FascicleTest : public ::testing::Test {
  protected:
-  // Runs it without a display, and without a server but the given one.
+  // Runs it without a display; the only server it knows is the given one.
   Finished Fascicle(std::vector<std::string> arguments, const std::string& server = "") {
     arguments.insert(arguments.begin(), Program("fascicle"));
     return RunProgram(arguments, {{"FASCICLE_SERVER", server}, {"DISPLAY", ""}, {"TMPDIR", Temporary()}});

@@ -1,4 +1,4 @@
-// `fascicle import` as its users see it, and what the program makes of the scenes: FEBio's own numbers.
+// `fascicle import` as users see it; results of imported scenes agree with FEBio's.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-// Problem b between symmetry planes: 10 mm, stretched by half.
+// Problem b with symmetry planes: 10 mm, stretched by half.
 FebWriter StretchedCube(const std::string& version) {
   FebWriter feb(version, Box(Vec3(10, 10, 10), {2, 2, 2}));
   const char* names[] = {"x0", "y0", "z0"};
@@ -94,11 +94,11 @@ TEST_F(ImportCommandTest, WhatIsNotTakenIsListedAndStrictlyRefused) {
   const std::string out = folder_ / "out";
   const Finished strict = Fascicle({"import", Model(text), "--out", out, "--strict"});
   EXPECT_EQ(strict.exit_code, 2);
-  EXPECT_THAT(strict.err, HasSubstr(where + ": not taken"));
+  EXPECT_THAT(strict.err, HasSubstr(where + ": not supported"));
   EXPECT_FALSE(fs::exists(out));
   const Finished lenient = Fascicle({"import", Model(text), "--out", out});
   EXPECT_EQ(lenient.exit_code, 0);
-  EXPECT_THAT(lenient.out, HasSubstr("not taken:\n  " + where));
+  EXPECT_THAT(lenient.out, HasSubstr("not supported:\n  " + where));
   EXPECT_TRUE(fs::exists(out + "/scene.json"));
   const Finished as_json = Fascicle({"import", Model(text), "--out", out, "--json"});
   const json summary = json::parse(as_json.out);

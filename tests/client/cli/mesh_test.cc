@@ -1,4 +1,4 @@
-// `fascicle mesh` as its users see it: from surfaces and label images to meshes and scenes that run.
+// `fascicle mesh` as users see it: from surfaces and label images to meshes and scenes that run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -163,7 +163,7 @@ TEST_F(MeshTest, AMuscleIsMeshedWithItsAttachmentsAndContracts) {
   const auto last = [&](const char* name) { return series.at(name).at("final").get<double>(); };
   EXPECT_NEAR(last("muscle/volume_ratio"), 1, 0.01);
   EXPECT_GT(last("muscle/min_volume_ratio"), 0.2);
-  // The muscle pulls its insertion, at its lower end, upwards: what holds it pulls down, by some tens of newtons.
+  // The muscle pulls its insertion, at the lower end, upwards; the support there pulls down with some tens of newtons.
   EXPECT_LT(last("muscle/reaction/insertion/z"), -5);
   for (const std::string axis : {"x", "y", "z"}) {
     EXPECT_NEAR(last(("muscle/reaction/origin/" + axis).c_str()), -last(("muscle/reaction/insertion/" + axis).c_str()),
@@ -180,11 +180,11 @@ TEST_F(MeshTest, LabelsOfAnImage) {
   const json report = json::parse(made.out);
   EXPECT_NEAR(report["volume"].get<double>() / report["voxel_volume"].get<double>(), 1, 5e-3);
   EXPECT_GE(report["smallest_dihedral_angle"], 10.0);
-  // The biceps' own surface encloses 317 cm^3; the voxels count those that it touches, 8 % more.
+  // The surface encloses 317 cm^3; the voxels that it touches have 8 % more.
   EXPECT_NEAR(report["volume"].get<double>() / 317e3, 1.08, 0.03);
   const Finished wrong = Fascicle({"mesh", image, "--label", "7", "--out", folder_ / "x.msh"});
   EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_THAT(wrong.err, HasSubstr("no voxel has the label 7 (there are: 1, 2)"));
+  EXPECT_THAT(wrong.err, HasSubstr("no voxel has the label 7 (existing labels: 1, 2)"));
   EXPECT_EQ(Fascicle({"mesh", image, "--out", folder_ / "x.msh"}).exit_code, 2) << "without a label";
 }
 

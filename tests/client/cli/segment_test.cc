@@ -1,4 +1,4 @@
-// `fascicle phantom`, `segment` and `voxelize` as their users see them.
+// `fascicle phantom`, `segment` and `voxelize` as users see them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST_F(SegmentTest, ThePhantomsAnconeusIsFound) {
   EXPECT_EQ(report["classes"].size(), 3u);
   EXPECT_EQ(report["wanted_class"], 1);
   EXPECT_EQ(ReadFile(File("anconeus.png")).substr(1, 3), "PNG");
-  // What was written is the same body.
+  // The written body is the same.
   const Finished levels = Fascicle({"voxelize", File("anconeus.nii.gz"), "--mask", "--json"});
   ASSERT_EQ(levels.exit_code, 0) << levels.err << levels.out;
   const json table = json::parse(levels.out)["levels"];
@@ -102,7 +102,7 @@ TEST_F(SegmentTest, BrightMusclesOfAThigh) {
   const Finished found = Fascicle({"segment", thigh, "--filter", "wavelet", "--class", "2", "--opening", "2",
                                    "--picture", File("thigh.png"), "--json"});
   ASSERT_EQ(found.exit_code, 0) << found.err << found.out;
-  // Vasti and adductors over 186 mm; the coil is too far from the others.
+  // Vasti and adductors over 186 mm; the coil is too far from the other muscles.
   const double volume = json::parse(found.out)["body"]["volume"];
   EXPECT_GT(volume, 1e-3);
   EXPECT_LT(volume, 3e-3);

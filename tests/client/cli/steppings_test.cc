@@ -1,5 +1,5 @@
-// Every stepping, with each element, through a real server: the same digests as `run`, also when the server is killed
-// in the middle of the job; and jobs that are cancelled in the middle of a run.
+// Every stepping with each element through a real server: the digests are those of `run`, also if the server is killed
+// during the job; and jobs can be cancelled during a run.
 #include <gtest/gtest.h>
 
 #include <tuple>
@@ -9,7 +9,7 @@
 namespace fascicle::testing {
 namespace {
 
-// A spindle that contracts and swings, with damping: `frames` frames of 2 ms.
+// A spindle that contracts and vibrates, with damping: `frames` frames of 2 ms.
 std::string SceneText(const std::string& stepping, const std::string& element, int frames) {
   return R"({"bodies": [{"name": "muscle", "unit": "cm",
     "mesh": {"fusiform": {"length": 6, "belly_radius": 1, "end_radius": 0.6, "divisions_across": 2, "divisions_along": 6}},

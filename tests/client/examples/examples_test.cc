@@ -1,4 +1,4 @@
-// Every built-in example runs, and its answer is what its description says.
+// Every built-in example runs, and its result is what its description says.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ class ExampleTest : public ::testing::Test {
     EXPECT_EQ(written.exit_code, 0) << written.err;
     return Run(folder_ / (name + ".json"), more);
   }
-  // The same of an example whose first body has other fibres.
+  // The same with different fibres in the first body.
   json RunWithFibres(const std::string& name, const std::function<void(json&)>& change) {
     json scene = json::parse(RunProgram({Program("fascicle"), "examples", "show", name}).out, nullptr, true, true);
     change(scene["bodies"][0]["fibres"]);
@@ -58,13 +58,13 @@ class ExampleTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-// A test for each example stands below; this finds those that have none.
+// Finds examples without a test below.
 TEST_F(ExampleTest, NoneIsForgotten) {
   std::set<std::string> names;
   std::istringstream list(RunProgram({Program("fascicle"), "examples", "--json"}).out);
   for (std::string line; std::getline(list, line);) names.insert(json::parse(line)["example"]);
-  // The last four need real anatomy and are run in tests/verification; the isometric spindle takes the demonstration's
-  // time.
+  // The last four need real anatomy and run in tests/verification; the isometric spindle takes as long as the
+  // demonstration.
   EXPECT_THAT(
       names, ::testing::UnorderedElementsAre(
                  "bar_of_two_materials", "bar_tension", "bar_twist", "cantilever_gravity", "fusiform_bipennate",
@@ -140,7 +140,7 @@ TEST_F(ExampleTest, PlasticBlock) {
   EXPECT_LT(summary["series"]["block/volume_ratio"]["max"], 1.002);
 }
 
-// With larger cells: as it is, it takes a minute.
+// With larger cells, because the original takes a minute.
 TEST_F(ExampleTest, CrushedCube) {
   const std::string out = folder_ / "out";
   const json summary =
@@ -150,7 +150,7 @@ TEST_F(ExampleTest, CrushedCube) {
   EXPECT_GT(summary["series"]["cube/volume_ratio"]["min"], 0.99);
   EXPECT_LT(summary["series"]["cube/volume_ratio"]["max"], 1.01);
   for (const char* axis : {"x", "y", "z"}) EXPECT_NEAR(Final(summary, std::string("probe/corner/") + axis), 0, 0.0125);
-  // Crushed, and back in its shape.
+  // Crushed, then back in its original shape.
   const std::vector<double> energy = SeriesOf(folder_ / "out/series.csv", "energy/elastic");
   EXPECT_GT(*std::max_element(energy.begin(), energy.end()), 0.1);
   EXPECT_LT(energy.back(), 0.02 * *std::max_element(energy.begin(), energy.end()));
@@ -173,7 +173,7 @@ TEST_F(ExampleTest, AnconeusRelease) {
   RunExample("anconeus_release", {"--out", out});
   const std::vector<double> x = SeriesOf(folder_ / "out/series.csv", "probe/upper/x");
   ASSERT_EQ(x.size(), 23u);
-  // Turning points and passages through rest.
+  // Turning points and passages through the rest position.
   std::vector<double> peaks = {x[0]};
   for (std::size_t f = 1; f + 1 < x.size(); ++f) {
     if ((x[f] - x[f - 1]) * (x[f + 1] - x[f]) < 0) peaks.push_back(x[f]);
@@ -312,7 +312,7 @@ TEST_F(ExampleTest, TorusRinging) {
   while (std::getline(csv, line)) {
     double frame, time, step, elastic, kinetic;
     ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &frame, &time, &step, &elastic, &kinetic), 5);
-    if (time < 0.11) continue;  // the force still works
+    if (time < 0.11) continue;  // the force still does work
     lowest = std::min(lowest, elastic + kinetic);
     highest = std::max(highest, elastic + kinetic);
   }
@@ -360,7 +360,7 @@ TEST_F(ExampleTest, Twitch) {
   EXPECT_LT(Final(summary, "strip/reaction/left/x"), 0);
 }
 
-// Written with their files, and sound.
+// Written with their files, and valid.
 TEST_F(ExampleTest, PartsOfBodiesAreValid) {
   for (const std::string name :
        {"bar_of_two_materials", "graded_bar", "two_compartments", "partial_recruitment", "let_go"}) {

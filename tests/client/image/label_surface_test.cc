@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 
 using Labels = std::function<int(const Vec3&)>;  // of a voxel, by its index
 
-// Labels of all voxels, x fastest, as T has them.
+// Labels of all voxels as T, x fastest.
 template <class T>
 std::string Voxels(const GridIndex& size, const Labels& label) {
   std::string bytes;
@@ -34,7 +34,7 @@ std::string Voxels(const GridIndex& size, const Labels& label) {
   return bytes;
 }
 
-// A MetaImage of bytes; `header` has the lines on spacing, place and channels.
+// A MetaImage as bytes; `header` has the lines on spacing, position and channels.
 std::string MetaBytes(const GridIndex& size, const std::string& header, const std::string& voxels) {
   return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\n" +
          header + "DimSize = " + std::to_string(size[0]) + " " + std::to_string(size[1]) + " " +
@@ -84,7 +84,7 @@ Box BoxOf(const TriangleMesh& surface) {
   return box;
 }
 
-// Each edge belongs to two triangles, which pass it in opposite directions.
+// Each edge belongs to two triangles, which have it in opposite directions.
 bool IsClosed(const TriangleMesh& surface) {
   std::map<std::array<std::int32_t, 2>, int> passed;
   for (const Triangle& t : surface.triangles) {
@@ -117,7 +117,7 @@ TEST(LabelSurface, IsClosedAndEnclosesAsMuchAsTheVoxels) {
   }
 }
 
-// The axes of the image are those of space turned by a right angle: x runs along y, and y against x.
+// The axes of the image are rotated by a right angle: its x runs along y of space, its y against x.
 TEST(LabelSurface, AMetaImageLiesWhereItsHeaderSays) {
   const Box box = BoxOf(ReadGood("ball.mha", BallImage(), 3).surface);
   const Vec3 centre(100 - 10, 200 + 9, 300 + 11);
@@ -137,7 +137,7 @@ TEST(LabelSurface, ANiftiImageLiesWhereItsSformSays) {
   EXPECT_LT((box.high - box.low - Vec3(5 * 2, 3 * 3, 4 * 4)).cwiseAbs().maxCoeff(), 1.5);
 }
 
-// A label may touch the image's side: the surface is closed there too.
+// If a label reaches the border of the image, the surface is closed there too.
 TEST(LabelSurface, ALabelAtTheSideIsClosed) {
   const LabelSurface floor = ReadGood("ball.mha", BallImage(), 1);
   EXPECT_DOUBLE_EQ(floor.voxel_volume, 20 * 40 * 1);
@@ -161,7 +161,7 @@ TEST(LabelSurface, SmoothingRoundsCorners) {
 }
 
 TEST(LabelSurface, SaysWhichLabelsThereAre) {
-  EXPECT_THAT(Refusal("ball.mha", BallImage(), 7), HasSubstr("no voxel has the label 7 (there are: 1, 3)"));
+  EXPECT_THAT(Refusal("ball.mha", BallImage(), 7), HasSubstr("no voxel has the label 7 (existing labels: 1, 3)"));
   const std::string nothing = MetaBytes(kSize, kTurned, std::string(20 * 40 * 12, '\0'));
   EXPECT_THAT(Refusal("nothing.mha", nothing), HasSubstr("all voxels are 0"));
 }
@@ -181,7 +181,7 @@ TEST(LabelSurface, RefusesWhatIsNoLabelImage) {
 TEST(LabelSurface, SaysThatSmoothingLeavesNothing) {
   const auto speck = [](const Vec3& index) { return index == Vec3(9, 20, 6) ? 3 : 0; };
   const std::string image = MetaBytes(kSize, kTurned, Voxels<std::uint8_t>(kSize, speck));
-  EXPECT_THAT(Refusal("speck.mha", image, 3, 10), HasSubstr("1 voxels, of which smoothing leaves nothing"));
+  EXPECT_THAT(Refusal("speck.mha", image, 3, 10), HasSubstr("1 voxels, all of which disappear by smoothing"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a FEBio model can say, feature by feature: small models as text, and the scenes that they become.
+// The features of FEBio models, one by one: small models as text, and the resulting scenes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using client::Notice;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// A model of pieces; each has something that works.
+// A model made of pieces; each piece has a working default.
 struct Pieces {
   std::string version = "4.0";
   std::string module = "<Module type=\"solid\"/>";
@@ -170,7 +170,7 @@ TEST(FebioMaterialTest, TransverselyIsotropicMooneyRivlin) {
   EXPECT_EQ(law.lam_max(), 1.05);
   EXPECT_FALSE(law.has_active_stress());
   EXPECT_THAT(body.fibres().constant().direction(), ElementsAre(0, 0, 1));
-  // Its own active contraction is another law.
+  // FEBio's own active contraction is a different law, which is not supported.
   pieces.material.insert(pieces.material.find("<fiber"),
                          "<active_contraction lc=\"1\"><ascl>1</ascl></active_contraction>");
   EXPECT_THAT(NoticesOf(Import(pieces)), HasSubstr("not taken model.feb:1: Material/material `m`/active_contraction"));
@@ -192,7 +192,7 @@ TEST(FebioMaterialTest, MixtureWithActiveContraction) {
   EXPECT_EQ(body.material().trans_iso_mooney_rivlin().lam_max(), 1.05);
   EXPECT_THAT(body.activation().values(), ElementsAre(0, 0.5));
   EXPECT_THAT(body.fibres().constant().direction(), ElementsAre(0, 1, 0));
-  // An activation beyond 1 is none.
+  // An activation beyond 1 is invalid.
   pieces.curves =
       "<load_controller id=\"2\" type=\"loadcurve\"><points><pt>0,0</pt><pt>1,3</pt></points></load_controller>";
   EXPECT_THAT(Refusal(pieces), HasSubstr("reaches 3; values may be in [0, 1]"));
@@ -226,7 +226,7 @@ TEST(FebioMaterialTest, TendonAndMuscleInOneBody) {
   const auto& region = body.regions(0);
   EXPECT_EQ(region.name(), "end");
   EXPECT_THAT(MeshOf(imported).tetrahedron_tags, ElementsAre(1, region.physical_tag()));
-  // Held from the end of the first step on.
+  // Fixed from the end of the first step on.
   EXPECT_THAT(body.activation().times(), ElementsAre(0, 0.25));
   EXPECT_THAT(body.activation().values(), ElementsAre(0, 0.5));
   // Fibres along z in the muscle, along the edge from node 2 to node 3 in the tendon.
@@ -253,7 +253,7 @@ TEST(FebioFibreTest, AxesAnglesMapsAndElementData) {
   };
   pieces.material = material("<fiber type=\"angles\"><theta>90</theta><phi>45</phi></fiber>");
   EXPECT_LT((direction() - Vec3(0, std::sqrt(0.5), std::sqrt(0.5))).norm(), 1e-15);
-  // A fibre in turned axes: the second of them.
+  // A fibre along the second of some rotated axes.
   pieces.material =
       material("<mat_axis type=\"vector\"><a>0,0,1</a><d>1,0,0</d></mat_axis><fiber type=\"vector\">0,1,0</fiber>");
   EXPECT_LT((direction() - Vec3(1, 0, 0)).norm(), 1e-15);
@@ -272,7 +272,7 @@ TEST(FebioFibreTest, AxesAnglesMapsAndElementData) {
   EXPECT_THAT(Refusal(pieces), HasSubstr("lid 3 is not in the set"));
   pieces.data.clear();
   pieces.material = material("<fiber type=\"local\">1,7</fiber>");
-  EXPECT_THAT(Refusal(pieces), HasSubstr("names more nodes than the elements"));
+  EXPECT_THAT(Refusal(pieces), HasSubstr("refers to more nodes than the elements"));
 }
 
 TEST(FebioLoadTest, PressureActsAgainstTheFacetsNormals) {
@@ -284,7 +284,7 @@ TEST(FebioLoadTest, PressureActsAgainstTheFacetsNormals) {
   ImportedScene imported = Import(pieces);
   const v1::Body& body = imported.scene.bodies(0);
   ASSERT_EQ(body.loads_size(), 2);  // two directions
-  // Node order 1,3,2 faces down, 1,4,3 to -x.
+  // Node order 1,3,2 faces down; 1,4,3 faces -x.
   EXPECT_THAT(body.loads(0).traction().vector(), ElementsAre(0.5e6, 0, 0));
   EXPECT_THAT(body.loads(1).traction().vector(), ElementsAre(0, 0, 0.5e6));
   EXPECT_NE(body.loads(0).region(), body.loads(1).region());
@@ -349,7 +349,7 @@ TEST(FebioCurveTest, StepsTakeTheValueOfTheNextPoint) {
   EXPECT_EQ(curve.times(2), 0.5);
 }
 
-// FEBio's "smooth" through points of a parabola is that parabola.
+// FEBio's "smooth" curve through points of a parabola is that parabola.
 TEST(FebioCurveTest, SmoothCurvesAreSampled) {
   const v1::Curve curve =
       CurveOf(Controller("<interpolate>SMOOTH</interpolate><points><pt>0,0</pt><pt>0.25,0.0625</pt><pt>0.5,0.25</pt>"
@@ -440,7 +440,7 @@ TEST(FebioMeshTest, PartsThatShareNoFaceAreBodies) {
   ASSERT_EQ(imported.scene.bodies_size(), 2);
   EXPECT_EQ(imported.scene.bodies(1).name(), "q_2");
   EXPECT_EQ(MeshOf(imported, 1).nodes.size(), 4u);
-  // Each body has its share of the forces.
+  // Each body gets its fraction of the forces.
   EXPECT_THAT(imported.scene.bodies(0).loads(0).nodal_force().total(), ElementsAre(0, 4, 0));
   EXPECT_THAT(imported.scene.bodies(1).loads(0).nodal_force().total(), ElementsAre(0, 2, 0));
   EXPECT_FALSE(imported.scene.bodies(0).loads(0).has_scale());
@@ -460,12 +460,12 @@ TEST(FebioMeshTest, RigidPartsAndShellsAreLeftOut) {
   EXPECT_EQ(MeshOf(imported).tetrahedra.size(), 1u);
   const std::string notices = NoticesOf(imported);
   EXPECT_THAT(notices, HasSubstr("MeshDomains/SolidDomain `b`: a rigid body"));
-  EXPECT_THAT(notices, HasSubstr("Mesh/Elements `skin`: elements of type `tri3` are no volume"));
+  EXPECT_THAT(notices, HasSubstr("Mesh/Elements `skin`: elements of type `tri3` have no volume"));
   EXPECT_THAT(notices, HasSubstr("MeshDomains/ShellDomain `skin`"));
   EXPECT_THAT(notices, HasSubstr("Boundary/bc `zero displacement`: none of its nodes"));
 }
 
-// A hexahedron, a wedge and a pyramid side by side: volumes add up, and the faces between them fit.
+// A hexahedron, a wedge and a pyramid side by side: volumes add up, and the split faces match.
 TEST(FebioMeshTest, HexahedraWedgesAndPyramidsAreSplit) {
   Pieces pieces;
   pieces.nodes =
@@ -490,7 +490,7 @@ TEST(FebioMeshTest, HexahedraWedgesAndPyramidsAreSplit) {
   const TetMesh mesh = MeshOf(imported);
   EXPECT_EQ(mesh.tetrahedra.size(), 6u + 3u + 2u);
   EXPECT_NEAR(TotalVolume(mesh), 1000 + 500 + 1000.0 / 3, 1e-9);
-  // Ten squares outside in two, six triangles: nothing inside is left open.
+  // Ten outer squares of two triangles each, and six triangles: no face inside is left unmatched.
   EXPECT_EQ(BoundaryTriangles(mesh).size(), 4u * 2 + (2 * 2 + 2) + 4u);
   EXPECT_EQ(mesh.tagged_triangles.size(), 2u);
   EXPECT_EQ(imported.scene.tet().element(), v1::ELEMENT_UNSPECIFIED);

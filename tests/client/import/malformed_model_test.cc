@@ -1,4 +1,4 @@
-// Wrong models: each mistake is told with its line and element, and all of them at once.
+// Wrong models: each mistake is reported with its line and element, all of them at once.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ std::string Replaced(std::string text, const std::string& what, const std::strin
   return at == std::string::npos ? text : text.replace(at, what.size(), by);
 }
 
-// The line on which a piece of text begins.
+// The line at which a piece of text begins.
 long LineOf(const std::string& text, const std::string& piece) {
   const std::size_t at = text.find(piece);
   EXPECT_NE(at, std::string::npos) << piece;
@@ -30,7 +30,7 @@ long LineOf(const std::string& text, const std::string& piece) {
 struct Mistake {
   std::string name;
   std::string what, by;  // the model with one piece of it replaced
-  std::string at;        // what stands on the line that is told
+  std::string at;        // the text of the reported line
   std::string element;   // the end of the path
   std::string message, hint;
 };
@@ -38,7 +38,7 @@ struct Mistake {
 const std::vector<Mistake>& Mistakes() {
   static const std::vector<Mistake> mistakes = {
       {"Version", "4.0", "2.5", "<febio_spec", "model.feb:2", "`2.5`", "4.0 and 3.0"},
-      {"Module", "\"solid\"", "\"biphasic\"", "<Module", "Module `biphasic`", "not taken", "solids only"},
+      {"Module", "\"solid\"", "\"biphasic\"", "<Module", "Module `biphasic`", "not supported", "solids only"},
       {"Units", "<Module type=\"solid\"/>", "<Module type=\"solid\"><units>furlong</units></Module>", "<Module",
        "units", "`furlong`", "--units"},
       {"NoStepSize", "<step_size>0.1</step_size>", "", "<Control>", "Control", "has no step_size", "<step_size>"},
@@ -57,7 +57,7 @@ const std::vector<Mistake>& Mistakes() {
        "bodies[0].material.mooney_rivlin.c1", ""},
       {"MaterialTwice", "    </material>\n",
        "    </material>\n    <material id=\"2\" name=\"rubber\" type=\"neo-Hookean\"><E>1</E><v>0</v></material>\n",
-       "<material id=\"2\"", "material `rubber`", "before this one", "uniquely"},
+       "<material id=\"2\"", "material `rubber`", "already", "uniquely"},
       {"TwoCoordinates", "0,10,0<", "0,10<", "<node id=\"3\"", "Mesh/Nodes `all`/node `3`", "has 2 numbers where 3",
        ""},
       {"CoordinateIsNaN", "0,10,0<", "0,nan,0<", "<node id=\"3\"", "node `3`", "`nan`", ""},
@@ -66,16 +66,16 @@ const std::vector<Mistake>& Mistakes() {
       {"UnknownNode", "2,3,4,5<", "2,3,4,7<", "2,3,4,7", "Elements `block`/elem `2`", "node 7, which does not exist",
        ""},
       {"ElementOfThreeNodes", "2,3,4,5<", "2,3,4<", "<elem id=\"2\"", "elem `2`", "has 3 numbers where 4", ""},
-      {"ElementWithANodeTwice", "2,3,4,5<", "2,3,5,5<", "<elem id=\"2\"", "elem `2`", "names a node twice", ""},
+      {"ElementWithANodeTwice", "2,3,4,5<", "2,3,5,5<", "<elem id=\"2\"", "elem `2`", "has a node twice", ""},
       {"InvertedElement", "2,3,4,5<", "3,2,4,5<", "<elem id=\"2\"", "elem `2`", "inverted or flat", "mesh"},
       {"Hexahedra", "type=\"tet4\"", "type=\"hex8\"", "<Elements", "Elements `block`", "`hex8`", "--split-hexahedra"},
       {"HigherOrder", "type=\"tet4\"", "type=\"tet15\"", "<Elements", "Elements `block`", "`tet15`", "tet10"},
       {"SetOfUnknownNode", "\"bottom\">1,2,3", "\"bottom\">1,2,30", "<NodeSet name=\"bottom\"", "NodeSet `bottom`",
        "node 30", ""},
       {"SetTwice", "<NodeSet name=\"top\">", "<NodeSet name=\"bottom\">", "<NodeSet name=\"bottom\">5",
-       "NodeSet `bottom`", "before this one", "uniquely"},
+       "NodeSet `bottom`", "already", "uniquely"},
       {"UnknownFacet", "<tri3 id=\"1\">1,3,2</tri3>", "<hexagon id=\"1\">1,3,2</hexagon>", "<hexagon", "hexagon `1`",
-       "is no facet", "tri3"},
+       "is not a facet", "tri3"},
       {"NoSuchPart", "<SolidDomain name=\"block\"", "<SolidDomain name=\"blok\"", "<SolidDomain", "SolidDomain `blok`",
        "no part `blok`", "Elements"},
       {"NoSuchMaterial", "mat=\"rubber\"", "mat=\"steel\"", "<SolidDomain", "SolidDomain `block`",
@@ -85,11 +85,11 @@ const std::vector<Mistake>& Mistakes() {
       {"NoSuchNodeSet", "node_set=\"bottom\"", "node_set=\"botom\"", "<bc type=\"zero", "bc `zero displacement`",
        "no node set `botom`", "@surface"},
       {"NothingHeld", "<x_dof>1</x_dof><y_dof>1</y_dof><z_dof>1</z_dof>", "<x_dof>0</x_dof>", "<bc type=\"zero",
-       "bc `zero displacement`", "holds no direction", "x_dof"},
+       "bc `zero displacement`", "contains no direction", "x_dof"},
       {"FlagIsNoFlag", "<x_dof>1", "<x_dof>yes", "<x_dof>", "bc `zero displacement`/x_dof", "`yes`", ""},
-      {"NoDirection", "<dof>z</dof>", "<dof>w</dof>", "<dof>w", "dof", "`w` is no direction", "x, y or z"},
+      {"NoDirection", "<dof>z</dof>", "<dof>w</dof>", "<dof>w", "dof", "`w` is not a direction", "x, y or z"},
       {"ContraryMotion", "<NodeSet name=\"top\">5", "<NodeSet name=\"top\">5,3", "<bc type=\"pres",
-       "bc `prescribed displacement`", "node 3 along z otherwise than line 38", "out of one"},
+       "bc `prescribed displacement`", "node 3 along z differently from line 38", "out of one"},
       {"NoSuchController", "<value lc=\"1\">", "<value lc=\"4\">", "<value", "bc `prescribed displacement`/value",
        "load controller 4 does not exist", "LoadData"},
       {"ControllerIsNoNumber", "<value lc=\"1\">", "<value lc=\"one\">", "<value", "value", "`one`, not a whole number",
@@ -179,7 +179,7 @@ TEST(MalformedModelTest, WhatIsNoModelIsRefused) {
   }
 }
 
-// Nesting, and a file of nothing but mistakes, cost neither stack nor time.
+// Deep nesting and a file full of mistakes need neither a deep stack nor much time.
 TEST(MalformedModelTest, HostileFilesEnd) {
   std::string deep = "<febio_spec version=\"4.0\">";
   for (int k = 0; k < 200'000; ++k) deep += "<a>";

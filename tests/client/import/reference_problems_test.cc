@@ -1,4 +1,4 @@
-// The FEBio reference problems, written as .feb in both versions, come back as the scenes that they are.
+// The FEBio reference problems, written as .feb in both versions, are imported as the original scenes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ TetMesh MeshFileOf(const ImportedScene& imported) {
   return mesh ? *mesh : TetMesh();
 }
 
-// The mesh has the model's corners and tetrahedra in their order, to the bit, and the model's middles of edges.
+// The mesh has the model's corners and tetrahedra in the same order with the same bits, and the same mid-edge nodes.
 void ExpectSameMesh(const FebMesh& model, const TetMesh& mesh) {
   std::vector<int> number(model.nodes.size(), -1);
   std::vector<int> corners;
@@ -75,7 +75,7 @@ void ExpectSameMesh(const FebMesh& model, const TetMesh& mesh) {
   }
 }
 
-// The nodes of a region by its tag, as coordinates in the model's unit: those of `inside` and no others.
+// The nodes of a region by its tag, in the model's unit, are exactly those for which `inside` holds.
 void ExpectRegion(const v1::Body& body, const TetMesh& mesh, const std::string& name,
                   const std::function<bool(const Point&)>& inside) {
   const auto region =
@@ -106,7 +106,7 @@ void ExpectRamp(const v1::Curve& curve, double value) {
               curve.interpolation() == v1::INTERPOLATION_LINEAR);
 }
 
-// One step of ten, static; nothing of the model is missing or changed; as a scene file it is the same scene.
+// One static step of ten increments; nothing of the model is missing or changed, also after writing the scene file.
 void ExpectRest(const ImportedScene& imported, const std::string& element) {
   const v1::Scene& scene = imported.scene;
   ASSERT_EQ(scene.bodies_size(), 1);
@@ -133,7 +133,7 @@ struct Case {
 
 class ReferenceProblemTest : public ::testing::TestWithParam<Case> {
  protected:
-  // The mesh of the problem's coarsest result with this element; skips where there is none.
+  // The mesh of the problem's coarsest result with this element; skips the test if there is none.
   std::optional<FebMesh> MeshIn(const std::string& file, const std::string& key) {
     problem_ = ReadReference(file);
     if (!problem_) return std::nullopt;
@@ -195,7 +195,7 @@ TEST_P(ReferenceProblemTest, NeoHookeanCantilever) {
   EXPECT_EQ(law.poisson_ratio(), 0.3);
 }
 
-// The same as it was given to FEBio: consistent nodal forces, one node set for each value.
+// The same in the form used with FEBio: consistent nodal forces, one node set for each value.
 TEST_P(ReferenceTetrahedraTest, NeoHookeanCantileverByNodalForces) {
   const auto mesh = MeshIn("a_cantilever_neohookean", "full_fields_coarsest_mesh");
   if (!mesh) GTEST_SKIP() << Skipped();
@@ -311,7 +311,7 @@ TEST_P(ReferenceProblemTest, IsometricMuscle) {
   EXPECT_TRUE(fibres.good());
 }
 
-// Hexahedra are split as the reference's own meshes of tetrahedra are, node for node.
+// Hexahedra are split as in the reference's meshes of tetrahedra, node by node.
 TEST_P(ReferenceTetrahedraTest, HexahedraBecomeTheTetrahedraOfTheReference) {
   problem_ = ReadReference("d_fusiform_isometric");
   if (!problem_) GTEST_SKIP() << Skipped();

@@ -210,7 +210,8 @@ TEST_F(ClientTest, ManyThreadsShareOneClient) {
   EXPECT_EQ(client.ListJobs(100, {}).value().size(), 8u);
 }
 
-// A port of this machine on which nothing answers: `listening` false refuses, true is silent.
+// A port of this machine that does not answer: with `listening` false it refuses connections, with true it stays
+// silent.
 class DeadPort {
  public:
   explicit DeadPort(bool listening) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {

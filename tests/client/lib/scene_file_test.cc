@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{"TextForNumber", "{\"duration\": \"1\"}", "duration", "expects a number, got the text \"1\"", ""},
         BadScene{"NumberForText", "{\"name\": 7}", "name", "expects text in quotes, got the number 7", ""},
         BadScene{"BooleanForNumber", "{\"duration\": true}", "duration", "expects a number, got true", ""},
-        BadScene{"Null", "{\"duration\": null}", "duration", "is null", "leave the field out"},
+        BadScene{"Null", "{\"duration\": null}", "duration", "is null", "omit the field"},
         BadScene{"ObjectForList", "{\"bodies\": {}}", "bodies", "expects a list, got an object", "[ ... ]"},
         BadScene{"NumberForList", R"({"bodies": [{"mesh": {"box": {"size": 1}}}]})", "bodies[0].mesh.box.size",
                  "expects a list, got the number 1", ""},
@@ -141,14 +141,14 @@ class LoadSceneTest : public ::testing::Test {
   std::string WriteScene(const std::string& mesh_path, const std::string& folder = "scenes") {
     fs::create_directories(scratch_.path() / folder);
     const std::string path = scratch_ / (folder + "/scene.json");
-    // All that a scene must have is there, so that only its file can be wrong.
+    // Everything a scene needs, so that only its file can be wrong.
     WriteFile(path, R"({"bodies": [{"name": "a", "unit": "mm", "mesh": {"file": {"path": ")" + mesh_path + R"("}},
       "material": {"neo_hookean": {"young_modulus": 1e4}}}],
       "duration": 1, "output": {"frame_interval": 0.1}, "tet": {}})");
     return path;
   }
 
-  // The one problem of a scene that names this mesh.
+  // The only problem of a scene that refers to this mesh.
   Problem ProblemOf(const std::string& mesh_path) {
     Problems problems;
     EXPECT_FALSE(LoadScene(WriteScene(mesh_path), problems));
@@ -202,7 +202,7 @@ TEST_F(LoadSceneTest, RefusesFilesOutsideTheFolder) {
   EXPECT_THAT(ProblemOf("link.msh").message, HasSubstr("link that leads out"));
   fs::create_directory_symlink(scratch_.path(), scratch_.path() / "scenes/up");
   EXPECT_THAT(ProblemOf("up/secret.msh").message, HasSubstr("link that leads out"));
-  // A folder whose name merely begins like the scene's.
+  // A folder whose name begins with that of the scene's folder.
   fs::create_directories(scratch_.path() / "scenes2");
   WriteFile(scratch_ / "scenes2/a.msh", "x");
   fs::create_symlink(scratch_.path() / "scenes2/a.msh", scratch_.path() / "scenes/near.msh");
@@ -225,7 +225,7 @@ TEST_F(LoadSceneTest, RefusesWhatIsNoUsableFile) {
   // A device or pipe would never end.
   fs::create_symlink("/dev/zero", scratch_.path() / "scenes/zero.msh");
   EXPECT_THAT(ProblemOf("zero.msh").message, HasSubstr("leads out"));
-  // Takes no space: a hole.
+  // Sparse: takes no space.
   WriteFile(scratch_ / "scenes/huge.msh", "");
   fs::resize_file(scratch_ / "scenes/huge.msh", (std::uintmax_t{4} << 30) + 1);
   EXPECT_THAT(ProblemOf("huge.msh").message, HasSubstr("larger than 4 GiB"));

@@ -80,7 +80,7 @@ TEST_F(RenderTest, ShowsTheBellyInTheColoursOfItsField) {
   EXPECT_EQ(image.width, 400);
   EXPECT_EQ(image.height, 300);
   EXPECT_GT(image.Colours(), 500u);
-  // The belly moves most, the ends least, and both are a good part of the picture.
+  // The belly moves most, the ends least; both cover a good part of the picture.
   EXPECT_GT(image.Count(IsYellow), 1000u);
   EXPECT_GT(image.Count(IsViolet), 1000u);
 }
@@ -234,7 +234,7 @@ TEST_F(RenderTest, PanelsShareEyeAndScale) {
   const std::string path = folder_ / "panels.png";
   DrawPanels(job_.geometry(), frames, options, path);
   const Image image = ReadPng(path);
-  // On the left nothing has moved: all of it has the colour of zero.
+  // Nothing has moved on the left, so all of it has the colour of zero.
   std::size_t left = 0, right = 0;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < 565; ++x) {  // the scale is beside
@@ -247,7 +247,7 @@ TEST_F(RenderTest, PanelsShareEyeAndScale) {
                std::runtime_error);
 }
 
-// A cloud shows what is behind: the middle of a thick body is denser than its rim.
+// A cloud shows its inside: the middle of a thick body is denser than its rim.
 TEST_F(RenderTest, ACloudIsDenserWhereItIsThicker) {
   PictureOptions options = Small();
   options.colour = "";
@@ -256,7 +256,7 @@ TEST_F(RenderTest, ACloudIsDenserWhereItIsThicker) {
   options.azimuth = 0;
   options.elevation = 0;
   const Image cloud = Draw(options, 0);
-  // The belly, 32 mm through, takes more light than the ends of 12 mm.
+  // The belly, 32 mm thick, absorbs more light than the ends of 12 mm.
   const auto red = [](int least) { return [least](const Pixel& p) { return p[0] > p[2] + least; }; };
   EXPECT_GT(cloud.Count(red(10)), 2 * cloud.Count(red(90)));
   EXPECT_GT(cloud.Count(red(90)), 300u);
@@ -322,7 +322,7 @@ TEST_F(RenderTest, LinesThatHardlyChangeAreDrawnToo) {
 }
 
 TEST(ValuesAtNodes, AveragesTetrahedraByVolume) {
-  // A linear function of z has averages that follow it in the middle of the body.
+  // Nodal averages of a function linear in z are exact in the middle of the body.
   const SampleJob job;
   const BodyShape shape = DecodeGeometry(job.geometry())[0];
   const NodeValues nodes = ValuesAtNodes(shape, job.frame(3).bodies(0), "von_mises_stress");

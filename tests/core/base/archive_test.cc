@@ -49,7 +49,7 @@ bool Read(std::string_view bytes, Values& values) {
   return reader.AtEnd();
 }
 
-// Sets the last four bytes to the CRC of those before.
+// Sets the last four bytes to the CRC of the others.
 void Seal(std::string& bytes) {
   const std::uint32_t crc = Crc32c(std::string_view(bytes).substr(0, bytes.size() - 4));
   std::memcpy(bytes.data() + bytes.size() - 4, &crc, 4);
@@ -86,12 +86,12 @@ TEST(ArchiveTest, FixedSizesMustMatch) {
 TEST(ArchiveTest, EveryCutFails) {
   const std::string bytes = Sample();
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    // A copy of just this size lets the address sanitizer see a read beyond.
+    // A copy of exactly this size, so that the address sanitizer detects reads beyond the end.
     std::string cut = bytes.substr(0, size);
     cut.shrink_to_fit();
     Values values;
     EXPECT_FALSE(Read(cut, values)) << size;
-    // The same with a correct checksum: the lengths inside are then all that protects.
+    // The same with a correct checksum, so that only the checks of lengths protect.
     if (size < 8) continue;
     Seal(cut);
     EXPECT_FALSE(Read(cut, values)) << size;

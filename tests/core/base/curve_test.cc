@@ -25,7 +25,7 @@ TEST(CurveTest, Linear) {
   EXPECT_DOUBLE_EQ(kLinear.At(1.25), 3.5);
   EXPECT_DOUBLE_EQ(kLinear.At(3), 3);
   EXPECT_DOUBLE_EQ(kLinear.RateAt(1), 2);
-  // At a point, the rate after it.
+  // At a point, the rate is that of the following piece.
   EXPECT_DOUBLE_EQ(kLinear.RateAt(2), -2);
 }
 

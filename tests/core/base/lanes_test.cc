@@ -11,8 +11,8 @@
 namespace fascicle {
 namespace {
 
-// Lanes of one width only: others need code that this machine may not have. All widths give the same bits, which
-// tests/core/tet/kernels_test.cc sees on whole force loops.
+// Lanes of one width only, because this machine may lack the others. tests/core/tet/kernels_test.cc checks on whole
+// force loops that all widths give the same bits.
 template <class S>
 using L = Lanes<S, BaselineSet>;
 
@@ -21,7 +21,7 @@ S First(const Function& f, S x) {
   return f(L<S>(static_cast<double>(x)))[L<S>::kLanes - 1];
 }
 
-// |value - exact| in units of the last place of the exact value.
+// |value - exact| in units in the last place of the exact value.
 template <class S>
 double Ulps(S value, long double exact) {
   const S rounded = static_cast<S>(std::abs(exact));
@@ -34,7 +34,7 @@ class LanesTest : public ::testing::Test {};
 using Scalars = ::testing::Types<double, float>;
 TYPED_TEST_SUITE(LanesTest, Scalars);
 
-// Over the whole range, and where cancellation would show.
+// Over the whole range, and where cancellation would be visible.
 TYPED_TEST(LanesTest, LogToTwoUlps) {
   using S = TypeParam;
   std::mt19937_64 random(1);

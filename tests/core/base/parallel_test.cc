@@ -40,7 +40,7 @@ TEST(ThreadTeamTest, RangesAreAtLeastAGrainLong) {
   EXPECT_LE(short_ranges, 1);  // the last
 }
 
-// The terms are so different in size that any other order of additions shows.
+// The terms differ so much in size that any other order of additions changes the sum.
 TEST(ThreadTeamTest, SumsHaveTheSameBitsForAnyNumberOfThreads) {
   for (const std::size_t count : {0u, 1u, 1023u, 1024u, 1025u, 100000u}) {
     std::vector<double> values(count);
@@ -74,7 +74,7 @@ TEST(ThreadTeamTest, ManyQuickLoops) {
   }
 }
 
-// Loops after a pause find the threads asleep and wake them.
+// Loops after a pause find the threads asleep and wake them up.
 TEST(ThreadTeamTest, WakesSleepingThreads) {
   ThreadTeam team(4);
   for (int loop = 0; loop < 20; ++loop) {
@@ -85,7 +85,7 @@ TEST(ThreadTeamTest, WakesSleepingThreads) {
   }
 }
 
-// Threads do take part: in a loop of two waiting parts each waits for the other.
+// Threads take part: in a loop of two parts, each waits for the other.
 TEST(ThreadTeamTest, RunsPartsAtTheSameTime) {
   ThreadTeam team(2);
   std::atomic<int> inside = 0;
@@ -96,7 +96,7 @@ TEST(ThreadTeamTest, RunsPartsAtTheSameTime) {
   EXPECT_EQ(inside, 2);
 }
 
-// One part far longer than the others lets the caller go to sleep until it is done.
+// One part takes far longer than the others, so that the caller sleeps until it is done.
 TEST(ThreadTeamTest, WaitsForTheSlowest) {
   ThreadTeam team(3);
   for (int loop = 0; loop < 5; ++loop) {

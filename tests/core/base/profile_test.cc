@@ -108,7 +108,7 @@ TEST(ProfileTest, StagesBeyondItsRoomBelongToTheOneTheyArePartOf) {
   const std::vector<ProfileStage> stages = profile.Stages();
   EXPECT_EQ(stages.size(), 64u);
   EXPECT_EQ(stages.back().name, "all/stage 62");
-  Sleep(&profile, "stage 3", milliseconds(0));  // those that were there go on
+  Sleep(&profile, "stage 3", milliseconds(0));  // the existing ones continue
   EXPECT_EQ(profile.Stages()[4].calls, 2);
 }
 
@@ -134,7 +134,7 @@ TEST(ProfileTest, ProcessorTimeIsThatOfWorkAndNotOfWaiting) {
 TEST(ProfileTest, OfAThreadToBeStartedCountsAllItsProcessorTime) {
   Profile of_new(0);
   volatile double sum = 0;
-  for (int i = 0; i < 10'000'000; ++i) sum = sum + i;  // this thread's work is not the other's
+  for (int i = 0; i < 10'000'000; ++i) sum = sum + i;  // this thread's work is separate from the other's
   std::thread([&] { of_new.NoteCpu(); }).join();
   EXPECT_GT(of_new.cpu_seconds(), 0);
   EXPECT_LT(of_new.cpu_seconds(), 0.01);

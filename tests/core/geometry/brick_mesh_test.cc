@@ -10,7 +10,7 @@
 namespace fascicle {
 namespace {
 
-// Three voxels in an L, of labels 1, 1 and 2, of a grid that is turned about z and moved.
+// Three voxels in an L with labels 1, 1 and 2, of a grid that is rotated about z and displaced.
 BrickMesh Corner() {
   VoxelGrid grid = MakeVoxelGrid({3, 2, 1}, Vec3(0.1, 0.2, 0.3));
   grid.material = {1, 1, 0, 2, 0, 0};
@@ -34,7 +34,7 @@ TEST(BrickMeshTest, CornersAreWhereTheGridHasThem) {
   EXPECT_LT((mesh.nodes[mesh.bricks[1][7]] - mesh.grid.CornerAt({2, 1, 1})).norm(), 1e-15);
 }
 
-// Outward: the sum of area vectors is zero and that of x . n dA / 3 the volume.
+// Outward: the area vectors add up to zero, and x . n dA / 3 to the volume.
 TEST(BrickMeshTest, BoundaryIsClosedAndTurnedOutward) {
   const BrickMesh mesh = Corner();
   const std::vector<Quad> quads = BoundaryQuads(mesh);

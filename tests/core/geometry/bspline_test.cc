@@ -32,7 +32,7 @@ class Random {
   std::mt19937_64 engine_{20030726};
 };
 
-// A block of 1 x 1 x 3 that is twisted by 2 rad, bent and tapered on the way.
+// A block of 1 x 1 x 3 that is twisted by 2 rad, bent and tapered.
 Vec3 Bent(const Vec3& p) {
   const double taper = 1 - 0.4 * p.z(), turn = 2 * p.z();
   const Eigen::Vector2d across = Eigen::Rotation2Dd(turn) * (taper * Eigen::Vector2d(p.x() - 0.5, p.y() - 0.5));
@@ -63,7 +63,7 @@ BsplineSolid BentSolid(const std::array<int, 3>& degrees = {3, 3, 3}) {
 
 class BasisOfDegree : public testing::TestWithParam<int> {};
 
-// Against the splines of Eigen, which share no code with ours.
+// Against Eigen's splines, an independent implementation.
 TEST_P(BasisOfDegree, AgreesWithEigen) {
   const int degree = GetParam();
   std::vector<double> knots(static_cast<std::size_t>(degree + 1), -1.0);
@@ -190,7 +190,7 @@ TEST_P(LocatorOfDegrees, FindsTheParametersOfPointsInside) {
 INSTANTIATE_TEST_SUITE_P(All, LocatorOfDegrees,
                          testing::Values(std::array{3, 3, 3}, std::array{2, 3, 5}, std::array{4, 5, 2}));
 
-// Trilinear pieces: the gradients jump between spans, and Newton must cross them.
+// Trilinear pieces: gradients jump between spans, which Newton's method must cross.
 TEST(BsplineLocator, CrossesTheKinksOfDegreeOne) {
   const BsplineLocator locator(BentSolid({1, 1, 1}));
   Random random;
@@ -202,7 +202,7 @@ TEST(BsplineLocator, CrossesTheKinksOfDegreeOne) {
   }
 }
 
-// A brick whose knots span [2, 4], so that the nearest point is known: the clamped one.
+// A brick with knots in [2, 4], whose nearest point is known: the clamped one.
 TEST(BsplineLocator, TakesTheNearestPointForThoseOutside) {
   const std::vector<double> knots = {2, 2, 2, 2.5, 4, 4, 4};
   const BsplineBasis basis(2, knots);
@@ -228,7 +228,7 @@ TEST(BsplineLocator, TakesTheNearestPointForThoseOutside) {
   EXPECT_GT(outside, 5000);
 }
 
-// The gradient of the distance vanishes, or leads out of the box.
+// The gradient of the distance vanishes or points out of the box.
 TEST(BsplineLocator, EndsAtAMinimumForPointsOutsideOfABentBody) {
   const BsplineLocator locator(BentSolid());
   Random random;
@@ -270,7 +270,7 @@ TEST(BsplineLocator, FindsTheSameBitsWithAnyNumberOfThreads) {
 
 // --- Fit -------------------------------------------------------------------------------------------------------------
 
-// Trilinear maps have no second differences: they are found whatever the smoothing.
+// Trilinear maps have zero second differences, so that the fit finds them with any smoothing.
 TEST(FitBsplineSolid, IsExactForTrilinearMaps) {
   const auto map = [](const Vec3& p) {
     return Vec3(7 + p.x() + p.y() * p.z(), p.y() - p.x(), 2 * p.z() + p.x() * p.y() * p.z());
@@ -289,7 +289,7 @@ TEST(FitBsplineSolid, IsExactForTrilinearMaps) {
   }
 }
 
-// The error of a least-squares spline of degree p falls with the power p + 1 of the span.
+// The error of a least-squares spline of degree p is of order p + 1 in the span.
 TEST(FitBsplineSolid, ConvergesWithTheOrderOfItsDegree) {
   const auto error = [](int degree, int spans) {
     const BsplineBasis basis = BsplineBasis::Uniform(degree, spans + degree);

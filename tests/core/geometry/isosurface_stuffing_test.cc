@@ -61,7 +61,7 @@ TEST(IsosurfaceStuffingTest, AnglesAreBoundedForManyShapesAndSizes) {
   EXPECT_LT(largest, 164.8 * kDegree);
 }
 
-// Tetrahedra fit together: no side belongs to more than two, and the outside is closed.
+// Tetrahedra conform: at most two share a face, and the boundary is closed.
 TEST(IsosurfaceStuffingTest, GradedMeshesAreConforming) {
   ThreadTeam team(1);
   const TriangleMesh surface = SurfaceOf(MakeSphere(0.05, 12));
@@ -73,7 +73,7 @@ TEST(IsosurfaceStuffingTest, GradedMeshesAreConforming) {
     const MeshReport report = CheckMesh(mesh, problems);
     EXPECT_TRUE(problems.empty()) << grading << ": " << problems.ToString();
     EXPECT_EQ(report.components, 1);
-    // Chords of a sphere: short by the square of the size.
+    // Chords of a sphere: the error is of second order in the size.
     EXPECT_NEAR(report.volume / EnclosedVolume(surface), 1, 0.02);
     EXPECT_NEAR(EnclosedVolume(SurfaceOf(mesh)), report.volume, 1e-11 * report.volume) << "no hole inside";
     if (grading == 0) uniform = mesh.tetrahedra.size();

@@ -1,4 +1,4 @@
-// Files that are wrong in different ways: each must be refused in words that help.
+// Files that are wrong in different ways: each is refused with a helpful message.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ struct Malformed {
   std::string name;
   std::string bytes;
   std::string element_bytes;
-  std::string message;  // part of what is said
+  std::string message;  // part of the message
 };
 
 std::vector<Malformed> MalformedFiles() {
@@ -45,7 +45,7 @@ std::vector<Malformed> MalformedFiles() {
       {"GmshHalfNumber", "m.msh", Replaced(kGmsh2, "2 1 0 0", "2 1.5.3 0 0"), "", "found `1.5.3`"},
       {"GmshNodeTwice", "m.msh", Replaced(kGmsh2, "5 1 1 1\n$End", "4 1 1 1\n$End"), "", "node 4 is given twice"},
       {"GmshNoSuchNode", "m.msh", Replaced(kGmsh2, "2 3 4 5", "2 3 4 6"), "",
-       "1 tetrahedra name nodes that do not exist: the first is number 1 (counted from 0), which names node 6"},
+       "1 tetrahedra refer to nodes that do not exist: the first is number 1 (counted from 0), which refers to node 6"},
       {"GmshNegativeTags", "m.msh", Replaced(kGmsh2, "3 4 2 10", "3 4 -2 10"), "", "the number of tags is -2"},
       {"GmshHugeTag", "m.msh", Replaced(kGmsh2, "2 10 1", "2 9999999999 1"), "", "tag 9999999999 does not fit"},
       {"GmshThirdOrder", "m.msh", Replaced(Replaced(kGmsh2, "3 4 2 10", "3 29 2 10"), "4 4 2 20", "4 29 2 20"), "",
@@ -55,7 +55,7 @@ std::vector<Malformed> MalformedFiles() {
       {"GmshCornerInTheMiddle", "m.msh",
        Replaced(Replaced(kGmsh2, "3 4 2 10 1 1 2 3 4", "3 11 2 10 1 1 2 3 4 5 5 5 5 5 5"), "4 4 2 20 1 2 3 4 5",
                 "4 11 2 20 1 2 3 4 5 1 1 1 1 1 1"),
-       "", "edges have another node in their middle"},
+       "", "edges have different mid-edge nodes"},
       {"GmshNoElements", "m.msh", std::string(kGmsh2).substr(0, std::string(kGmsh2).find("$Elements")), "",
        "no section $Elements (is the file complete?)"},
       {"GmshTwoNodeSections", "m.msh", std::string(kGmsh2) + "$Nodes\n0\n$EndNodes\n", "", "a second section $Nodes"},
@@ -75,7 +75,7 @@ std::vector<Malformed> MalformedFiles() {
        "500000000 vertices are announced"},
       {"MeditNegative", "m.mesh", Replaced(kMedit, "Tetrahedra\n2", "Tetrahedra\n-2"), "",
        "the number of tetrahedra is -2"},
-      {"MeditCountsFromZero", "m.mesh", Replaced(kMedit, "1 2 3 4 10", "0 1 2 3 10"), "", "which names node 0"},
+      {"MeditCountsFromZero", "m.mesh", Replaced(kMedit, "1 2 3 4 10", "0 1 2 3 10"), "", "which refers to node 0"},
       {"MeditNoEnd", "m.mesh", Replaced(kMedit, "End\n", ""), "", "ends without the keyword End"},
       // TetGen
       {"TetgenNoElements", "m.node", kTetgenNodes, "", "the .ele file with the tetrahedra is missing"},
@@ -97,7 +97,7 @@ std::vector<Malformed> MalformedFiles() {
       {"VtkNegative", "m.vtk", Replaced(kVtkAscii, "CELLS 3", "CELLS -3"), "", "the number of cells is -3"},
       {"VtkType", "m.vtk", Replaced(kVtkAscii, "5 double", "5 quaternion"), "", "unknown type of numbers `quaternion`"},
       {"VtkCellTooLong", "m.vtk", Replaced(kVtkAscii, "4 1 2 3 4", "9 1 2 3 4"), "", "cell 2 reaches beyond the list"},
-      {"VtkNodeOutside", "m.vtk", Replaced(kVtkAscii, "4 1 2 3 4", "4 1 2 3 5"), "", "cell 2 names node 5 of 5"},
+      {"VtkNodeOutside", "m.vtk", Replaced(kVtkAscii, "4 1 2 3 4", "4 1 2 3 5"), "", "cell 2 refers to node 5 of 5"},
       {"VtkTypesMissing", "m.vtk", Replaced(kVtkAscii, "CELL_TYPES 3\n5 10 10", "CELL_TYPES 2\n5 10"), "",
        "data of 3 cells, where there are 2"},
       {"VtkOffsets", "m.vtk", Replaced(kVtkAscii5, "0 3 7 11", "0 3 70 11"), "", "cell 1 has its nodes beyond"},
@@ -127,7 +127,7 @@ std::vector<Malformed> MalformedFiles() {
        "unknown byte_order `MiddleEndian`"},
       {"VtuOffset", "m.vtu", Replaced(appended, "offset=\"0\"", "offset=\"999999\""), "",
        "begins beyond the appended data"},
-      {"VtuWrongBlock", "m.vtu", Replaced(appended, "offset=\"0\"", "offset=\"20\""), "", "bytes, which are not there"},
+      {"VtuWrongBlock", "m.vtu", Replaced(appended, "offset=\"0\"", "offset=\"20\""), "", "bytes, but has fewer"},
       {"VtuWrongSize", "m.vtu", Replaced(appended, "Cells=\"3\"", "Cells=\"2\""), "",
        "bytes where 2 numbers should be"},
   };
@@ -148,7 +148,7 @@ TEST_P(MalformedMesh, IsRefusedInWords) {
 INSTANTIATE_TEST_SUITE_P(Files, MalformedMesh, testing::ValuesIn(MalformedFiles()),
                          [](const auto& test) { return test.param.title; });
 
-// A header that announces 5 GB in the compressed blocks of a small file allocates next to nothing.
+// A header that announces 5 GB in the compressed blocks of a small file allocates almost nothing.
 TEST(MalformedMeshTest, ClaimsOfHugeCompressedBlocks) {
   const auto words = [](std::vector<std::uint64_t> values) {
     return std::string(reinterpret_cast<const char*>(values.data()), 8 * values.size());

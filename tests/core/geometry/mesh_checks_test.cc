@@ -49,15 +49,16 @@ TEST(CheckMeshTest, IndicesOutOfRange) {
   TetMesh mesh = GoodMesh();
   mesh.tetrahedra[3][2] = 45;
   mesh.tetrahedra[9][0] = -1;
-  EXPECT_THAT(Problems1(mesh),
-              HasSubstr("2 tetrahedra name nodes that do not exist: 3, 9 (counted from 0) (the mesh has 45 nodes)"));
+  EXPECT_THAT(
+      Problems1(mesh),
+      HasSubstr("2 tetrahedra refer to nodes that do not exist: 3, 9 (counted from 0) (the mesh has 45 nodes)"));
 }
 
 TEST(CheckMeshTest, TriangleIndicesOutOfRange) {
   TetMesh mesh = GoodMesh();
   mesh.tagged_triangles = {{0, 1, 45}};
   mesh.triangle_tags = {1};
-  EXPECT_THAT(Problems1(mesh), HasSubstr("1 triangle names a node that does not exist: 0"));
+  EXPECT_THAT(Problems1(mesh), HasSubstr("1 triangle refers to a node that does not exist: 0"));
 }
 
 TEST(CheckMeshTest, NotFinite) {
@@ -85,7 +86,7 @@ TEST(CheckMeshTest, Degenerate) {
   EXPECT_THAT(problems.ToString(), testing::Not(HasSubstr("degenerate")));
 }
 
-// A long needle is no sliver: its smallest height is in proportion to its thickness.
+// A long needle is not a sliver: its smallest height is in proportion to its thickness.
 TEST(CheckMeshTest, NeedlesAreNotDegenerate) {
   TetMesh mesh;
   mesh.nodes = {{0, 0, 0}, {1e-4, 0, 0}, {0, 1e-4, 0}, {0, 0, 1}};
@@ -108,7 +109,7 @@ TEST(CheckMeshTest, OverlappingTetrahedra) {
   TetMesh mesh;
   mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 2}, {0, 0, -1}};
   mesh.tetrahedra = {{0, 1, 2, 3}, {0, 1, 2, 4}, {0, 2, 1, 5}};
-  EXPECT_THAT(Problems1(mesh), HasSubstr("1 tetrahedron lies on a face that two others share already"));
+  EXPECT_THAT(Problems1(mesh), HasSubstr("1 tetrahedron has a face that two others already share"));
 }
 
 TEST(CheckMeshTest, UnusedNodes) {
@@ -120,7 +121,7 @@ TEST(CheckMeshTest, UnusedNodes) {
 TEST(CheckMeshTest, CoincidentNodesAndComponents) {
   TetMesh mesh = GoodMesh();
   TetMesh second = MakeBox({0.2, 0, 0}, {0.2, 0.1, 0.1}, {4, 2, 2});
-  for (Vec3& node : second.nodes) node.x() += 1e-12;  // less than anybody meant
+  for (Vec3& node : second.nodes) node.x() += 1e-12;  // smaller than any intended size
   for (Tetrahedron tetrahedron : second.tetrahedra) {
     for (std::int32_t& node : tetrahedron) node += 45;
     mesh.tetrahedra.push_back(tetrahedron);
@@ -130,10 +131,10 @@ TEST(CheckMeshTest, CoincidentNodesAndComponents) {
   EXPECT_EQ(CheckMesh(mesh, problems).components, 2);
   EXPECT_THAT(problems.ToString(), HasSubstr("9 nodes coincide with others: 4 and 45, 9 and 50"));
   EXPECT_THAT(problems.ToString(),
-              HasSubstr("2 parts that share no face; they begin at: tetrahedron 0, tetrahedron 96"));
+              HasSubstr("2 separate parts without a common face, beginning at: tetrahedron 0, tetrahedron 96"));
 }
 
-// The wall between two cells of the search grid must not hide a pair: pairs all over a body of odd size.
+// Pairs across the boundary of two cells of the search grid are found: pairs all over a body of odd size.
 TEST(CheckMeshTest, CoincidentNodesAreFoundAnywhere) {
   TetMesh mesh = MakeBox({0.1234567, 0.7, -0.3}, {0.777, 0.333, 0.111}, {6, 6, 6});
   const std::size_t count = mesh.nodes.size();
@@ -147,7 +148,7 @@ TEST(CheckMeshTest, TouchingInAnEdgeIsNotConnected) {
   TetMesh mesh;
   mesh.nodes = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
   mesh.tetrahedra = {{0, 2, 3, 1}, {0, 4, 5, 1}};
-  EXPECT_THAT(Problems1(mesh), HasSubstr("2 parts that share no face"));
+  EXPECT_THAT(Problems1(mesh), HasSubstr("2 separate parts without a common face"));
 }
 
 TEST(CheckMeshTest, SizesThatNoMuscleHasNameTheUnit) {
@@ -173,13 +174,14 @@ TEST(CheckMeshTest, EveryKindAtOnce) {
   mesh.tetrahedra.push_back({1, 1, 2, 3});
   Problems problems;
   CheckMesh(mesh, problems);
-  for (const char* kind : {"not a finite number", "300 m long", "coincides", "inverted", "degenerate",
-                           "same nodes as another", "belong to no tetrahedron", "parts that share no face"}) {
+  for (const char* kind :
+       {"not a finite number", "300 m long", "coincides", "inverted", "degenerate", "same nodes as another",
+        "belong to no tetrahedron", "separate parts without a common face"}) {
     EXPECT_THAT(problems.ToString(), HasSubstr(kind));
   }
 }
 
-// Nodes in one place, which any pairwise comparison would take quadratic time for.
+// Many nodes at one point; a pairwise comparison would take quadratic time.
 TEST(CheckMeshTest, StaysFastOnBadMeshes) {
   TetMesh mesh = MakeBox({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
   mesh.nodes.resize(200000, Vec3(0.5, 0.5, 0.5));
@@ -217,9 +219,9 @@ TEST(CheckMeshTest, CurvedEdges) {
   };
   EXPECT_EQ(check({{{tet[0], tet[1]}, middle + Vec3(0.02, 0.03, 0.05)}}), "");
   EXPECT_THAT(check({{{tet[0], tet[1]}, middle + Vec3(0.5, 0.6, 0.7)}}), ::testing::HasSubstr("folded"));
-  EXPECT_THAT(check({{{tet[0], tet[0]}, middle}}), ::testing::HasSubstr("none of the mesh"));
+  EXPECT_THAT(check({{{tet[0], tet[0]}, middle}}), ::testing::HasSubstr("not an edge of the mesh"));
   EXPECT_THAT(check({{{tet[0], tet[1]}, middle}, {{tet[1], tet[0]}, middle}}), ::testing::HasSubstr("twice"));
-  EXPECT_THAT(check({{{tet[0], tet[1]}, Vec3(NAN, 0, 0)}}), ::testing::HasSubstr("no finite middle"));
+  EXPECT_THAT(check({{{tet[0], tet[1]}, Vec3(NAN, 0, 0)}}), ::testing::HasSubstr("no finite midpoint"));
 }
 
 }  // namespace

@@ -38,13 +38,13 @@ TEST_P(EverySample, IsRead) {
   EXPECT_TRUE(problems.empty()) << problems.ToString();
 }
 
-// A cut file gives a mesh or a problem, never both nor neither, and no mesh when data is missing.
+// A truncated file gives either a mesh or a problem, and never a mesh if data is missing.
 TEST_P(EverySample, CutAnywhere) {
   const MeshSample& sample = GetParam();
   const bool cut_elements = !sample.element_bytes.empty();
   const std::string& whole = cut_elements ? sample.element_bytes : sample.bytes;
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    // An allocation of its own for each, so that the address sanitizer sees a read beyond.
+    // A separate allocation for each, so that the address sanitizer detects reads beyond the end.
     std::vector<char> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
     cut.shrink_to_fit();
     const std::string_view bytes(cut.data(), cut.size());
@@ -60,7 +60,7 @@ TEST_P(EverySample, CutAnywhere) {
   }
 }
 
-// Every byte changed to a few others: whatever comes out has its indices in range.
+// Every byte replaced by some others: the indices of any resulting mesh are in range.
 TEST_P(EverySample, DamagedAnywhere) {
   const MeshSample& sample = GetParam();
   for (std::size_t at = 0; at < sample.bytes.size(); ++at) {
@@ -137,12 +137,12 @@ TEST(MeshIoTest, VtuPiecesFollowEachOther) {
   EXPECT_EQ(mesh->tagged_triangles[1], (Triangle{5, 7, 8}));
 }
 
-// Two tetrahedra of ten nodes, one of whose common edges and one outer edge are curved; Gmsh has the middles of the
-// last two edges the other way round than VTK.
+// Two tetrahedra of ten nodes; one common edge and one outer edge are curved. Gmsh orders the last two mid-edge nodes
+// differently from VTK.
 TEST(MeshIoTest, TenNodesBecomeCurvedEdges) {
   const char* const nodes =
       "1 0 0 0\n2 2 0 0\n3 0 2 0\n4 0 0 2\n5 2 2 2\n"
-      // middles of 12, 23, 13, 14, 24, 34, and of 25, 35, 45
+      // mid-edge nodes of 12, 23, 13, 14, 24, 34, and of 25, 35, 45
       "6 1 0 0\n7 1 1 0.25\n8 0 1 0\n9 0 0 1\n10 1 0 1\n11 0 1 1\n12 2 1 1\n13 1 2 1\n14 1 1 2.5\n";
   const std::string gmsh = std::string("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n14\n") + nodes +
                            "$EndNodes\n$Elements\n3\n1 9 2 7 1 1 3 4 8 11 9\n"
@@ -174,7 +174,7 @@ TEST(MeshIoTest, TenNodesBecomeCurvedEdges) {
   }
 }
 
-// Not-a-numbers are for CheckMesh to report, together with everything else.
+// CheckMesh reports NaNs, together with everything else.
 TEST(MeshIoTest, PassesOnNumbersThatAreNotFinite) {
   const auto mesh = Read("m.msh", Replaced(kGmsh2, "5 1 1 1\n$End", "5 nan -inf 1\n$End"));
   ASSERT_TRUE(mesh);

@@ -25,7 +25,7 @@ TEST(NearRegionTest, TrianglesNearAPlate) {
   EXPECT_EQ(rim.triangles.size(), 32u + 32u);
 }
 
-// Regions that overlap keep all their triangles in the file.
+// Overlapping regions keep all their triangles in the file.
 TEST(MeshWriterTest, TagsComeBackAsTheRegionsThatTheyWere) {
   TetMesh mesh = MakeSphere(0.3, 6);
   mesh.nodes[5] += Vec3(1e-17, 1.0 / 3, 0.1) * 1e-3;

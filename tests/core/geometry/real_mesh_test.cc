@@ -1,4 +1,4 @@
-// Real anatomy and other public meshes; see shared data's README for where they come from.
+// Real anatomy and other public meshes; their sources are in the README of the data.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ struct RealMesh {
   double unit;  // [m]
   std::size_t nodes, tetrahedra, tagged_triangles;
   double volume;        // [cm^3], as printed with four digits
-  std::string problem;  // what is wrong with it, if anything
+  std::string problem;  // its defect, if any
 };
 
 class RealMeshes : public ::testing::TestWithParam<RealMesh> {};
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
         RealMesh{"polyfem_tets/bar-651.msh", 1e-2, 292, 651, 0, 5, ""},
         RealMesh{"polyfem_tets/bar-2523.msh", 1e-2, 886, 2523, 0, 5, ""},
         RealMesh{"polyfem_tets/torus.msh", 1e-1, 200, 491, 0, 72.65, ""},
-        // Sets of four nodes near one circle, which Delaunay's rule leaves as slivers without volume.
+        // Sets of four nodes near a common circle, which Delaunay's criterion leaves as slivers without volume.
         RealMesh{"artisynth/muscle.1.node", 1e-2, 65, 150, 0, 78.04, "tetrahedra are degenerate (flat)"},
         RealMesh{"artisynth/sphere2.1.node", 1e-2, 54, 174, 0, 3.659, ""},
         RealMesh{"artisynth/torus546.1.node", 1e-2, 297, 770, 0, 0.3554, ""}),

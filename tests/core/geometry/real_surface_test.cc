@@ -39,7 +39,7 @@ std::optional<MeshingResult> Mesh(TriangleMesh surface, std::int64_t tetrahedra,
   return Tetrahedralize(surface, options, team, problems);
 }
 
-// What a mesh must be: upright, one body, no angle under 10 degrees, and at most 0.5 % of the volume wrong.
+// Requirements on a mesh: positive volumes, connected, no angle below 10 degrees, at most 0.5 % volume error.
 void ExpectGood(const MeshingResult& result) {
   TetMesh mesh = result.mesh;
   for (Vec3& node : mesh.nodes) node *= 1e-3;
@@ -107,7 +107,7 @@ TEST(RealSurfaceTest, AHoleIsClosedOrRefused) {
 TEST(RealSurfaceTest, ASurfaceThatCutsItselfIsRepairedOrRefused) {
   SKIP_WITHOUT_DATA();
   const TriangleMesh whole = ReadLeg("Muscle_RectusFemoris");
-  // One node is pulled through the opposite side, as a slip of a hand in a segmentation would.
+  // One node is pulled through the opposite side, as by a slip of the hand in a segmentation.
   TriangleMesh spiked = whole;
   double height = 0;
   for (const Vec3& x : whole.nodes) height += x.z() / static_cast<double>(whole.nodes.size());
@@ -129,9 +129,9 @@ TEST(RealSurfaceTest, ASurfaceThatCutsItselfIsRepairedOrRefused) {
   ExpectGood(*result);
   EXPECT_FALSE(result->report.surface.cuts.empty());
 
-  // Two neighbours grown into one another.
+  // Two neighbouring muscles that overlap.
   EXPECT_FALSE(Mesh(Joined(whole, Moved(whole, {8, 1, 2})), 4000, problems));
-  EXPECT_THAT(problems.ToString(), HasSubstr("the surface cuts itself at ("));
+  EXPECT_THAT(problems.ToString(), HasSubstr("the surface intersects itself at ("));
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ class RegionTest : public testing::Test {
     ExpectSortedAndComplete(region);
     return region;
   }
-  // 10 x 5 x 5 nodes, of which planes stand at multiples of 0.1 that have no exact representation.
+  // 10 x 5 x 5 nodes on planes at multiples of 0.1, which have no exact representation.
   TetMesh mesh_ = MakeBox({0, 0, 0}, {0.9, 0.4, 0.4}, {9, 4, 4});
 };
 
@@ -51,12 +51,12 @@ TEST_F(RegionTest, PlaneTakesNodesOnAndBeyondIt) {
     EXPECT_EQ(end.nodes.size(), 25u);
     EXPECT_NEAR(Area(mesh_, end), 0.16, 1e-15);
   }
-  // 0.3 = 3 * 0.1 only up to round-off.
+  // 0.3 equals 3 * 0.1 only up to round-off.
   EXPECT_EQ(Select(PlaneSelector{{3 * 0.1, 0, 0}, {-1, 0, 0}}).nodes.size(), 100u);
   EXPECT_TRUE(Select(PlaneSelector{{0.91, 0, 0}, {1, 0, 0}}).nodes.empty());
 }
 
-// The tetrahedra under the side x = 0.9, to a depth: those with their centroid in that layer of the box.
+// The tetrahedra under the side x = 0.9 down to a depth: those whose centroid is in that layer of the box.
 TEST_F(RegionTest, SideWithDepthTakesALayer) {
   for (const double depth : {0.1, 0.2, 0.55}) {
     const Region layer = Select(SideSelector{{1, 0, 0}, 0.1, depth});
@@ -77,8 +77,8 @@ TEST_F(RegionTest, IntersectionIsWhatLiesInBoth) {
   EXPECT_TRUE(Intersection(side, Select(PlaneSelector{{0.1, 0, 0}, {-1, 0, 0}})).nodes.empty());
 }
 
-// Points of the material: of a plane those beyond it, of boxes and spheres those inside, of a side those not deeper
-// than its layer; all with a slack.
+// Material points of a region: beyond a plane, inside of boxes and spheres, or within a side's layer; all with a
+// tolerance.
 TEST_F(RegionTest, PointsAreInWhatItsSelectorsSay) {
   const auto contains = [&](const Selector& selector, const Vec3& x, double slack = 0.01) {
     return RegionPoints(Select(selector), mesh_.nodes, slack).Contain(x);
@@ -111,7 +111,7 @@ TEST(TriangleDistanceTest, IsThatToTheNearestPoint) {
   EXPECT_DOUBLE_EQ(SquaredDistance({0.5, 0.5, 1}, {0.5, 0.5, 0}, {0.5, 0.5, 0}, {0.5, 0.5, 0}), 1);  // of no area
 }
 
-// 9 x 4 x 4 hexahedra of six tetrahedra each: those of whole layers, for no centroid lies on a node's plane.
+// 9 x 4 x 4 hexahedra of six tetrahedra each: whole layers, because no centroid lies on a plane of nodes.
 TEST_F(RegionTest, TetrahedraAreThoseWithTheirCentroidInside) {
   const auto count = [&](const Selector& selector) { return Select(selector).elements.size(); };
   EXPECT_EQ(count(PlaneSelector{{0.3, 0, 0}, {-1, 0, 0}}), 3u * 16u * 6u);
@@ -165,14 +165,14 @@ class TagRegionTest : public testing::Test {
   }();
 };
 
-// The file has the triangle 0 2 3 seen from inside.
+// The file has the triangle 0 2 3 with the opposite orientation.
 TEST_F(TagRegionTest, TrianglesAreTurnedOutward) {
   const Region region = Select(7);
   EXPECT_EQ(region.nodes, (std::vector<std::int32_t>{0, 2, 3}));
   EXPECT_EQ(region.triangles, (std::vector<Triangle>{{0, 3, 2}}));
 }
 
-// Points by themselves, in both versions: their nodes, and the surface between them.
+// Point elements, in both versions: their nodes, and the surface between them.
 TEST_F(TagRegionTest, PointsGiveNodesAndTheSurfaceBetweenThem) {
   Problems problems;
   const std::string three = Replaced(kGmsh2, "4\n1 15 2 0 1 1\n", "6\n1 15 2 9 1 1\n5 15 2 9 1 3\n6 15 2 9 1 4\n");
@@ -189,7 +189,7 @@ TEST_F(TagRegionTest, PointsGiveNodesAndTheSurfaceBetweenThem) {
   EXPECT_EQ(Select(7).triangles.size(), 1u) << "triangles stay as they are";
   const std::string missing = Replaced(kGmsh2, "1 15 2 0 1 1", "1 15 2 9 1 8");
   EXPECT_FALSE(ReadMesh({"m.msh", missing, ""}, problems).has_value());
-  EXPECT_NE(problems.ToString().find("1 points name nodes that do not exist"), std::string::npos)
+  EXPECT_NE(problems.ToString().find("1 points refer to nodes that do not exist"), std::string::npos)
       << problems.ToString();
 }
 

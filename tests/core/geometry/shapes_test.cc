@@ -22,8 +22,8 @@ MeshReport ExpectGood(const TetMesh& mesh) {
   return report;
 }
 
-// Every edge of a closed surface without crossings is shared by two triangles, which run along it in opposite ways;
-// V - E + F tells its kind: 2 for a sphere, 0 for a torus.
+// Every edge of a closed surface without self-intersections is shared by two triangles, in opposite directions. V - E +
+// F is its Euler characteristic: 2 for a sphere, 0 for a torus.
 int EulerCharacteristic(const TetMesh& mesh) {
   std::map<std::pair<int, int>, int> edges;
   std::map<int, int> nodes;
@@ -41,7 +41,7 @@ int EulerCharacteristic(const TetMesh& mesh) {
   return int(nodes.size()) - int(edges.size() / 2) + int(boundary.size());
 }
 
-// Nodes and tetrahedra of the reference meshes' rule: 20 x 2 x 2 hexahedra, the first and the second of them.
+// Nodes and tetrahedra of the rule of the reference meshes: 20 x 2 x 2 hexahedra, the first and the second of them.
 TEST(BoxTest, NumbersNodesAndTetrahedraByRule) {
   const TetMesh mesh = MakeBox({0, 0, 0}, {10, 1, 1}, {20, 2, 2});
   ASSERT_EQ(mesh.nodes.size(), 189u);
@@ -70,14 +70,14 @@ TEST(BoxTest, FillsItsBounds) {
   EXPECT_EQ(EulerCharacteristic(mesh), 2);
 }
 
-// The angles of round shapes do not get worse when the mesh is refined.
+// The angles of round shapes do not get worse with refinement.
 constexpr double kSmallestAngle = 16 * kDegree;
 
 class RoundShapes : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Divisions, RoundShapes, testing::Values(2, 4, 6, 12));
 
-// Nodes lie on the surface and chords inside of it: the area of a polygon of 4n corners in a unit circle is
-// 2 n sin(pi / (2n)), and the volume follows exactly where the radius is constant.
+// Nodes lie on the surface and chords inside of it: a polygon of 4n corners in a unit circle has the area 2 n sin(pi /
+// (2n)), and the volume follows exactly where the radius is constant.
 TEST_P(RoundShapes, Cylinder) {
   const int n = GetParam();
   const TetMesh mesh = MakeFusiform({0.2, 0.01, 0.01, n, 10});
@@ -86,8 +86,8 @@ TEST_P(RoundShapes, Cylinder) {
   EXPECT_EQ(EulerCharacteristic(mesh), 2);
 }
 
-// Closed form: pi L (re^2 + re (rb - re) + 3/8 (rb - re)^2), as the mean of sin^2 is 1/2 and of sin^4 3/8.
-// The error shrinks with the square of the mesh width.
+// Closed form: pi L (re^2 + re (rb - re) + 3/8 (rb - re)^2), because the mean of sin^2 is 1/2 and of sin^4 3/8. The
+// error is of second order in the mesh width.
 TEST_P(RoundShapes, Fusiform) {
   const int n = GetParam();
   const TetMesh mesh = MakeFusiform({0.1, 0.014, 0.006, n, 4 * n});
@@ -127,7 +127,8 @@ TEST_P(RoundShapes, Sphere) {
   EXPECT_EQ(EulerCharacteristic(mesh), 2);
 }
 
-// All tetrahedra of a disc's slab have about the same volume: the map of the square keeps ratios of area.
+// All tetrahedra of a slab of a disc have about the same volume, because the map of the square preserves ratios of
+// area.
 TEST(FusiformTest, TetrahedraAreEven) {
   const TetMesh mesh = MakeFusiform({1, 1, 1, 12, 6});
   double smallest = 1, largest = 0;

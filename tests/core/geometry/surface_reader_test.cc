@@ -27,9 +27,9 @@ std::string ProblemsOf(const std::string& name, const std::string& bytes) {
   return problems.ToString();
 }
 
-// A surface or problems, and indices in range whatever the bytes are.
+// Any bytes give a surface with indices in range, or problems.
 void ExpectSound(const std::string& name, const std::string& bytes) {
-  // An allocation of its own, so that the address sanitizer sees a read beyond.
+  // A separate allocation, so that the address sanitizer detects reads beyond the end.
   const std::vector<char> copy(bytes.begin(), bytes.end());
   Problems problems;
   const auto surface = ReadSurface(name, {copy.data(), copy.size()}, problems);
@@ -86,7 +86,7 @@ TEST(SurfaceReaderTest, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(ProblemsOf("a.step", ""), HasSubstr(".stl, .obj, .ply, .vtp"));
   EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\nv 1 zero 0\n"),
               HasSubstr("line 2: expected a coordinate but found `zero`"));
-  EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\nf 1 2 3\n"), HasSubstr("name nodes that do not exist"));
+  EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\nf 1 2 3\n"), HasSubstr("refer to nodes that do not exist"));
   EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\nv 1 0 0\nv nan 0 0\nf 1 2 3\n"), HasSubstr("not finite"));
   EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\n"), HasSubstr("no triangles"));
   EXPECT_THAT(ProblemsOf("a.stl", std::string(kAsciiStl).substr(0, std::string(kAsciiStl).find(" endloop"))),
@@ -96,7 +96,7 @@ TEST(SurfaceReaderTest, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(ProblemsOf("a.vtp", "<VTKFile type=\"UnstructuredGrid\"/>"), HasSubstr("poly data"));
 }
 
-// Bones as OpenSim has them.
+// Bones as in OpenSim.
 TEST(SurfaceReaderTest, RealVtp) {
   const auto path = testing::DataFolder() / "opensim_arm26/Geometry/arm_r_humerus.vtp";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there; set FASCICLE_DATA";

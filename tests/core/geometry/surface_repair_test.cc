@@ -40,7 +40,7 @@ TEST(SurfaceRepairTest, LeavesASoundSurfaceAlone) {
   EXPECT_TRUE(report.holes.empty() && report.cuts.empty());
 }
 
-// Every triangle with nodes of its own, some turned round, some twice, some without area.
+// Every triangle with nodes of its own; some reversed, some duplicated, some degenerate.
 TEST(SurfaceRepairTest, MakesASurfaceOfASoup) {
   const TriangleMesh sound = Sphere();
   TriangleMesh soup;
@@ -77,7 +77,7 @@ TEST(SurfaceRepairTest, FillsSmallHoles) {
   EXPECT_EQ(Repair(surface).holes.size(), 0u) << "it is closed now";
 }
 
-// Of a boundary in a plane, least area is that of the plane.
+// The least area of a boundary in a plane is that of the plane.
 TEST(SurfaceRepairTest, FillsAFlatHoleExactly) {
   TriangleMesh surface = SurfaceOf(MakeBox({0, 0, 0}, {1, 1, 1}, {4, 4, 4}));
   std::erase_if(surface.triangles, [&](const Triangle& t) {
@@ -103,7 +103,7 @@ TEST(SurfaceRepairTest, TurnsASurfaceThatIsInsideOut) {
   EXPECT_GT(EnclosedVolume(surface), 0);
 }
 
-// A part that is inside out stays so where it is a cavity, and is turned where it is a body.
+// A part with inward normals stays so if it is a cavity, and is reversed if it is a body.
 TEST(SurfaceRepairTest, TellsCavitiesFromBodies) {
   TriangleMesh small = Sphere();
   for (Vec3& node : small.nodes) node *= 0.5;

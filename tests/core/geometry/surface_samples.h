@@ -156,7 +156,7 @@ inline std::vector<SurfaceSample> SurfaceSamples() {
           {"corner.vtp", kVtp}};
 }
 
-// The outside of a mesh, with the nodes that it has.
+// The boundary of a mesh, with only its own nodes.
 inline TriangleMesh SurfaceOf(const TetMesh& mesh) {
   TriangleMesh surface;
   std::vector<std::int32_t> number(mesh.nodes.size(), -1);
@@ -191,7 +191,7 @@ inline TriangleMesh Joined(TriangleMesh a, const TriangleMesh& b) {
   return a;
 }
 
-// Without the triangles with a corner nearer than `radius` to a point.
+// Without the triangles with a corner closer than `radius` to a point.
 inline TriangleMesh WithHole(TriangleMesh surface, const Vec3& point, double radius) {
   std::erase_if(surface.triangles, [&](const Triangle& t) {
     return std::any_of(t.begin(), t.end(), [&](std::int32_t n) { return (surface.nodes[n] - point).norm() < radius; });

@@ -49,12 +49,12 @@ TEST_P(ClosedForms, HaveTheirVolumeAndGoodAngles) {
   const ClosedForm& form = GetParam();
   const MeshingResult result = Mesh(form.surface, 6000);
   const MeshingReport& report = result.report;
-  // Between two counts of a box nothing lies that a lattice could have.
+  // A lattice cannot have a number of tetrahedra between these two of a box.
   EXPECT_NEAR(static_cast<double>(result.mesh.tetrahedra.size()) / 6000, 1, form.name == "box" ? 0.1 : 0.05);
   EXPECT_GT(report.angles.smallest, 14 * kDegree);
   EXPECT_GT(report.angles.median, 40 * kDegree);
   EXPECT_LT(report.angles.largest, 165 * kDegree);
-  // The surface's triangles themselves lie 0.3 % below the round shapes.
+  // The surface's triangles themselves enclose 0.3 % less than the round shapes.
   EXPECT_NEAR(report.volume / form.volume, 1, 5e-3);
   EXPECT_NEAR(report.VolumeError(), 0, 1e-4);
   EXPECT_LT(report.surface_distance, 0.5 * report.size);
@@ -78,7 +78,7 @@ TEST(TetrahedralizeTest, TheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.mesh.tetrahedra, three.mesh.tetrahedra);
 }
 
-// Both error measures fall with the square of the size.
+// Both error measures are of second order in the size.
 TEST(TetrahedralizeTest, DistanceFromTheSurfaceFallsWithTheSize) {
   const TriangleMesh surface = SurfaceOf(MakeSphere(1, 32));
   const double coarse = Mesh(surface, 0, 0.36).report.surface_distance;
@@ -115,11 +115,11 @@ TEST(TetrahedralizeTest, RefusesSeveralBodies) {
   EXPECT_THAT(ProblemsOf(Joined(sphere, Moved(sphere, {3, 0, 0}))), HasSubstr("more than one body"));
 }
 
-// Two bodies that overlap: what lies inside of both counts twice.
+// Two bodies that overlap: the volume inside of both counts twice.
 TEST(TetrahedralizeTest, RefusesSurfacesThatCutThemselvesDeeply) {
   const TriangleMesh sphere = SurfaceOf(MakeSphere(1, 8));
   const std::string problems = ProblemsOf(Joined(sphere, Moved(sphere, {1.03, 0.02, 0.01})));
-  EXPECT_THAT(problems, HasSubstr("the surface cuts itself at (0.5"));
+  EXPECT_THAT(problems, HasSubstr("the surface intersects itself at (0.5"));
   EXPECT_THAT(problems, HasSubstr("pairs of triangles"));
 }
 

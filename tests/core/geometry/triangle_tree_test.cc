@@ -36,7 +36,7 @@ TEST(TriangleTreeTest, NearestPointsAreThoseOfAllTriangles) {
   }
 }
 
-// 1 inside of a torus, 0 outside and in its hole; the dipoles of far triangles leave little error.
+// 1 inside of a torus, 0 outside and in its hole; the dipole approximation of far triangles has little error.
 TEST(TriangleTreeTest, WindingNumberTellsInsideFromOutside) {
   const TriangleMesh surface = SurfaceOf(MakeTorus({1, 0.4, 48, 8}));
   const TriangleTree tree(surface);
@@ -50,7 +50,7 @@ TEST(TriangleTreeTest, WindingNumberTellsInsideFromOutside) {
   }
 }
 
-// Half of a sphere: half the solid angle at its centre.
+// Half of a sphere subtends half the solid angle at its centre.
 TEST(TriangleTreeTest, OpenSurfacesHaveWindingNumbersBetween) {
   TriangleMesh surface = SurfaceOf(MakeSphere(1, 16));
   std::erase_if(surface.triangles, [&](const Triangle& t) {
@@ -67,11 +67,11 @@ TEST(TriangleTreeTest, FindsTrianglesThatCutEachOther) {
   const TriangleMesh both = Joined(sphere, Moved(sphere, {1.03, 0.02, 0.01}));
   const auto pairs = TriangleTree(both).CuttingPairs();
   EXPECT_GT(pairs.size(), 20u);
-  // All near the circle in which the spheres meet.
+  // All near the circle in which the spheres intersect.
   for (const auto& [s, t] : pairs) EXPECT_NEAR(both.nodes[both.triangles[s][0]].x(), 0.515, 0.5);
 }
 
-// Two triangles with a common node, one through the other.
+// Two triangles with a common node that intersect.
 TEST(TriangleTreeTest, FindsCutsBetweenNeighbours) {
   const TriangleMesh surface{{{0, 0, 0}, {2, 1, 0}, {2, -1, 0}, {1, 0, 1}, {1, 0, -1}}, {{0, 1, 2}, {0, 3, 4}}};
   EXPECT_THAT(TriangleTree(surface).CuttingPairs(), ::testing::ElementsAre(std::pair(0, 1)));

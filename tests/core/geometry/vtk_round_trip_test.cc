@@ -1,4 +1,4 @@
-// Files that VTK itself wrote, in every way that it can.
+// Files written by VTK itself, in all its variants.
 #include <gtest/gtest.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kTriangle = 17, kFirst = 100, kSecond = 200;
 
-// A fusiform muscle with two tags, one tagged triangle, and other data around that must be passed over.
+// A fusiform muscle with two tags, one tagged triangle, and other data that must be skipped.
 TetMesh Original() {
   TetMesh mesh = MakeFusiform({0.1, 0.014, 0.006, 4, 10});
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) mesh.tetrahedron_tags.push_back(t % 3 ? kFirst : kSecond);

@@ -1,4 +1,4 @@
-// A coil's field that is known, and whether it is found.
+// A known bias field of a coil, and its estimate.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kBias = 0.4;
 
-// How much the values of one tissue vary over the image: the deviation of block means from the tissue's mean, relative
-// to it. Blocks take the noise out.
+// The variation of one tissue over the image: the relative deviation of block means from the tissue's mean. Blocks
+// average the noise.
 double Variation(const VolumeImage& image, const std::vector<ArmTissue>& truth, ArmTissue tissue) {
   constexpr int kBlock = 10;
   const int ni = image.size[0] / kBlock + 1, nj = image.size[1] / kBlock + 1, nk = image.size[2] / kBlock + 1;
@@ -49,7 +49,7 @@ TEST(BiasField, IsFoundAndTakenOut) {
   EXPECT_GT(Variation(arm.image, arm.truth, ArmTissue::kMuscle), 0.15);
 }
 
-// Without a field there is nothing to take out.
+// Without a bias field, nothing is corrected.
 TEST(BiasField, LeavesAnEvenImageNearlyAsItIs) {
   const ArmPhantom arm = MakeArmPhantom({.noise = 0.05, .bias = 0});
   ThreadTeam team(1);

@@ -1,4 +1,4 @@
-// Thresholds against all that are possible, and fuzzy means against the sums they are made of.
+// Thresholds against all possible ones, and fuzzy means against the sums that define them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace fascicle::testing {
 namespace {
 
-// Three overlapping heaps of values.
+// Three overlapping distributions of values.
 std::vector<float> Heaps(std::size_t count) {
   std::mt19937 random(3);
   std::normal_distribution<float> normal;
@@ -23,7 +23,7 @@ std::vector<float> Heaps(std::size_t count) {
   return values;
 }
 
-// Variance between the classes that lie between thresholds, up to what does not depend on them.
+// Between-class variance of the classes separated by thresholds, up to a constant.
 double BetweenClasses(const Histogram& histogram, const std::vector<double>& thresholds) {
   std::vector<double> count(thresholds.size() + 1, 0), moment(thresholds.size() + 1, 0);
   for (std::size_t b = 0; b < histogram.counts.size(); ++b) {

@@ -1,4 +1,4 @@
-// DICOM slices, stacked to volumes.
+// DICOM slices stacked to volumes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 using std::filesystem::path;
 using ::testing::HasSubstr;
 
-// Sagittal slices 2.5 mm apart along -x, which is the normal of rows along y and columns along -z, not in order.
+// Sagittal slices 2.5 mm apart along -x, the normal of rows along y and columns along -z; in arbitrary order.
 std::vector<DicomSlice> Sagittal(int count) {
   std::vector<DicomSlice> slices;
   for (int n = 0; n < count; ++n) {
@@ -62,7 +62,7 @@ TEST(Dicom, StacksSlicesAlongTheirNormal) {
   const std::vector<path> paths = WriteAll(folder, Sagittal(5));
   Problems problems;
   ExpectSagittal(ReadVolumeFiles(paths, {}, problems), problems);
-  // The folder, with something else in it.
+  // The folder, with an unrelated file in it.
   folder.Write("notes.txt", "head first");
   ExpectSagittal(ReadVolumeFiles({folder.path()}, {}, problems), problems);
 }
@@ -103,16 +103,16 @@ TEST(Dicom, RefusesWhatIsNoSeries) {
   EXPECT_THAT(Refusal(slices), HasSubstr("of 2 series"));
   slices = Sagittal(5);
   slices[2].rows = 4;
-  EXPECT_THAT(Refusal(slices), HasSubstr("slice2.dcm has another size than slice0.dcm"));
+  EXPECT_THAT(Refusal(slices), HasSubstr("slice2.dcm has a different size than slice0.dcm"));
   slices = Sagittal(5);
   slices[3].spacing = "1.5\\0.8";
-  EXPECT_THAT(Refusal(slices), HasSubstr("slice3.dcm has another spacing"));
+  EXPECT_THAT(Refusal(slices), HasSubstr("slice3.dcm has a different spacing"));
   slices = Sagittal(5);
   slices[1].orientation = "0\\1\\0\\0\\0\\1";
-  EXPECT_THAT(Refusal(slices), HasSubstr("slice1.dcm has another direction"));
+  EXPECT_THAT(Refusal(slices), HasSubstr("slice1.dcm has a different direction"));
   slices = Sagittal(5);
   slices[1].position = slices[0].position;
-  EXPECT_THAT(Refusal(slices), HasSubstr("at the same place"));
+  EXPECT_THAT(Refusal(slices), HasSubstr("at the same position"));
   slices = Sagittal(7);
   slices.erase(slices.begin() + 2);
   EXPECT_THAT(Refusal(slices), HasSubstr("slices are missing"));
@@ -121,7 +121,7 @@ TEST(Dicom, RefusesWhatIsNoSeries) {
     const int height = slices[s].first_value / 100;
     slices[s].position = std::to_string(40 - 2.5 * height) + "\\" + std::to_string(-7 + height) + "\\90";
   }
-  EXPECT_THAT(Refusal(slices), HasSubstr("shifted against each other"));
+  EXPECT_THAT(Refusal(slices), HasSubstr("shifted relative to each other"));
 }
 
 TEST(Dicom, TellsAllBrokenSlicesAtOnce) {

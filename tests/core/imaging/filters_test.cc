@@ -1,4 +1,4 @@
-// Filters against sums written out, closed forms, and noise that is known.
+// Filters against explicit sums, closed forms and known noise.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -57,8 +57,8 @@ TEST(Filters, AnythingGoesWithImagesOfOneVoxelAcross) {
   }
 }
 
-// The variance of a voxel's blur along each axis is that of the Gaussian [m^2], whatever the spacing: so is the
-// discrete Gaussian's [Lindeberg 1994].
+// The variance of a blurred voxel along each axis is that of the Gaussian [m^2] for any spacing; this also holds for
+// the discrete Gaussian [Lindeberg 1994].
 TEST(Gaussian, HasTheVarianceThatIsAskedForInMetres) {
   VolumeImage image = Empty({41, 31, 15}, {0.5e-3, 0.8e-3, 2e-3});
   const GridIndex middle = {20, 15, 7};
@@ -97,12 +97,12 @@ TEST(Wavelet, NothingIsLostWithoutAThreshold) {
   const VolumeImage image = Noise({17, 12, 7}, 100);
   ThreadTeam team(2);
   EXPECT_EQ(ApplyFilter(image, WaveletFilter{4, 0}, team).values, image.values);
-  // What is far above the noise stays, but for what shrinking takes: t^2 / w of a coefficient w.
+  // Values far above the noise stay, except for the shrinkage t^2 / w of a coefficient w.
   const VolumeImage barely = ApplyFilter(image, WaveletFilter{4, 1e-4}, team);
   EXPECT_LT(DeviationFrom(barely, image), 1e-3);
 }
 
-// All of it taken away leaves the smooth rest, which is the image blurred by splines with holes: written out here, with
+// Removing all coefficients leaves the smooth residual: the image blurred by splines with holes, written out here with
 // mirrored sides.
 TEST(Wavelet, ScalesAreBlursBySplinesWithHoles) {
   const VolumeImage image = Noise({9, 7, 6}, 100);
@@ -140,16 +140,16 @@ TEST(Wavelet, EstimatesTheNoise) {
     EXPECT_NEAR(EstimateNoise(Noise({64, 64, 32}, deviation), team), deviation, 0.03 * deviation);
     EXPECT_NEAR(EstimateNoise(Noise({256, 256, 1}, deviation), team), deviation, 0.03 * deviation);
   }
-  // Masked background does not count.
+  // Masked background is ignored.
   VolumeImage image = Noise({64, 64, 64}, 50);
   std::fill(image.values.begin(), image.values.begin() + 64 * 64 * 32, 0.0F);
   EXPECT_NEAR(EstimateNoise(image, team), 50, 5);
   EXPECT_EQ(EstimateNoise(Empty({8, 8, 8}), team), 0);
 }
 
-// Plains lose nearly all of their noise. Beside a step of 800 the finest coefficient is 5/16 of it, w = 250, of which
-// shrinking takes t^2 / w with t = 3 * 40 on either side: 115. A Gaussian of one voxel would take more than half of the
-// step.
+// Flat regions lose nearly all of their noise. Beside a step of 800 the finest coefficient is 5/16 of it, w = 250, and
+// shrinkage removes t^2 / w with t = 3 * 40 on either side: 115. A Gaussian of one voxel would remove more than half of
+// the step.
 TEST(Wavelet, NoiseFallsAndEdgesStay) {
   VolumeImage truth = Empty({64, 48, 32});
   for (std::size_t v = 0; v < truth.voxels(); ++v) truth.values[v] = v % 64 < 32 ? 200 : 1000;

@@ -1,4 +1,4 @@
-// The stage from an image to voxels: every member does what it says, and what is wrong is told with its path.
+// The stage from an image to voxels: every member works, and problems are reported with their paths.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// Two bright cubes of 4 voxels in the dark, the second also in the lower half brighter; a hole in the first.
+// Two bright cubes of 4 voxels on a dark background; the lower half of the second is brighter; a hole in the first.
 VolumeImage TwoCubes() {
   VolumeImage image;
   image.size = {14, 8, 8};
@@ -134,7 +134,7 @@ TEST(ImageStage, GridsAreRightHanded) {
   const StagedImage staged = Good(ClassStage(2), image);
   EXPECT_NEAR(staged.grid.direction.determinant(), 1, 1e-12);
   EXPECT_NEAR(staged.body.direction.determinant(), -1, 1e-12);
-  // The middle of the cube stays where it was.
+  // The centre of the cube does not move.
   const Vec3 middle = staged.grid.origin + 0.5 * staged.grid.direction *
                                                staged.grid.spacing.cwiseProduct(
                                                    Vec3(staged.grid.size[0], staged.grid.size[1], staged.grid.size[2]));
@@ -201,7 +201,7 @@ TEST(ImageStage, TellsAllMistakesAtOnce) {
   EXPECT_THAT(PathsOf(labels), ElementsAre("labels[0]", "labels[2]", "filters"));
 }
 
-// What only the image can tell.
+// Problems that only the image reveals.
 TEST(ImageStage, TellsWhatDoesNotFitTheImage) {
   const auto refusal = [](const ImageStage& stage, const VolumeImage& image = TwoCubes()) {
     Problems problems;
@@ -210,7 +210,7 @@ TEST(ImageStage, TellsWhatDoesNotFitTheImage) {
   };
   ImageStage stage = ClassStage(1);
   stage.region = VoxelBox{{10, 0, 0}, {5, 8, 8}};
-  EXPECT_THAT(refusal(stage), HasSubstr("region: does not lie in the image, which has (14, 8, 8) voxels"));
+  EXPECT_THAT(refusal(stage), HasSubstr("region: is not inside of the image, which has (14, 8, 8) voxels"));
   stage = ClassStage(1);
   stage.resample = 1e-5;
   EXPECT_THAT(refusal(stage), HasSubstr("resample: makes (1400, 800, 1600) voxels"));
@@ -224,10 +224,10 @@ TEST(ImageStage, TellsWhatDoesNotFitTheImage) {
   EXPECT_THAT(refusal(stage), HasSubstr("seeds[0]: is in class 2, not in class 1"));
   stage.choice = LabelChoice{{100}};
   stage.cleaning.keep = KeptParts::kSeeds;
-  EXPECT_THAT(refusal(stage), HasSubstr("seeds[0]: voxel (9, 3, 3) is not of the body"));
+  EXPECT_THAT(refusal(stage), HasSubstr("seeds[0]: voxel (9, 3, 3) is not in the body"));
   stage.choice = LabelChoice{{100, 7}};
   EXPECT_THAT(refusal(stage),
-              AllOf(HasSubstr("labels[1]: no voxel has the label 7"), HasSubstr("there are: 100, 200")));
+              AllOf(HasSubstr("labels[1]: no voxel has the label 7"), HasSubstr("existing labels: 100, 200")));
   stage = ClassStage(1);
   stage.cleaning.opening = 3e-3;
   EXPECT_THAT(refusal(stage), HasSubstr("cleaning.opening: nothing is left"));

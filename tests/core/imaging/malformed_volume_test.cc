@@ -1,4 +1,4 @@
-// What is no image, or not all of one: told in plain words, with nothing read and nothing large made.
+// Files that are not images, or incomplete: reported in plain words, with nothing read and no large allocation.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,7 +68,7 @@ TEST(MalformedVolume, PlacesThatAreNoNumbers) {
          {with(kSpacing, {-kInfinity}), with(kSpacing + 8, {kNan}), with(kSpacing, {1e30F}), with(kSpacing, {1e-30F}),
           with(kQuaternion, {kNan}), with(kOffset + 8, {kInfinity}), with(kMatrix, {kNan}), with(kMatrix + 16, {1e38F}),
           with(kMatrix, std::vector<float>(12, 0)), with(kMatrix, std::vector<float>(12, 1e-30F))}) {
-      EXPECT_THAT(Refusal("a.nii", bytes), HasSubstr("where the image lies"));
+      EXPECT_THAT(Refusal("a.nii", bytes), HasSubstr("the image's position"));
     }
   }
 }
@@ -77,7 +77,7 @@ TEST(MalformedVolume, Huge) {
   EXPECT_THAT(Refusal("a.mha", Meta("10000 10000 10000") + kVoxels), HasSubstr("10000 x 10000 x 10000 voxels"));
   EXPECT_THAT(Refusal("a.nrrd", Nrrd("10000 10000 10000") + kVoxels), HasSubstr("10000 x 10000 x 10000 voxels"));
   EXPECT_THAT(Refusal("a.nii", NiftiBytes({10000, 10000, 10000}, kVoxels, false)), HasSubstr("voxels"));
-  // Below 2^31, but far above what the file can hold, compressed or not.
+  // Below 2^31, but far more than the file can contain, compressed or not.
   EXPECT_THAT(Refusal("a.mha", Meta("1000 1000 1000") + kVoxels), HasSubstr("the file is too short"));
   const TemporaryFolder folder;
   Problems written;
@@ -111,7 +111,7 @@ TEST(MalformedVolume, Empty) {
   EXPECT_EQ(problems.count(), 1u);
 }
 
-// Whatever the length at which a file breaks off, it is refused.
+// A file truncated at any length is refused.
 TEST(MalformedVolume, Truncated) {
   const TemporaryFolder folder;
   VolumeImage image = ObliqueImage();
@@ -192,7 +192,7 @@ TEST(MalformedVolume, NoVolumeOfOneNumberAVoxel) {
   Problems problems;
   WriteVolume(image, VoxelType::kFloat32, folder / "nan.mha", problems);
   EXPECT_THAT(Refusal("nan.mha", ReadFile(folder / "nan.mha")),
-              HasSubstr("2 voxels are infinite or no numbers: the first is (2, 1, 0)"));
+              HasSubstr("2 voxels are infinite or not numbers: the first is (2, 1, 0)"));
 }
 
 TEST(MalformedVolume, Raw) {
@@ -226,7 +226,7 @@ TEST(MalformedVolume, WhatIsGivenIsNoFile) {
   }
 }
 
-// Whatever byte of a header is another one: an image or problems, and no crash.
+// Any byte of a header replaced: an image or problems, and no crash.
 TEST(MalformedVolume, AnyByteChanged) {
   std::mt19937 random(1);
   std::size_t refused = 0;

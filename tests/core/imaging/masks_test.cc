@@ -1,4 +1,4 @@
-// What is done to masks, against the plain definitions.
+// Operations on masks against their definitions.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -15,7 +15,7 @@ VoxelGrid RandomGrid(const GridIndex& size, const Vec3& spacing, unsigned percen
   return grid;
 }
 
-// Whether a voxel of `grid` that is solid (or empty) lies no further than the radius, by going through all.
+// Whether any solid (or empty) voxel of `grid` is within the radius; by brute force.
 bool NearOne(const VoxelGrid& grid, const GridIndex& from, double radius, bool solid) {
   bool near = false;
   ForVoxels(grid, [&](std::size_t v, const GridIndex& at) {

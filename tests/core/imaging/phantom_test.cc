@@ -1,4 +1,4 @@
-// The arm whose truth is known: what it is, and how well its muscle is found.
+// The arm with known anatomy: its properties, and how accurately its muscle is segmented.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ std::optional<StagedImage> RunStage(const VolumeImage& image, const ImageStage& 
   return staged;
 }
 
-// As a user would: noise filtered, the muscle pointed at, thin bridges cut.
+// As a user would: filter the noise, put a seed into the muscle, open thin bridges.
 ImageStage AnconeusStage(ClassMethod method) {
   ImageStage stage;
   stage.filters = {WaveletFilter{}};
@@ -68,7 +68,7 @@ TEST(ArmPhantom, IsTheSameForTheSameSeed) {
 
 TEST(ArmPhantom, HasTheNoiseThatIsStated) {
   ThreadTeam team(1);
-  // Edges add to the estimate.
+  // Edges increase the estimate.
   EXPECT_NEAR(EstimateNoise(Arm().image, team), 50, 8);
   ArmPhantomSettings settings;
   settings.noise = 0;
@@ -82,7 +82,7 @@ TEST(ArmPhantom, HasTheNoiseThatIsStated) {
     ++count;
   }
   EXPECT_NEAR(std::sqrt(squares / count), 50, 1);
-  // Rician: a little brighter, by deviation^2 / (2 signal) [Gudbjartsson and Patz 1995].
+  // Rician noise brightens slightly, by deviation^2 / (2 signal) [Gudbjartsson and Patz 1995].
   EXPECT_NEAR(sum / count, 50.0 * 50 / (2 * 380), 1);
 }
 
@@ -119,7 +119,7 @@ TEST(ArmPhantom, AllMusclesAreFound) {
   EXPECT_GE(DiceOverlap(staged->body, TruthOf(Arm(), {ArmTissue::kMuscle, ArmTissue::kAnconeus})), 0.95);
 }
 
-// Where noise hides the classes, filters bring them back.
+// Where noise hides the classes, filters recover them.
 TEST(ArmPhantom, FiltersHelpAgainstStrongNoise) {
   ArmPhantomSettings settings;
   settings.noise = 0.15;
@@ -151,8 +151,8 @@ TEST(ArmPhantom, TheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one->centres, three->centres);
 }
 
-// [Zhu, Chen & Kaufman 1998, Table 1]: ours is another muscle of that size, so that levels of many voxels are near
-// theirs.
+// [Zhu, Chen & Kaufman 1998, Table 1]: our muscle is a different one of that size, so that levels with many voxels have
+// similar counts.
 TEST(ArmPhantom, LevelsAreAsThePapersTable) {
   const auto staged = RunStage(Arm().image, AnconeusStage(ClassMethod::kFuzzyMeans));
   ASSERT_TRUE(staged);

@@ -1,4 +1,4 @@
-// Scans of people: sizes, spacings and places as other programs give them.
+// Scans of people: sizes, spacings and positions as other programs report them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,7 +43,7 @@ TEST(RealVolume, LabelsOfAnUpperArm) {
   EXPECT_GT(staged->statistics[1].voxels, 100000);
 }
 
-// The header's own numbers, by the bytes at which NIfTI-1 has them.
+// Numbers of the header at the byte offsets that NIfTI-1 defines.
 TEST(RealVolume, ThighsByTheirHeader) {
   const std::string name = "qmritools_leg_mri/test_up.nii.gz";
   SKIP_WITHOUT(name);
@@ -71,7 +71,7 @@ TEST(RealVolume, ComputedTomography) {
     ASSERT_TRUE(image);
     EXPECT_GT(image->voxels(), 10000u);
   }
-  // A scan and its labels lie in the same place.
+  // A scan and its labels have the same position.
   const auto scan = Read("totalsegmentator_ct/example_ct.nii.gz");
   const float darkest = *std::min_element(scan->values.begin(), scan->values.end());
   EXPECT_LE(darkest, -900) << "air, in Hounsfield's units";

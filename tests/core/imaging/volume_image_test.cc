@@ -1,4 +1,4 @@
-// Places of voxels, and what keeps them.
+// Positions of voxels, and operations that preserve them.
 #include <gtest/gtest.h>
 
 #include "volume_samples.h"
@@ -25,7 +25,7 @@ TEST(VolumeImage, CroppedVoxelsStayWhereTheyWere) {
   EXPECT_EQ(part.values[part.IndexOf({1, 2, 1})], image.values[image.IndexOf({3, 3, 2})]);
 }
 
-// A linear function is trilinear between centres, so that resampling must give it again; beyond them it is held.
+// A linear function is trilinear between centres, so that resampling reproduces it; beyond them it is constant.
 TEST(VolumeImage, ResamplesLinearFunctionsExactly) {
   VolumeImage image = ObliqueImage();
   image.size = {20, 12, 8};
@@ -52,7 +52,7 @@ TEST(VolumeImage, ResamplesLinearFunctionsExactly) {
 
 TEST(VolumeImage, ResampledLabelsAreThoseOfTheNearestVoxel) {
   const VolumeImage image = ObliqueImage();
-  // No centre of theirs lies in the middle between two of the image.
+  // None of their centres is midway between two of the image.
   const VolumeImage cubes = Resample(image, 0.33e-3, Interpolation::kNearest);
   for (std::int32_t k = 0; k < cubes.size[2]; ++k) {
     for (std::int32_t j = 0; j < cubes.size[1]; ++j) {

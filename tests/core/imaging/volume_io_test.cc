@@ -1,4 +1,4 @@
-// Images written and read again, and files made by hand: the same voxels at the same places.
+// Images written and read again, and handmade files: the same voxels at the same positions.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ class RoundTrip : public ::testing::TestWithParam<const char*> {};
 TEST_P(RoundTrip, KeepsVoxelsAndPlace) {
   const TemporaryFolder folder;
   const std::string name = std::string("image") + GetParam();
-  // NIfTI has floats of 32 bits for the place [mm].
+  // NIfTI stores positions as floats of 32 bits [mm].
   const bool nifti = name.find("nii") != std::string::npos || name.find("NII") != std::string::npos;
   const double tolerance = nifti ? 1e-6 : 1e-9;
   VolumeImage image = ObliqueImage();
@@ -49,7 +49,7 @@ TEST_P(RoundTrip, KeepsVoxelsAndPlace) {
       const VolumeImage read = Read({folder / name});
       ExpectSamePlace(read, image, tolerance);
       EXPECT_EQ(read.values, image.values) << NameOf(type);
-      // From bytes, wherever they were.
+      // From bytes of any origin.
       const std::string bytes = ReadFile(folder / name);
       const std::optional<VolumeImage> again = ReadVolume({{"/a/b/" + name, bytes}}, {}, problems);
       ASSERT_TRUE(again) << problems.ToString();
@@ -105,7 +105,7 @@ void ExpectShorts(const VolumeImage& image) {
   }
 }
 
-// Spacing along the axes, lengths in millimetres; the header of `file` goes before the voxels or names them.
+// Spacing along the axes, lengths in millimetres; the header `file` precedes the voxels or refers to their file.
 constexpr const char* kMeta =
     "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = %ORDER%\nCompressedData = False\n"
     "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 10 20 30\nElementSpacing = 2 3 4\nDimSize = 4 3 2\n"
@@ -138,7 +138,7 @@ TEST(VolumeReader, ReadsEitherByteOrder) {
     ExpectByHand(Read({folder.Write("a.nrrd", Filled(kNrrd, big ? "big" : "little", "\n") + shorts)}));
     const VolumeImage nifti = Read({folder.Write("a.nii", NiftiBytes({4, 3, 2}, shorts, big))});
     ExpectShorts(nifti);
-    // x and y point the other way in NIfTI's frame.
+    // x and y point in the opposite directions in NIfTI's frame.
     EXPECT_LT((nifti.CentreOf({1, 1, 1}) - Vec3(-12e-3, -23e-3, 34e-3)).norm(), 1e-9);
   }
 }

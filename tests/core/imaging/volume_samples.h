@@ -7,7 +7,7 @@
 
 namespace fascicle::testing {
 
-// Different whole numbers in all voxels, some below 0; every axis of another length and spacing, none along x, y or z.
+// Different integers in all voxels, some negative; axes of different lengths and spacings, none along x, y or z.
 inline VolumeImage ObliqueImage() {
   VolumeImage image;
   image.size = {7, 5, 4};

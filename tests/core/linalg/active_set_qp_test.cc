@@ -1,4 +1,4 @@
-// Quadratic programs against their own conditions of optimality, looked at here, and MINRES against the direct solver.
+// Quadratic programs against their optimality conditions, and MINRES against the direct solver.
 #include "core/linalg/active_set_qp.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ class RandomProblems {
  public:
   explicit RandomProblems(unsigned seed) : random_(seed) {}
 
-  // Some v meets all constraints: many inequalities hold as equalities there.
+  // Some v meets all constraints; many inequalities are active there.
   QuadraticProgram Next() {
     const int n = Whole(3, 40);
     QuadraticProgram problem;
@@ -50,7 +50,7 @@ class RandomProblems {
     for (double& x : v) x = normal_(random_);
     return v;
   }
-  // Diagonal as often as not.
+  // Diagonal in half of the problems.
   Eigen::SparseMatrix<double> Mass(int n) {
     Triplets entries;
     for (int i = 0; i < n; ++i) entries.emplace_back(i, i, std::pow(10.0, 1.5 * normal_(random_)));
@@ -77,8 +77,7 @@ class RandomProblems {
   std::normal_distribution<double> normal_;
 };
 
-// Conditions of Karush, Kuhn and Tucker, to 1e-8 of the terms that make them. How many inequalities pull on the
-// solution.
+// Karush-Kuhn-Tucker conditions, to 1e-8 of the terms in them. Returns the number of active inequalities.
 int ExpectOptimal(const QuadraticProgram& problem, const QpSolution& s) {
   constexpr double kTolerance = 1e-8;
   VectorXd pull = problem.p;
@@ -132,19 +131,20 @@ TEST(ActiveSetQp, AThousandRandomProblems) {
     factored += of_minres.factored;
     difference = std::max(difference, (direct.v - minres.v).norm() / (1 + direct.v.norm()));
     most = std::max(most, of_direct.active_set_iterations);
-    // From the solution on there is nothing to exchange.
+    // Started at the solution, no constraint is exchanged.
     EXPECT_EQ(SolveQp(problem, {.solver = KktSolver::kDirect}, direct).active_set_iterations, 1);
     if (HasFailure()) break;
   }
   std::printf(
       "%d inequalities pull, at most %d active sets, MINRES and MUMPS differ by %.1e, %d of %d systems factored\n",
       pulling, most, difference, factored, systems);
-  EXPECT_LT(factored, systems / 20);  // masses over nine decades that are not diagonal are hard on MINRES
+  EXPECT_LT(factored, systems / 20);  // non-diagonal masses over nine decades are hard for MINRES
   EXPECT_GT(pulling, 3000);
   EXPECT_LT(difference, 1e-7);
 }
 
-QuadraticProgram Line(const std::vector<std::array<double, 2>>& rows) {  // rows g v >= b on a single v, drawn towards 0
+// Rows g v >= b of a single v, whose unconstrained minimum is 0.
+QuadraticProgram Line(const std::vector<std::array<double, 2>>& rows) {
   QuadraticProgram problem;
   problem.M.resize(1, 1);
   problem.M.insert(0, 0) = 2;
@@ -185,8 +185,8 @@ TEST(ActiveSetQp, TheSameBitsAgain) {
   EXPECT_EQ(first.contact, second.contact);
 }
 
-// A block on a grid of nodes, as the eulerian method makes it: lumped masses, slivers at the surface; the volume of
-// every cell, with eps L; held at the bottom, pressed against a wall at the top.
+// A block on a grid of nodes as in the eulerian method: lumped masses, slivers at the surface, one volume constraint
+// per cell regularized by eps L, supported at the bottom, pressed against a wall at the top.
 QuadraticProgram Block(int nodes) {
   const int cells = nodes - 1, n = 3 * nodes * nodes * nodes;
   const auto node = [=](int i, int j, int k) { return i + nodes * (j + nodes * k); };
@@ -208,7 +208,7 @@ QuadraticProgram Block(int nodes) {
           for (int d = 0; d < 3; ++d)
             volumes.emplace_back(cell(i, j, k), 3 * at + d, (c >> d & 1 ? 1 : -1) * part * h * h / 4);
         }
-        const double weight = 0.05 * h / density;  // as core/eulerian has it
+        const double weight = 0.05 * h / density;  // as in core/eulerian
         const auto couple = [&](int other) {
           laplacian.emplace_back(cell(i, j, k), cell(i, j, k), weight);
           laplacian.emplace_back(cell(i, j, k), other, -weight);
@@ -270,7 +270,7 @@ TEST(ActiveSetQp, MinresIterationsOfABlockOnAGrid) {
                 report.active_set_iterations);
     for (const int iterations : report.minres_iterations) std::printf(" %d", iterations);
     std::printf(", stationarity %.1e, feasibility %.1e\n", report.stationarity, report.feasibility);
-    // Part of the wall is touched, and part is not.
+    // Part of the wall is in contact.
     const auto touched = std::count(solution.active.begin(), solution.active.end(), true);
     EXPECT_GT(touched, problem.inequalities.count() / 4);
     EXPECT_LT(touched, problem.inequalities.count());

@@ -69,7 +69,7 @@ TEST(DirectSolverTest, SingularIsNotOk) {
   EXPECT_TRUE(solver.Factor(std::vector{1.0, 0.5, 1.0}).ok);
 }
 
-// Jobs on several workers solve at the same time: each gets what it would get alone, to the bit.
+// Several threads solve at the same time; each gets the same bits as alone.
 TEST(DirectSolverTest, SolversInSeveralThreadsDoNotMix) {
   const auto solve = [](unsigned seed) {
     const Problem problem(80, seed);

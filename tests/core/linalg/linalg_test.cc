@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kNodes = 200;
 const Vec3 kWeights(1, 2, 5);
 
-// Chains of springs between neighbours, one for each axis, its ends held: the matrix 2 on, -1 beside the diagonal,
-// times the weight of the axis. Eigenvalues weight * (2 - 2 cos(k pi / (n + 1))), k = 1 .. n.
+// Chains of springs between neighbours, one per axis, with fixed ends: the matrix has 2 on the diagonal and -1 beside
+// it, times the weight of the axis. Its eigenvalues are weight * (2 - 2 cos(k pi / (n + 1))), k = 1 .. n.
 void ApplyChain(const NodalVector& p, NodalVector& q) {
   q.resize(p.size());
   for (std::size_t n = 0; n < p.size(); ++n) {
@@ -32,7 +32,7 @@ TEST(LanczosTest, LargestEigenvalueOfChain) {
   const double estimate = LargestEigenvalue(team, ApplyChain, ones, 0.01, workspace);
   EXPECT_GE(estimate, exact * (1 - 1e-9));
   EXPECT_LE(estimate, exact * 1.01);
-  // Scaled by W on both sides; an axis with W = 0 takes no part.
+  // Scaled by W on both sides; an axis with W = 0 is excluded.
   const NodalVector without_z(kNodes, Vec3(3, 3, 0));
   EXPECT_NEAR(LargestEigenvalue(team, ApplyChain, without_z, 0.01, workspace), exact * 9 * 2 / 5, 0.01 * exact * 4);
   const NodalVector nothing(kNodes, Vec3::Zero());
@@ -55,7 +55,7 @@ TEST(ConjugateGradientTest, ChainUnderUnitForce) {
   }
 }
 
-// A component whose inverse diagonal is zero keeps its value, and the others see it.
+// A component with inverse diagonal zero keeps its value, which enters the other equations.
 TEST(ConjugateGradientTest, GivenComponents) {
   ThreadTeam team(1);
   CgWorkspace workspace;

@@ -1,4 +1,4 @@
-// MINRES against solutions that are known.
+// MINRES against known solutions.
 #include "core/linalg/minres.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST(Minres, SolvesIndefiniteSystemsInAsManyStepsAsThereAreEigenvalues) {
   EXPECT_LT((x - expected).norm(), 1e-10);
 }
 
-// The residual never grows, and is what it says.
+// The residual never grows, and the reported one is the true one.
 TEST(Minres, ItsResidualIsTheTrueOne) {
   std::mt19937 random(2);
   const MatrixXd Q = RandomOrthogonal(40, random);
@@ -57,7 +57,7 @@ TEST(Minres, ItsResidualIsTheTrueOne) {
   EXPECT_LT(before, 0.5);
 }
 
-// Of a singular matrix and a side in its range: a solution.
+// A singular matrix with a right-hand side in its range has a solution.
 TEST(Minres, SingularButConsistent) {
   std::mt19937 random(3);
   const MatrixXd Q = RandomOrthogonal(20, random);

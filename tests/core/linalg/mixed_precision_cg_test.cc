@@ -1,4 +1,4 @@
-// Conjugate gradients in single precision with refinement, against residuals in double.
+// Conjugate gradients in single precision with iterative refinement, against residuals in double.
 #include "core/linalg/mixed_precision_cg.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 using testing::RandomField;
 using testing::SpringGrid;
 
-// With `inertia` on the diagonal of what is free: every eigenvalue of the matrix is at least that.
+// `inertia` is added to the diagonal of free components, so that every eigenvalue is at least that.
 struct HeavyGrid : SpringGrid {
   HeavyGrid(int side, double inertia) : SpringGrid(side), b(RandomField(free, 3)) {
     for (std::size_t i = 0; i < free.size(); ++i) {
@@ -84,7 +84,7 @@ TEST(MixedPrecisionCgTest, SaysWhenItDoesNotConverge) {
   EXPECT_TRUE(result.is_positive);
 }
 
-// Squares of these are no numbers in single precision.
+// Squares of these overflow in single precision.
 TEST(MixedPrecisionCgTest, SmallAndNoForces) {
   HeavyGrid grid(6, 0.05);
   EXPECT_TRUE(grid.Solve(1e-9).converged);

@@ -91,7 +91,7 @@ TEST(MultigridTest, SameBitsForAnyThreadsAndAfterForgetting) {
   const Solution reference = Solve(grid, multigrid, one);
   Multigrid other(grid.pattern, grid.positions, grid.free, std::nullopt);
   EXPECT_EQ(Solve(grid, other, three).x, reference.x);
-  // Another matrix in between leaves nothing behind.
+  // Another matrix in between has no effect.
   SpringGrid stiffer = grid;
   for (std::size_t k = 0; k < stiffer.values.size(); k += 2) stiffer.values[k] *= 1.5;
   multigrid.ForgetAggregation();
@@ -114,7 +114,7 @@ TEST(GmresTest, SolvesNonsymmetricAndTellsIndefinite) {
   EXPECT_TRUE(result.converged);
   EXPECT_LE((x - A.lu().solve(b)).norm(), 1e-10 * x.norm());
   EXPECT_GT(result.least_eigenvalue, 0);
-  // One negative eigenvalue ends it early.
+  // One negative eigenvalue ends the iteration early.
   A = Eigen::VectorXd::LinSpaced(kSize, 1, 2).asDiagonal();
   A(5, 5) = -1;
   const GmresResult indefinite = FlexibleGmres(team, apply, same, b, 1e-12, kSize, x, workspace);

@@ -7,8 +7,8 @@
 
 namespace fascicle::testing {
 
-// Springs between all nodes of a grid that are less than two spacings apart along every axis, each with a little
-// stiffness across; the layer at z = 0 is held. Its smooth modes are those of an elastic block.
+// Springs between all nodes of a grid that are less than two spacings apart along every axis, each with a small lateral
+// stiffness; the layer at z = 0 is fixed. Its smooth modes resemble those of an elastic block.
 struct SpringGrid {
   explicit SpringGrid(int n) {
     const auto number = [&](int i, int j, int k) { return i + n * (j + n * k); };

@@ -31,8 +31,7 @@ Mat3 Stress(const Material& material, const Mat3& F, const FibreState& fibre = {
   return std::visit([&](const auto& law) { return law.Stress(F, fibre); }, material);
 }
 
-// --- Rigid sides: F = diag(1, 1, s)
-// --------------------------------------------------------------------------------------
+// --- Rigid sides: F = diag(1, 1, s) ---
 
 TEST(RigidSides, StressAlongTheStretch) {
   for (const double s : kStretches) {
@@ -45,8 +44,7 @@ TEST(RigidSides, StressAlongTheStretch) {
   }
 }
 
-// --- Simple shear: F = I + g e_x e_y
-// ---------------------------------------------------------------------------------------
+// --- Simple shear: F = I + g e_x e_y ---
 
 TEST(SimpleShear, ShearStress) {
   const Material mooney_rivlin = FindLaw("mooney_rivlin")->make(std::array{3e4, 1e4, 8e7});
@@ -59,8 +57,7 @@ TEST(SimpleShear, ShearStress) {
   }
 }
 
-// --- Tension with free sides
-// -----------------------------------------------------------------------------------------------
+// --- Tension with free sides ---
 
 TEST(UniaxialTension, LinearLaws) {
   for (const double s : kStretches) {
@@ -96,7 +93,7 @@ TEST(UniaxialTension, NeoHookean) {
   }
 }
 
-// As K grows the answer tends to the incompressible one, sigma = 2 (s^2 - 1/s) (c1 + c2/s), with an error of mu/K.
+// As K grows, the result approaches the incompressible one, sigma = 2 (s^2 - 1/s) (c1 + c2/s), with an error of mu/K.
 TEST(UniaxialTension, IncompressibleMooneyRivlin) {
   for (const double K : {1e8, 1e9}) {
     const Material material = FindLaw("mooney_rivlin")->make(std::array{3e4, 1e4, K});
@@ -105,7 +102,7 @@ TEST(UniaxialTension, IncompressibleMooneyRivlin) {
       ASSERT_TRUE(p.converged);
       const double expected = 2 * (s * s - 1 / s) * (3e4 + 1e4 / s);
       EXPECT_NEAR(p.cauchy_stress / expected, 1, 3 * 8e4 / K);
-      // K ln(J)/J = sigma/3, and sigma is off by mu/K.
+      // K ln(J)/J = sigma/3, so sigma differs by mu/K.
       const double size = std::abs(expected);
       EXPECT_NEAR(p.volume_ratio, 1 + expected / (3 * K), size * (size + 8e4) / (K * K));
       EXPECT_NEAR(p.lateral_stretch, 1 / std::sqrt(s), 3 * 8e4 / K);
@@ -140,11 +137,10 @@ TEST(UniaxialTension, MooneyRivlinAgreesWithFebio) {
   EXPECT_NEAR(end.volume_ratio, 1.0004837, 1e-7);
 }
 
-// --- Muscle and tendon along the fibre
-// -----------------------------------------------------------------------------------
+// --- Muscle and tendon along the fibre ---
 
-// Incompressible limit: matrix as Mooney-Rivlin, plus the fibre's lambda F2' = smax r (alpha f_act(r) + f_pass(r)), r =
-// s / lo.
+// Incompressible limit: the matrix is Mooney-Rivlin, and the fibre adds lambda F2' = smax r (alpha f_act(r) +
+// f_pass(r)), r = s / lo.
 TEST(Muscle, CauchyStressAlongTheFibre) {
   constexpr double kBulk = 1e12, kPeak = 3e5;
   for (const double lo : {1.0, 1.4}) {
@@ -176,7 +172,8 @@ TEST(Muscle, PeaksAtTheOptimalStretch) {
   EXPECT_EQ(muscle.FibreStress(0.5, 1), 0);
 }
 
-// Rest is free of energy at every activation; on a real muscle shortening from there takes energy off the fibre.
+// The rest state has zero energy at every activation; shortening of an active muscle from there releases energy of the
+// fibre.
 TEST(Muscle, NoEnergyAtRestWhateverTheActivation) {
   const Muscle muscle(std::array{500.0, 500.0, 1e7, 3e5, 1.4, 0.05, 6.6, 1.4});
   for (const double alpha : {0.0, 0.5, 1.0}) {
@@ -187,8 +184,8 @@ TEST(Muscle, NoEnergyAtRestWhateverTheActivation) {
   EXPECT_LT(muscle.Energy(F, {Vec3::UnitX(), 1}), muscle.Energy(F, {Vec3::UnitX(), 0}));
 }
 
-// Incompressible limit: matrix as Mooney-Rivlin, the fibre's lambda F2', and the Cauchy stress T0 alpha s^2 of the
-// active second Piola-Kirchhoff stress.
+// Incompressible limit: the matrix is Mooney-Rivlin, the fibre adds lambda F2' and the Cauchy stress T0 alpha s^2 of
+// the active second Piola-Kirchhoff stress.
 TEST(TransIsoMooneyRivlin, CauchyStressAlongTheFibre) {
   constexpr double kBulk = 1e12, kC3 = 2e4, kC4 = 8, kC5 = 1.5e6, kLamMax = 1.2, kActive = 3e5;
   const Material law =
@@ -205,7 +202,7 @@ TEST(TransIsoMooneyRivlin, CauchyStressAlongTheFibre) {
   }
 }
 
-// The active stress is T0 alpha/J (F a0)(F a0)^T and nothing across the fibre: no pressure, unlike an isochoric one.
+// The active stress is T0 alpha/J (F a0)(F a0)^T with nothing across the fibre: no pressure, unlike the isochoric one.
 TEST(TransIsoMooneyRivlin, ActiveStressIsAlongTheFibreOnly) {
   const TransIsoMooneyRivlin law(std::array{3e4, 1e4, 2e4, 8.0, 1.5e6, 1.2, 8e6, 3e5});
   Mat3 F;
@@ -216,7 +213,7 @@ TEST(TransIsoMooneyRivlin, ActiveStressIsAlongTheFibreOnly) {
   EXPECT_LE((active * F.transpose() - 0.7 * 3e5 * a * a.transpose()).norm(), 1e-9 * 3e5);
 }
 
-// Slack fibres carry nothing: below stretch one tendon and passive muscle are Mooney-Rivlin.
+// Slack fibres bear no stress: below stretch one, tendon and passive muscle are Mooney-Rivlin.
 TEST(Fibres, CarryNoCompression) {
   const FibreState fibre{Vec3::UnitZ(), 0};
   const Mat3 F = Vec3(1.1, 1.05, 0.9).asDiagonal();
@@ -239,8 +236,7 @@ TEST(Tendon, CauchyStressAlongTheFibre) {
   }
 }
 
-// --- The curve as a whole
-// ------------------------------------------------------------------------------------------------
+// --- The uniaxial curve ---
 
 TEST(UniaxialCurve, GivesEveryStretchAndSaysWhereThereIsNoAnswer) {
   // A linear law narrows to nothing at 1 + 1/nu.

@@ -19,7 +19,7 @@ namespace {
 const ExponentialToeCurve kPassive(0.05, 6.6, 1.4);    // [Blemker 2005], relative to the peak stress
 const ExponentialToeCurve kTendon(2.7e6, 46.4, 1.03);  // [Blemker 2005], Pa
 
-// Composite Simpson rule: slow and obvious.
+// Composite Simpson rule.
 template <class Function>
 double Simpson(const Function& f, double a, double b) {
   constexpr int kIntervals = 2000;
@@ -29,7 +29,7 @@ double Simpson(const Function& f, double a, double b) {
   return sum * h / 3;
 }
 
-// Integral by pieces between the kinks, where Simpson's rule is of fourth order.
+// Integral piece by piece between the kinks, where Simpson's rule is of fourth order.
 template <class Function>
 double PiecewiseIntegral(const Function& f, std::vector<double> kinks, double a, double b) {
   double sum = 0, from = a;
@@ -42,8 +42,7 @@ double PiecewiseIntegral(const Function& f, std::vector<double> kinks, double a,
   return sum;
 }
 
-// --- Published values
-// --------------------------------------------------------------------------------------------------
+// --- Published values ---
 
 TEST(ActiveCurve, TakesThePublishedValues) {
   for (const auto& [r, value] : {std::pair(0.4, 0.0),
@@ -61,7 +60,7 @@ TEST(ActiveCurve, TakesThePublishedValues) {
   }
 }
 
-// Both curves of Blemker 2005 as tabled from public code (8 digits).
+// Both curves of Blemker 2005, tabulated from public code (8 digits).
 TEST(FibreCurves, AgreeWithTheReferenceTable) {
   const std::filesystem::path data = testing::DataFolder();
   std::ifstream in(data / "reference_curves/muscle_curves.csv");
@@ -88,8 +87,7 @@ TEST(TendonCurve, TakesThePublishedValues) {
   EXPECT_NEAR(kTendon.Value(1.05), 2.7e6 * (std::exp(1.392) - 1) + 0.02 * slope, 1e-2);
 }
 
-// --- Continuity at every kink
-// -------------------------------------------------------------------------------------------
+// --- Continuity at every kink ---
 
 TEST(ActiveCurve, IsContinuousAtEveryKink) {
   constexpr double kEps = 1e-9;
@@ -97,7 +95,7 @@ TEST(ActiveCurve, IsContinuousAtEveryKink) {
     EXPECT_NEAR(ActiveCurve::Value(kink - kEps), ActiveCurve::Value(kink + kEps), 1e-8) << kink;
     EXPECT_NEAR(ActiveCurve::Integral(kink - kEps), ActiveCurve::Integral(kink + kEps), 1e-8) << kink;
   }
-  // The slope is continuous at the ends of the hump, and jumps between the parabolas as published.
+  // The slope is continuous at the ends of the active curve, and jumps between the published parabolas.
   for (const double end : {0.4, 1.6}) {
     EXPECT_NEAR(ActiveCurve::Derivative(end - kEps), ActiveCurve::Derivative(end + kEps), 1e-7);
   }
@@ -123,8 +121,7 @@ TEST(ExponentialToeCurve, IsContinuousWithOneKinkInItsSlope) {
   }
 }
 
-// --- Derivatives and integrals
-// ------------------------------------------------------------------------------------------
+// --- Derivatives and integrals ---
 
 TEST(FibreCurves, DerivativeIsThatOfTheValue) {
   constexpr double kStep = 1e-5;

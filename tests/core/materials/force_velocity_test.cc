@@ -69,8 +69,7 @@ TEST(ForceVelocityCurve, DerivativeIsThatOfTheValue) {
   });
 }
 
-// Composite Simpson rule between all bends of the integrand, in steps that grow with the distance from `from`: slow and
-// obvious.
+// Composite Simpson rule between all kinks of the integrand, with steps that grow with the distance from `from`.
 double Work(const ForceVelocityCurve& curve, double from, double to, double rate) {
   const auto pull = [&](double r) { return ActiveCurve::Value(r) * curve.Value(rate * (r - from)); };
   const double direction = to < from ? -1 : 1;
@@ -85,7 +84,7 @@ double Work(const ForceVelocityCurve& curve, double from, double to, double rate
     const double h = (ends[i + 1] - ends[i]) / kIntervals;
     for (int k = 0; k < kIntervals; k += 2) {
       const double r = ends[i] + k * h;
-      // The ends of a piece belong to it: a bend's value is the same on both sides.
+      // The ends belong to a piece: the value at a kink is the same on both sides.
       sum += (pull(r) + 4 * pull(r + h) + pull(r + 2 * h)) * h / 3;
     }
   }
@@ -113,7 +112,7 @@ TEST(ForceVelocityCurve, ActiveWorkOfASlowStepIsThatOfAHeldFibre) {
   EXPECT_FALSE(std::isfinite(curve.ActiveWork(1, std::numeric_limits<double>::quiet_NaN(), 5)));
 }
 
-// Cauchy stress along the fibre that the activation adds to an incompressible stretch, over that of a held fibre.
+// Cauchy stress along the fibre added by the activation at an incompressible stretch, relative to the isometric one.
 double ActiveRatio(const Muscle& muscle, double stretch, double before, double inverse_step) {
   const Mat3 F = Vec3(stretch, 1 / std::sqrt(stretch), 1 / std::sqrt(stretch)).asDiagonal();
   const auto active = [&](double previous, double rate) {
@@ -124,7 +123,7 @@ double ActiveRatio(const Muscle& muscle, double stretch, double before, double i
 }
 
 TEST(Muscle, PullsLessTheFasterItShortens) {
-  // 10 optimal lengths a second; the optimal stretch is 1.2, so a change of stretch by 0.012 in 1/500 s is v = 0.5.
+  // 10 optimal lengths per second; the optimal stretch is 1.2, so a change of stretch by 0.012 in 1/500 s is v = 0.5.
   const Muscle muscle(std::array{500.0, 500.0, 1e6, 3e5, 1.2, 0.05, 6.6, 1.4, 10.0, 0.25, 1.4});
   EXPECT_NEAR(ActiveRatio(muscle, 1.1, 1.112, 500), 0.5 / 3, 1e-12);
   EXPECT_NEAR(ActiveRatio(muscle, 1.1, 1.088, 500), 1 + 0.4 * 0.5 / (0.5 + 0.08), 1e-12);

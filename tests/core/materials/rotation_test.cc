@@ -32,7 +32,7 @@ void ExpectRotation(const Mat3& R) {
   EXPECT_NEAR(R.determinant(), 1, 1e-14);
 }
 
-// F = Q U with U symmetric positive definite gives back Q, up to the condition of U.
+// F = Q U with symmetric positive definite U gives back Q, up to the condition number of U.
 TEST_F(RotationTest, IsThePolarFactor) {
   for (int i = 0; i < 2000; ++i) {
     const Mat3 Q = RandomRotation(), V = RandomRotation();
@@ -54,7 +54,7 @@ TEST_F(RotationTest, BothWaysAgree) {
   }
 }
 
-// Inverted and flattened gradients too: no rotation is nearer.
+// Also for inverted and degenerate gradients: no rotation is closer.
 TEST_F(RotationTest, IsNearestAlsoWhenInverted) {
   for (int i = 0; i < 200; ++i) {
     Mat3 F = Random();

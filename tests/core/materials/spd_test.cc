@@ -65,13 +65,13 @@ TEST(NearestPositive, LeavesPositiveMatricesAlone) {
     const Mat9 a = RandomMatrix(random);
     const Mat9 definite = a * a.transpose() + 1e-3 * Mat9::Identity();
     EXPECT_EQ(NearestPositive(definite), definite);
-    // Semidefinite, as the tangents of most laws at rest: no Cholesky factorization can be relied on.
+    // Semidefinite, as the tangents of most laws at rest; a Cholesky factorization would be unreliable.
     const Mat9 singular = a.leftCols<6>() * a.leftCols<6>().transpose();
     EXPECT_LE((NearestPositive(singular) - singular).norm(), 1e-14 * singular.norm());
   }
 }
 
-// No other positive semidefinite matrix is nearer.
+// No other positive semidefinite matrix is closer.
 TEST(NearestPositive, IsTheNearest) {
   std::mt19937 random(4);
   for (int i = 0; i < 50; ++i) {

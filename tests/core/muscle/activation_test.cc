@@ -45,7 +45,7 @@ TEST(Activation, FallsAsTheClosedForm) {
   }
 }
 
-// The largest distance from the method of Heun in steps so small that its own error is below 1e-6: slow and obvious.
+// The largest distance from Heun's method with steps so small that its own error is below 1e-6.
 double WorstError(const Curve& curve, const Curve& excitation, const ActivationDynamics& dynamics, double duration) {
   const double step = 2e-6 * std::min(dynamics.activation_time, dynamics.deactivation_time) / 0.01;
   const auto rate = [&](double time, double a) {

@@ -67,7 +67,7 @@ Angles Between(const TetMesh& mesh, const FibreField& a, const FibreField& b) {
 
 // --- Known solids ----------------------------------------------------------------------------------------------------
 
-// A solid that follows `map` on the unit cube, to 1e-7.
+// A solid that approximates `map` on the unit cube to 1e-7.
 BsplineLocator SolidOf(const std::function<Vec3(const Vec3&)>& map) {
   constexpr int kSamples = 18;
   std::vector<SolidSample> samples;
@@ -86,7 +86,7 @@ BsplineLocator SolidOf(const std::function<Vec3(const Vec3&)>& map) {
   return BsplineLocator(std::move(fit->solid));
 }
 
-// The unit cube with the parameters as coordinates, bent by `map`.
+// The unit cube with its coordinates as parameters, bent by `map`.
 TetMesh BlockOf(const std::function<Vec3(const Vec3&)>& map) {
   TetMesh mesh = MakeBox(Vec3::Zero(), Vec3::Ones(), {5, 5, 16});
   for (Vec3& X : mesh.nodes) X = map(X);
@@ -128,7 +128,7 @@ TEST(BsplineFibres, FollowACurvedBlock) {
   const BsplineFibreField field = BsplineFibres(mesh, SolidOf(bend), team, problems);
   ASSERT_THAT(field.fibres, SizeIs(mesh.tetrahedra.size())) << problems.ToString();
   EXPECT_EQ(field.folded, 0u);
-  // The same fibres from a solid that is turned inside out, which is told.
+  // The same fibres from an inverted solid, which is reported.
   const auto mirrored = [&](const Vec3& p) { return bend({1 - p.x(), p.y(), p.z()}); };
   EXPECT_EQ(BsplineFibres(mesh, SolidOf(mirrored), team, problems).folded, mesh.tetrahedra.size());
   for (std::size_t e = 0; e < field.fibres.size(); ++e) {
@@ -137,8 +137,8 @@ TEST(BsplineFibres, FollowACurvedBlock) {
   }
 }
 
-// A solid may have its fibres lean to both sides of a plane: its control net has a kink there. Unit cube, x from 0 to
-// 1, fibres lean away from x = 1/2 by a slope of 0.3.
+// The fibres of a solid may lean to both sides of a plane: its control net has a kink there. Unit cube, x from 0 to 1;
+// fibres lean away from x = 1/2 with a slope of 0.3.
 TEST(BsplineFibres, LeanToBothSidesInABipennateSolid) {
   const BsplineBasis linear = BsplineBasis::Uniform(1, 2);
   std::vector<Vec3> controls;
@@ -148,7 +148,7 @@ TEST(BsplineFibres, LeanToBothSidesInABipennateSolid) {
                                        Vec3(1 + 0.3 * z, y, z)});
     }
   }
-  // Between the halves lies a wedge that opens along w; it is no part of the mesh.
+  // Between the halves there is a wedge that opens along w, which is not part of the mesh.
   const BsplineLocator locator(BsplineSolid({BsplineBasis(1, {0, 0, 1, 2, 3, 3}), linear, linear}, controls));
   TetMesh mesh = MakeBox(Vec3::Zero(), Vec3::Ones(), {4, 2, 4});
   for (Vec3& X : mesh.nodes) X.x() += X.x() <= 0.5 ? -0.3 * X.z() - 1e-3 : 0.3 * X.z() + 1e-3;
@@ -184,7 +184,7 @@ class PartlyOutside : public ::testing::Test {
 };
 
 TEST_F(PartlyOutside, IsCountedAndTakesTheNearestFibre) {
-  // A quarter of the layers lies beyond x = 1, centroids up to 1/3 - h/4 or so.
+  // A quarter of the layers is beyond x = 1, with centroids up to about 1/3 - h/4.
   const TetMesh mesh = MakeBox(Vec3::Zero(), Vec3(4.0 / 3, 1, 1), {4, 2, 2});
   const BsplineFibreField field = BsplineFibres(mesh, locator_, team_, problems_);
   ASSERT_THAT(field.fibres, SizeIs(mesh.tetrahedra.size())) << problems_.ToString();
@@ -224,7 +224,7 @@ class FittedToASpindle : public ::testing::Test {
   Problems problems_;
 };
 
-// Lines of constant (u, v) keep their share of the radius: the fibre at radius r is ez + r R'(z) / R(z) er.
+// Curves of constant (u, v) keep their fraction of the radius: the fibre at radius r is ez + r R'(z) / R(z) er.
 TEST_F(FittedToASpindle, FibresKeepTheirShareOfTheRadius) {
   const auto fit = FitMuscleSolid(mesh_, origin_, insertion_, {}, problems_);
   ASSERT_TRUE(fit) << problems_.ToString();
@@ -286,7 +286,7 @@ TEST_F(FittedToASpindle, ThickAttachmentsHaveTheFibresOfTheirFaces) {
 
 TEST_F(FittedToASpindle, NothingWithoutTwoEnds) {
   EXPECT_FALSE(FitMuscleSolid(mesh_, {}, insertion_, {}, problems_));
-  EXPECT_THAT(problems_.ToString(), HasSubstr("origin holds no node"));
+  EXPECT_THAT(problems_.ToString(), HasSubstr("origin contains no node"));
 }
 
 TEST(FitMuscleSolid, ThreeLayersOfTetrahedraAreEnough) {
@@ -299,13 +299,13 @@ TEST(FitMuscleSolid, ThreeLayersOfTetrahedraAreEnough) {
   EXPECT_GT(fit->solid.At({0.5, 0.5, 0.5}).gradients.col(2).normalized().z(), 0.99);
 }
 
-// Two slices of three tetrahedra each don't tell where the middle is.
+// Two slices of three tetrahedra each do not determine the middle line.
 TEST(FitMuscleSolid, OneLayerOfTetrahedraIsTooShort) {
   const TetMesh cube = MakeBox(Vec3::Zero(), Vec3::Ones(), {1, 1, 1});
   Problems problems;
   EXPECT_FALSE(FitMuscleSolid(cube, NodesWhere(cube, [](const Vec3& X) { return X.z() < 0.5; }),
                               NodesWhere(cube, [](const Vec3& X) { return X.z() > 0.5; }), {}, problems));
-  EXPECT_THAT(problems.ToString(), HasSubstr("misses the mesh"));
+  EXPECT_THAT(problems.ToString(), HasSubstr("is not close to the mesh"));
 }
 
 TEST(FitMuscleSolid, OneTetrahedronIsTooShort) {
@@ -321,8 +321,8 @@ TEST(FitMuscleSolid, OneTetrahedronIsTooShort) {
 
 struct RealMuscle {
   const char* name;
-  // What was measured when this was written, and a fifth more [degree]: B-spline against published, harmonic against
-  // published, one against the other; means, then 95th percentiles.
+  // Earlier measurements plus a fifth [degree]: B-spline against published, harmonic against published, one against the
+  // other; means, then 95th percentiles.
   std::array<double, 3> mean, p95;
 };
 
@@ -330,7 +330,7 @@ void PrintTo(const RealMuscle& muscle, std::ostream* out) { *out << muscle.name;
 
 class FittedToRealMuscle : public ::testing::TestWithParam<RealMuscle> {};
 
-// Against the fibres that were published with the mesh for the same two attachments.
+// Against the fibres published with the mesh for the same two attachments.
 TEST_P(FittedToRealMuscle, FibresAgreeWithThePublished) {
   const std::filesystem::path data = testing::DataFolder();
   const std::string base = (data / "vh_muscle_tets" / GetParam().name).string();

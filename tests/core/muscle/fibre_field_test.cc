@@ -102,7 +102,7 @@ TEST_F(ReadFibresTest, ManyBadLinesAreCountedNotKept) {
 
 // --- Harmonic --------------------------------------------------------------------------------------------------------
 
-// phi = z / length solves the problem exactly and lies in the finite element space.
+// phi = z / length is the exact solution and in the finite element space.
 TEST(HarmonicFibres, AreStraightInABox) {
   const TetMesh box = MakeBox(Vec3(-1, 2, 3), Vec3(0.03, 0.02, 0.2), {4, 3, 20});
   const auto origin = NodesWhere(box, [](const Vec3& X) { return X.z() < 3 + 1e-9; });
@@ -112,12 +112,13 @@ TEST(HarmonicFibres, AreStraightInABox) {
   EXPECT_TRUE(problems.empty());
   ASSERT_THAT(fibres, SizeIs(box.tetrahedra.size()));
   for (const Vec3& a : fibres) EXPECT_LE((a - Vec3::UnitZ()).norm(), 1e-8);
-  // They run from the origin to the insertion, and turn when these change places.
+  // Fibres run from the origin to the insertion, and reverse if these are swapped.
   const FibreField reversed = HarmonicFibres(box, insertion, origin, problems);
   for (const Vec3& a : reversed) EXPECT_LE((a + Vec3::UnitZ()).norm(), 1e-8);
 }
 
-// Between concentric spherical caps the potential is 1/r: the gradient is radial. A wedge of a box bent into a shell.
+// Between concentric spherical caps the potential is 1/r, so its gradient is radial. A wedge of a box is bent into a
+// shell.
 TEST(HarmonicFibres, AreRadialBetweenConcentricSpheres) {
   constexpr int kAcross = 12;
   TetMesh shell = MakeBox(Vec3(-0.3, -0.3, 1), Vec3(0.6, 0.6, 1), {kAcross, kAcross, 24});
@@ -155,14 +156,15 @@ TEST(HarmonicFibres, FollowASpindleSymmetrically) {
     (X.z() < 0.1 ? outward_lower : outward_upper) += v * fibres[e].dot(radial);
   }
   mean /= volume;
-  // No side is preferred, up to the mesh's own diagonals; fibres spread towards the belly and close behind it alike.
+  // No side is preferred, except by the mesh's own diagonals; fibres diverge towards the belly and converge behind it
+  // alike.
   EXPECT_LE(std::hypot(mean.x(), mean.y()), 2e-3);
   EXPECT_GT(outward_lower / volume, 0.01);
   EXPECT_NEAR(outward_lower / volume, -outward_upper / volume, 1e-3);
 }
 
-// The same potential from a dense matrix, shape functions from a 4x4 inverse, and a direct solver: the obvious way,
-// which shares nothing with the fast one.
+// The same potential from a dense matrix, shape functions from a 4x4 inverse and a direct solver: an independent
+// implementation.
 TEST(HarmonicFibres, AgreeWithADenseSolve) {
   const TetMesh ball = MakeSphere(1, 6);
   const auto origin = NodesWhere(ball, [](const Vec3& X) { return X.z() < -0.75; });
@@ -175,7 +177,7 @@ TEST(HarmonicFibres, AgreeWithADenseSolve) {
   Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(n, n);
   std::vector<Eigen::Matrix<double, 4, 3>> gradients;
   for (std::size_t e = 0; e < ball.tetrahedra.size(); ++e) {
-    // Shape functions from their values at the nodes: [1 X][c] = I.
+    // Shape functions from their nodal values: [1 X][c] = I.
     Eigen::Matrix4d values;
     for (int a = 0; a < 4; ++a) {
       values.row(a) << 1,
@@ -215,7 +217,7 @@ TEST(HarmonicFibres, AgreeWithADenseSolve) {
 
 TEST(HarmonicFibres, FillFlatPartsFromTheirNeighbours) {
   const TetMesh box = MakeBox(Vec3::Zero(), Vec3(1, 1, 10), {2, 2, 20});
-  // Both regions are blocks several elements thick: no gradient inside.
+  // Both regions are blocks several elements thick, with zero gradient inside.
   const auto origin = NodesWhere(box, [](const Vec3& X) { return X.z() < 2.1; });
   const auto insertion = NodesWhere(box, [](const Vec3& X) { return X.z() > 7.9; });
   Problems problems;
@@ -236,8 +238,8 @@ TEST(HarmonicFibres, ReportWhatIsWrongWithTheRegions) {
     EXPECT_THAT(HarmonicFibres(box, origin, insertion, problems), IsEmpty());
     return problems.ToString();
   };
-  EXPECT_THAT(message(none, top), HasSubstr("origin holds no node"));
-  EXPECT_THAT(message(bottom, none), HasSubstr("insertion holds no node"));
+  EXPECT_THAT(message(none, top), HasSubstr("origin contains no node"));
+  EXPECT_THAT(message(bottom, none), HasSubstr("insertion contains no node"));
   EXPECT_THAT(message(bottom, lower), HasSubstr("9 nodes belong to"));
   EXPECT_THAT(message(top, outside), HasSubstr("2 nodes of origin and insertion are not in the mesh"));
 }
@@ -270,8 +272,8 @@ TEST(HarmonicFibres, ReportFlatTetrahedra) {
 
 // --- Real anatomy ----------------------------------------------------------------------------------------------------
 
-// The biceps femoris of the Visible Human, against the fibres that were published with it for the same two attachments
-// (means over the ten nodes of quadratic tetrahedra). Measured when this was written: 3.40 degrees on average.
+// The biceps femoris of the Visible Human, against the fibres published with it for the same two attachments (means
+// over the ten nodes of quadratic tetrahedra). Measured: 3.40 degrees on average.
 TEST(HarmonicFibres, AgreeWithThoseOfARealMuscle) {
   const std::filesystem::path data = testing::DataFolder();
   const std::filesystem::path base = data / "vh_muscle_tets/VHM_Left_Muscle_BicepsFemorisLongus";
@@ -291,7 +293,7 @@ TEST(HarmonicFibres, AgreeWithThoseOfARealMuscle) {
 
   double sum = 0, volume = 0;
   for (std::size_t e = 0; e < harmonic.size(); ++e) {
-    // A fibre has no front end.
+    // Fibres have no sign.
     const double cosine = std::min(1.0, std::abs(harmonic[e].dot(published[e])));
     const double v = SignedVolume(*mesh, e);
     sum += v * std::acos(cosine);

@@ -22,14 +22,14 @@ class PennationTest : public testing::Test {
 TEST_F(PennationTest, TurnsFibresTowardsTheNormal) {
   for (const double length : {1e-100, 1.0, 1e100}) {
     FibreField fibres = ConstantFibres(mesh_, Vec3::UnitZ());
-    // What of the normal lies along the fibres doesn't matter.
+    // The component of the normal along the fibres has no effect.
     Pennate(mesh_, {.angle = 0.3, .normal = length * Vec3(0, 2, 5), .mirror_point = {}}, fibres, problems_);
     EXPECT_TRUE(problems_.empty()) << problems_.ToString();
     for (const Vec3& fibre : fibres) EXPECT_LE((fibre - Vec3(0, std::sin(0.3), std::cos(0.3))).norm(), 1e-15);
   }
 }
 
-// About the axis a x n, as a rotation of Eigen does it; whatever the fibre.
+// About the axis a x n, as Eigen's rotation does it, for any fibre.
 TEST_F(PennationTest, IsARotationAboutTheAxisAcrossFibreAndNormal) {
   FibreField fibres;
   for (std::size_t e = 0; e < mesh_.tetrahedra.size(); ++e)

@@ -18,7 +18,7 @@ const SternMuscle kMuscle = {.origin_distance = 0.25,
                              .hill_curvature = 0.3,
                              .hill_rate = 2};
 
-// The formula as it stands in the paper, put right (METHODS: sign and place of theta-dot), for shortening muscles.
+// The paper's formula, corrected (sign and place of theta-dot), for shortening muscles.
 double Published(const SternMuscle& m, double angle, double shortening, double alpha) {
   const double B = m.origin_distance, C = m.insertion_distance, a = m.hill_curvature;
   const double Ki = LengthOf(m, angle) / (B + C), Kl = LengthOf(m, m.optimal_angle) / (B + C);
@@ -46,7 +46,7 @@ TEST(SternMuscleTest, ShorteningFollowsThePublishedFormula) {
   for (const double angle : {1.2, 1.7, 2.4}) {
     for (const double shortening : {0.0, 1.0, 5.0, 15.0}) {
       const double expected = Published(kMuscle, angle, shortening, 0.7);
-      ASSERT_GT(expected, 0);  // beyond the largest rate of shortening it is 0
+      ASSERT_GT(expected, 0);  // 0 beyond the largest rate of shortening
       EXPECT_NEAR(ForceOf(kMuscle, angle, -shortening, 0.7), expected, 1e-12 * kMuscle.peak_force);
     }
   }

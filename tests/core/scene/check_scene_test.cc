@@ -24,7 +24,7 @@ Scene GoodScene() {
   return scene;
 }
 
-// The one problem that a change makes.
+// The only problem that a change causes.
 Problem ProblemOf(const Scene& scene) {
   Problems problems;
   CheckScene(scene, problems);
@@ -165,14 +165,14 @@ TEST(CheckSceneTest, CurvesThatCannotBeEvaluated) {
 TEST(CheckSceneTest, ConstraintsThatContradictEachOther) {
   Scene scene = GoodScene();
   Constraint moving = Fix(kY0);
-  scene.bodies[0].constraints.push_back(moving);  // asks for the same: rest
+  scene.bodies[0].constraints.push_back(moving);  // prescribes the same: rest
   Problems problems;
   CheckScene(scene, problems);
   EXPECT_TRUE(problems.empty());
 
   scene.bodies[0].constraints[1].motion.translation[2] = Curve{{0, 1}, {0, 0.01}, Curve::Interpolation::kLinear};
   EXPECT_EQ(ProblemOf(scene).path, "bodies[0].constraints[1]");
-  scene.bodies[0].constraints[1].axes = {true, true, false};  // z is left to the first
+  scene.bodies[0].constraints[1].axes = {true, true, false};  // z is free for the first
   problems = {};
   CheckScene(scene, problems);
   EXPECT_TRUE(problems.empty()) << problems.ToString();
@@ -209,7 +209,7 @@ TEST(CheckSceneTest, BodyThatWouldFlyAway) {
   Problems problems;
   CheckScene(scene, problems);
   EXPECT_TRUE(problems.empty()) << problems.ToString();
-  // Loads in balance need no support.
+  // Balanced loads need no support.
   scene.bodies[0].loads = {{kX1, Traction{Vec3(50, 0, 0)}, Curve::Constant(1)},
                            {kX0, Traction{Vec3(-50, 0, 0)}, Curve::Constant(1)}};
   CheckScene(scene, problems);
@@ -218,7 +218,7 @@ TEST(CheckSceneTest, BodyThatWouldFlyAway) {
   EXPECT_THAT(ProblemOf(scene).message, HasSubstr("along x"));
 }
 
-// Equilibrium alone says nothing about where an unheld body is, loaded or not.
+// Equilibrium alone does not determine the position of an unsupported body, loaded or not.
 TEST(CheckSceneTest, EquilibriumNeedsSupportsAlongEveryAxis) {
   Scene scene = GoodScene();
   scene.tet.stepping = Stepping::kQuasiStatic;

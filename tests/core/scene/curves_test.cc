@@ -1,4 +1,4 @@
-// Every curve of a scene is found, checked, and counts for when the last of them comes to rest.
+// Every curve of a scene is found and checked, and counts for the time after which all curves are constant.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 std::map<std::string, Curve*> CurvesOf(Scene& scene) {
   std::map<std::string, Curve*> curves;
-  // The scene is not const: neither are its curves.
+  // The curves of a non-const scene are not const.
   VisitCurves(scene, [&](const Curve& curve, const std::string& path) { curves[path] = const_cast<Curve*>(&curve); });
   return curves;
 }
@@ -59,7 +59,7 @@ TEST(CurvesTest, TheLastToChangeEndsThem) {
   }
 }
 
-// A curve of one point is the same all the time, wherever the point is.
+// A curve of one point is constant for all times, wherever the point is.
 TEST(CurvesTest, AConstantNeverChanges) {
   Scene scene = testing::FullScene(Method::kTet, testing::FullTetShape());
   scene.gravity.scale.times = {5};

@@ -10,7 +10,8 @@
 
 namespace fascicle::testing {
 
-// A box of voxels from the origin on as a body, with the regions `x0` (its nodes at x = 0) and `x1` (at the other end).
+// A box of voxels with one corner at the origin as a body, with the regions `x0` (its nodes at x = 0) and `x1` (at the
+// other end).
 inline Body VoxelBox(const Vec3& size, const GridIndex& divisions, Material material) {
   Body body;
   body.name = "box";

@@ -14,12 +14,12 @@
 namespace fascicle {
 namespace {
 
-// Goes through all places of a scene where something can be changed, and changes one of them.
+// Visits all places of a scene where something can be changed, and changes one of them.
 class Change {
  public:
   explicit Change(std::size_t place) : place_(place) {}
 
-  // Where it was made; empty where there are not so many places.
+  // The path of the change; empty if there are fewer places.
   const std::string& path() const { return path_; }
 
   template <HasFields Struct>

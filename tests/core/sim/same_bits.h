@@ -9,7 +9,8 @@
 
 namespace fascicle::testing {
 
-// Two threads give the frames of one, and a run that is restored after its third frame those that follow.
+// Two threads produce the same frames as one, and a run restored after its third frame produces the same following
+// frames.
 inline void ExpectAnyThreadsAndRestartsGiveTheSameBits(const Scene& scene, std::size_t frames) {
   const RunResult reference = RunScene(scene, 1);
   ASSERT_EQ(reference.outcome.kind, Outcome::Kind::kSucceeded) << reference.outcome.failure.message;

@@ -43,7 +43,7 @@ TEST(SimulationTest, FramesLandOnTheirTimes) {
   EXPECT_EQ(run.progress.step, run.frames.back().step);
 }
 
-// An interval that is a whole part of the duration only but for rounding makes no frame of nearly no length.
+// An interval that divides the duration except for round-off does not add a frame of almost zero length.
 TEST(SimulationTest, NoSliverFrame) {
   Scene scene = Beam();
   scene.duration = 0.03;
@@ -68,7 +68,7 @@ TEST(SimulationTest, SeriesAreNamedAndInUnits) {
                                        "probe/tip/x", "probe/tip/y", "probe/tip/z"}));
   const Frame& last = run.frames.back();
   EXPECT_EQ(run.Last("probe/tip/z"), last.bodies[0].positions[6][2] - 0.0);
-  // The energy balance closes to the order of the scheme.
+  // The energy balance holds to the order of the scheme.
   EXPECT_NEAR(run.Last("energy/elastic") + run.Last("energy/kinetic") + run.Last("energy/dissipated"),
               run.Last("energy/external_work"), 1e-3 * run.Last("energy/external_work"));
   EXPECT_EQ(run.At(0, "box/volume_ratio"), 1);
@@ -99,7 +99,7 @@ TEST(SimulationTest, SettlesAfterTheCurvesHaveComeToRest) {
   const std::vector<double>& v = run.frames.back().bodies[0].fields[0].values;
   for (std::size_t i = 0; i < v.size(); i += 3) fastest = std::max(fastest, Vec3(v[i], v[i + 1], v[i + 2]).norm());
   EXPECT_LE(fastest, 1e-3);
-  // Restored from the last checkpoint there is nothing left to do.
+  // Restored from the last checkpoint, the run is complete.
   Simulation simulation(std::make_shared<Scene>(scene), 1);
   ASSERT_TRUE(simulation.Restore(run.checkpoints.back()));
   CollectingSink sink;
@@ -196,7 +196,7 @@ TEST(CheckpointTest, RestoresOnlyItsOwnScene) {
   EXPECT_FALSE(restores(other, checkpoint));
 }
 
-// Cut or damaged anywhere: refused, never a crash, and the run starts from rest.
+// Truncated or damaged anywhere, a checkpoint is refused without a crash, and the run starts from rest.
 TEST(CheckpointTest, DamagedBytesAreRefused) {
   const Scene scene = Beam();
   const RunResult run = RunScene(scene);
@@ -221,7 +221,7 @@ TEST(CheckpointTest, GoesWithTheFirstFrameAfterTheInterval) {
   EXPECT_FALSE(sink.checkpoints[5].empty());
 }
 
-// A body pushed together beyond nothing: it must fail, say where, and keep all frames before.
+// A body compressed beyond zero volume: the run must fail, report where, and keep all earlier frames.
 TEST(FailureTest, CrushedBodyFailsWithElementsAndKeepsItsFrames) {
   Scene scene = Beam();
   scene.bodies[0].material = StVenantKirchhoff(std::array{1e4, 0.3});
@@ -242,14 +242,14 @@ TEST(FailureTest, CrushedBodyFailsWithElementsAndKeepsItsFrames) {
   EXPECT_FALSE(failure.message.empty());
   EXPECT_FALSE(failure.advice.empty());
   EXPECT_GT(failure.step, 0);
-  // Every frame before the failure is there and sound.
+  // Every frame before the failure exists and is valid.
   ASSERT_GE(run.frames.size(), 2u);
   EXPECT_LE(run.frames.back().time, failure.time);
   EXPECT_GT(run.frames.back().time, failure.time - 0.0021);
   for (std::size_t k = 0; k < run.frames.size(); ++k) EXPECT_GT(run.At(k, "box/min_volume_ratio"), 0);
 }
 
-// The same with a law that resists without bound: the step becomes too small, or an element inverts in the last moment.
+// The same with a law of unlimited resistance: the step becomes too small, or an element inverts at last.
 TEST(FailureTest, CrushedStiffBodyFails) {
   Scene scene = Beam();
   scene.bodies[0].loads.clear();
@@ -263,7 +263,7 @@ TEST(FailureTest, CrushedStiffBodyFails) {
   EXPECT_LE(run.outcome.failure.time, 0.02);
 }
 
-// Several simulations live in one process: no globals.
+// Several simulations exist in one process, so there are no globals.
 TEST(SimulationTest, TwoAtOnce) {
   const Scene scene = Beam();
   const Digest reference = RunScene(scene).frames.back().digest;

@@ -1,4 +1,4 @@
-// Scenes of the voxel method as runs.
+// Runs of scenes of the voxel method.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using namespace fascicle::testing;
 constexpr double kYoung = 2e5, kPull = 1000;  // [Pa]
 const Vec3 kSize(0.04, 0.01, 0.02);
 
-// A bar that slides at x = 0, held there in its middle line, and is pulled at the other end by a traction that grows.
+// A bar on rollers at x = 0, fixed there along its middle line, and pulled at the other end by an increasing traction.
 Scene Bar(Material material) {
   Body body = VoxelBox(kSize, {8, 2, 4}, std::move(material));
   const std::vector<Quad> surface = BoundaryQuads(body.voxel().mesh);
@@ -67,7 +67,7 @@ TEST(VoxelSimulationTest, ABarStretchesAsHookeSays) {
   }
 }
 
-// The image stands askew: what happens turns with it.
+// The image is oblique: results rotate with it.
 TEST(VoxelSimulationTest, ATurnedGridGivesTheTurnedAnswer) {
   Body body = VoxelBox(kSize, {8, 2, 4}, LinearElastic(std::array{kYoung, 0.25}));
   body.constraints = {{0, {true, true, true}, {}}};
@@ -113,7 +113,7 @@ TEST(VoxelSimulationTest, TheGroundBearsTheWeight) {
   EXPECT_NEAR(run.Last("box/reaction/x0/z"), body.density * kSize.prod() * 9.81, 1e-8);
 }
 
-// Both ends turned by a right angle together: corotated bricks are as they were, in another place.
+// Both ends rotated by a right angle together: corotated bricks are only rotated, without stress.
 TEST(VoxelSimulationTest, CorotatedBricksTurnFreely) {
   Body body = VoxelBox(kSize, {8, 2, 4}, CorotatedLinear(std::array{kYoung, 0.3}));
   Constraint turn = {0, {true, true, true}, {}};
@@ -146,7 +146,7 @@ Scene Release() {
   return scene;
 }
 
-// Let go, it swings with the lowest natural frequency of its mesh, the less the longer.
+// Released, it vibrates with the lowest natural frequency of its mesh, with decreasing amplitude.
 TEST(VoxelSimulationTest, LetGoItSwingsWithItsLowestMode) {
   Scene scene = Release();
   const VoxelSceneBody body(scene, scene.bodies[0]);
@@ -158,7 +158,7 @@ TEST(VoxelSimulationTest, LetGoItSwingsWithItsLowestMode) {
   scene.output.frame_interval = period / 400;
   const RunResult run = RunScene(scene);
   ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded) << run.outcome.failure.message;
-  // Times at which the tip passes its rest position downwards.
+  // Times at which the tip crosses its rest position downwards.
   std::vector<double> crossings;
   std::vector<double> peaks = {run.At(0, "probe/tip/y")};
   for (std::size_t f = 1; f + 1 < run.frames.size(); ++f) {
@@ -170,7 +170,7 @@ TEST(VoxelSimulationTest, LetGoItSwingsWithItsLowestMode) {
     if (now > before && now >= after && now > 0) peaks.push_back(now);
   }
   ASSERT_GE(crossings.size(), 3u);
-  // Other modes die out slowly: the mean of the periods; w dt = 2 pi / 400 lengthens it by 1e-4.
+  // Other modes decay slowly, so the mean period is used; w dt = 2 pi / 400 lengthens it by 1e-4.
   EXPECT_NEAR((crossings.back() - crossings.front()) / static_cast<double>(crossings.size() - 1), period,
               0.01 * period);
   ASSERT_GE(peaks.size(), 3u);
@@ -213,11 +213,11 @@ TEST(VoxelSimulationTest, WhatNothingHoldsIsNamed) {
   EXPECT_TRUE(none.empty());
 }
 
-// More parameters than a grid has materials: those of one Poisson's ratio are one material.
+// More parameter sets than a grid has materials: those of one Poisson's ratio are one material.
 TEST(VoxelSimulationTest, EveryVoxelMayHaveAStiffnessOfItsOwn) {
   Scene scene = Bar(LinearElastic(std::array{kYoung, 0.25}));
   Body& body = scene.bodies[0];
-  // In series along x: layers of different stiffness, each four times over.
+  // Layers of different stiffness in series along x, each four times.
   double compliance = 0;
   for (std::size_t e = 0; e < body.voxel().mesh.bricks.size(); ++e) {
     const auto layer =

@@ -1,4 +1,4 @@
-// A file of its own: where gcc sees both ends of operator new and delete, it takes them for mismatched.
+// In a file of its own: where gcc sees both operator new and delete, it reports them as mismatched.
 #include "allocation_count.h"
 
 #include <atomic>
@@ -13,8 +13,8 @@ std::atomic<long> count = 0;
 
 long fascicle::testing::AllocationCount() { return count; }
 
-// Eigen's matrices take their memory from malloc: the linker sends the calls of all that is linked statically here, and
-// those of operator new below come this way too.
+// Eigen's matrices allocate with malloc. The linker redirects calls from statically linked code here; those of operator
+// new below come here too.
 extern "C" {
 // NOLINTBEGIN(readability-identifier-naming): the linker's names
 void* __real_malloc(std::size_t size);
@@ -30,7 +30,7 @@ void* __wrap_realloc(void* block, std::size_t size) {
 // NOLINTEND(readability-identifier-naming)
 }
 
-// The array and nothrow forms of the standard library come down to these.
+// The array and nothrow forms of the standard library call these.
 void* operator new(std::size_t size) {
   void* block = std::malloc(size);
   if (block == nullptr) throw std::bad_alloc();

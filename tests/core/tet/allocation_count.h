@@ -3,7 +3,7 @@
 
 namespace fascicle::testing {
 
-// Blocks of memory that all threads of this program have asked for so far. See CMakeLists.txt for what must be linked.
+// Number of allocations by all threads of this program so far. CMakeLists.txt shows the linker options it needs.
 long AllocationCount();
 
 }  // namespace fascicle::testing

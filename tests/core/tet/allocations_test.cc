@@ -1,4 +1,4 @@
-// After its first step a solver takes no more memory: what a step needs is there, however long the run.
+// After its first step a solver allocates no more memory, however long the run is.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -13,8 +13,8 @@ namespace {
 
 using namespace fascicle::testing;
 
-// A body of each law, shaken by all that a scene can do to it: loads, gravity, a moved and turned support, activation
-// that rises fast enough to make searches for the stable step due, and every kind of damping. All together have more
+// Bodies of each law with everything that a scene can apply: loads, gravity, a moved and rotated support, activation
+// that rises fast enough to require searches for the stable step, and every kind of damping. Together they have more
 // nodes and elements than a thread takes at a time.
 Scene BusyScene(Stepping stepping) {
   Scene scene;
@@ -73,8 +73,8 @@ std::size_t BytesInUse() {
   return info.uordblks + info.hblkhd;
 }
 
-// Model, state and all that a step needs, but not the scene: linear elements of a nearly incompressible muscle, stepped
-// explicitly, search for the stable step included.
+// Memory of model, state and step without the scene: linear elements of a nearly incompressible muscle, stepped
+// explicitly, including the search for the stable step.
 TEST(MemoryTest, LessThan400BytesForATetrahedron) {
   for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
     const Scene scene = TetBox::MakeScene(26, Muscle(kMuscle), VolumeForm::kNodal, precision);
@@ -92,7 +92,7 @@ TEST(MemoryTest, LessThan400BytesForATetrahedron) {
   }
 }
 
-// A count that misses something would pass everything. Called by name, operator new may not be optimized away.
+// A count that misses allocations would pass any test. Called by name, operator new may not be optimized away.
 TEST(AllocationCountTest, SeesEveryKind) {
   struct alignas(64) Aligned {
     double value = 0;

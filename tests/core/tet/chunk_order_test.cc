@@ -1,4 +1,4 @@
-// How elements are cut into chunks and dealt to lanes.
+// How elements are grouped into chunks and assigned to lanes.
 #include "core/tet/chunk_order.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ struct CutBox {
 };
 
 TEST(ChunkOrderTest, EveryElementOnceInChunksOfNearlyEqualSize) {
-  // Few elements are cut into chunks of 1,024.
+  // Few elements form chunks of 1,024.
   for (const auto& [divisions, chunks] : {std::pair{1, 1u}, std::pair{5, 1u}, std::pair{13, 13u}}) {
     const CutBox box(divisions);
     std::vector<std::int32_t> sorted = box.elements;
@@ -75,7 +75,7 @@ TEST(ChunkOrderTest, ChunksAreCompact) {
   }
 }
 
-// Of the elements that are worked on one after the other, few share a node: a sum waits for the last one.
+// Successive elements rarely share a node, because a sum waits for the previous one.
 TEST(ChunkOrderTest, NeighboursInABlockAreFarApart) {
   const CutBox box(16);
   std::size_t pairs = 0, sharing = 0;
@@ -89,7 +89,7 @@ TEST(ChunkOrderTest, NeighboursInABlockAreFarApart) {
   EXPECT_LT(static_cast<double>(sharing), 0.2 * static_cast<double>(pairs));
 }
 
-// Elements whose nodes no other has are limited by these.
+// Chunks of elements without common nodes are limited by their number of nodes.
 TEST(ChunkOrderTest, ChunksHaveNoMoreNodesThanTheyMay) {
   std::vector<std::int32_t> elements(kChunkElements);
   std::iota(elements.begin(), elements.end(), 0);

@@ -1,4 +1,4 @@
-// What Newton's method is told of the elements, against the laws point by point and against differences.
+// Element matrices for Newton's method, against the laws point by point and against differences.
 #include "core/tet/element_matrices.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace fascicle::testing;
 
-// A potential with all that the kernels know: activation, rate, viscous increment, pressures of patches.
+// A potential with everything the kernels support: activation, rate, viscous increment, pressures of patches.
 struct Loaded : Setting {
   Loaded(const Material& law, ElementOrder element, VolumeForm volume, int divisions)
       : Setting(law, element, volume, divisions) {
@@ -41,7 +41,7 @@ struct Loaded : Setting {
                              [&](std::size_t e) { return model.NodesOf<Element>(e); });
   });
   StiffnessLayout layout{model, pattern};
-  // What is there before is no part of the result.
+  // Previous contents do not affect the result.
   BlockValues values = BlockValues(pattern.blocks(), Mat3::Constant(1e30));
 };
 
@@ -126,7 +126,7 @@ TEST_P(ElementMatricesTest, EvaluationIsThatOfThePotentialAtEveryPoint) {
   EXPECT_LT(LargestDifference(force, expected), 1e-12 * LargestNorm(expected));
 }
 
-// The same matrix element by element (a projection that takes part of 1e-300) and side by side.
+// Element by element (with a projected fraction of 1e-300) and vectorized: the same matrix.
 TEST_P(ElementMatricesTest, SideBySideAsElementByElement) {
   const BlockValues plain = s_.Stiffness(1e-300);
   const double largest = LargestOf(plain);
@@ -173,7 +173,7 @@ TEST_P(DerivativesTest, BlocksAreThoseOfTheForce) {
   for (std::size_t n = 0; n < p.size(); ++n) difference[n] = (difference[n] - force_ahead[n]) / (2 * h);
   EXPECT_LT(LargestDifference(product, difference), 1e-6 * LargestNorm(product));
   if (!untangling) return;
-  // Without pressures, which have no energy here, the force is that of the energy.
+  // Without pressures, whose energy is not included here, the force is the gradient of the energy.
   NodalVector force;
   s.Evaluate(s.x, force);
   EXPECT_NEAR((energy_ahead - energy_behind) / (2 * h), -Dot(s.team, force, p), 1e-6 * LargestNorm(force));
@@ -182,8 +182,8 @@ INSTANTIATE_TEST_SUITE_P(Potentials, DerivativesTest,
                          ::testing::Combine(::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic),
                                             ::testing::Bool()));
 
-// In several chunks: symmetric, the product that forces have without a matrix, and the same bits for any number of
-// threads.
+// In several chunks: the matrix is symmetric, its product equals the matrix-free one, and its bits do not depend on the
+// number of threads.
 class AssembleStiffnessTest : public ::testing::TestWithParam<ElementOrder> {};
 
 TEST_P(AssembleStiffnessTest, AddsEveryBlockInItsPlace) {
@@ -206,7 +206,7 @@ TEST_P(AssembleStiffnessTest, AddsEveryBlockInItsPlace) {
       }
     }
   }
-  // Every element once: the sum over the elements' own tangents along a displacement.
+  // Every element counts once: the sum over the elements' own tangents along a displacement.
   const NodalVector p = RandomVectors(s.x.size(), 2), product = Product(s, p);
   NodalVector expected(p.size(), Vec3::Zero());
   s.model.VisitElement([&]<class Element>(Element) {

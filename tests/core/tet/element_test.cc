@@ -1,4 +1,4 @@
-// The force on a tetrahedron's corners, by every form that METHODS and the paper give it.
+// The force on a tetrahedron's corners, by every equivalent formula of the papers.
 #include "core/tet/element.h"
 
 #include <gtest/gtest.h>
@@ -106,8 +106,8 @@ TEST_P(ElementTest, LinearFiniteElements) {
   EXPECT_LT(LargestDifference(by_gradients, Forces(P)), kRoundOff);
 }
 
-// f = -dW/dx. The St. Venant-Kirchhoff energy is a polynomial of degree four along any line, for which the five-point
-// difference is exact at any step: only rounding is left.
+// f = -dW/dx. The St. Venant-Kirchhoff energy is a polynomial of degree four along any line, so that the five-point
+// difference is exact at any step except for round-off.
 TEST_P(ElementTest, MinusGradientOfEnergy) {
   const StVenantKirchhoff law(std::array{1e4, 0.3});
   const auto energy = [&](int n, int c, double shift) {
@@ -127,14 +127,14 @@ TEST_P(ElementTest, MinusGradientOfEnergy) {
   EXPECT_LT(LargestDifference(by_difference, Forces(law.Stress(element_.F, {}))), kRoundOff);
 }
 
-// [Teran 2003, 3]: Dm^T G Dm = (Ds^T Ds - Dm^T Dm) / 2, edge dot products compared.
+// [Teran 2003, 3]: Dm^T G Dm = (Ds^T Ds - Dm^T Dm) / 2, compared through dot products of edges.
 TEST_P(ElementTest, GeometricStrain) {
   const Mat3 G = 0.5 * (element_.F.transpose() * element_.F - Mat3::Identity());
   const Mat3 by_edges = 0.5 * (element_.Ds.transpose() * element_.Ds - element_.Dm.transpose() * element_.Dm);
   EXPECT_LT((element_.Dm.transpose() * G * element_.Dm - by_edges).norm(), kRoundOff * element_.Ds.squaredNorm());
 }
 
-// Viscous stress: zero when the element only turns, whatever its deformation; power = S : Edot >= 0.
+// Viscous stress: zero if the element only rotates, whatever its deformation; power = S : Edot >= 0.
 TEST_P(ElementTest, ViscousStress) {
   const Vec3 spin(1.5, -2, 0.7);
   Mat3 W;

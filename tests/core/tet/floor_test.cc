@@ -59,7 +59,7 @@ TEST(FloorTest, ForceIsTheSlopeOfTheEnergy) {
   }
 }
 
-// Falls freely, bounces, and keeps its energy: nothing damps it.
+// Falls freely, bounces, and keeps its energy, because there is no damping.
 TEST(FloorTest, ABouncingCubeKeepsItsEnergy) {
   for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
     Scene scene = FallingCube(Stepping::kExplicit, element, 0.02);
@@ -76,7 +76,7 @@ TEST(FloorTest, ABouncingCubeKeepsItsEnergy) {
     }
     EXPECT_LT(lowest, -fallen) << "it reached the ground";
     EXPECT_GT(push, 2 * mass * 9.81);
-    // It came up again: most of the fall is regained at some time after the impact at 64 ms.
+    // It bounced: most of the fall is regained at some time after the impact at 64 ms.
     double highest = INFINITY;
     for (std::size_t k = 20; k < run.frames.size(); ++k) {
       highest = std::min(highest, run.At(k, "energy/external_work"));
@@ -85,7 +85,7 @@ TEST(FloorTest, ABouncingCubeKeepsItsEnergy) {
   }
 }
 
-// Comes to rest on the floor under its weight, by every stepping that can carry it there.
+// Comes to rest on the floor under its weight, with every stepping that can reach rest.
 TEST(FloorTest, TheFloorCarriesTheWeight) {
   const double weight = 1060 * 8e-6 * 9.81;
   for (const Stepping stepping : {Stepping::kExplicit, Stepping::kMixed, Stepping::kBackwardEuler, Stepping::kBdf2}) {
@@ -98,8 +98,8 @@ TEST(FloorTest, TheFloorCarriesTheWeight) {
   }
 }
 
-// Pressed on the floor from above, quasi-statically, with the top free to slide: floor and support balance, and both
-// elements agree.
+// Pressed on the floor from above, quasi-statically, with the top free to slide: the forces of floor and support
+// balance, and both elements agree.
 TEST(FloorTest, PressedInEquilibrium) {
   std::vector<double> push;
   for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
@@ -115,7 +115,7 @@ TEST(FloorTest, PressedInEquilibrium) {
     push.push_back(run.Last("floor/ground/z"));
     EXPECT_NEAR(run.Last("box/reaction/z1/z"), -push.back(), 1e-6 * push.back());
   }
-  // 10 % strain of a cube whose bottom slides, less what the contact gives way.
+  // 10 % strain of a cube whose bottom slides, less the penetration of the contact.
   EXPECT_NEAR(push[0], push[1], 0.1 * push[1]);
   EXPECT_GT(push[1], 0.5);
   EXPECT_LT(push[1], 1.2);

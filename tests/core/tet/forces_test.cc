@@ -50,8 +50,8 @@ class EveryLawTest : public ::testing::TestWithParam<int> {
   }
 };
 
-// f = -dW/dx against a sixth-order central difference. Its error is that of rounding, 1e-11, but where a fibre curve
-// has a kink within the stencil; a short one makes that error small too.
+// f = -dW/dx against a sixth-order central difference. Its error is round-off, 1e-11, unless a fibre curve has a kink
+// within the stencil; a short stencil makes that error small too.
 TEST_P(EveryLawTest, ForceIsMinusGradientOfEnergy) {
   const NodalVector force = ElasticForceAt(x_);
   const double h = 3e-7;
@@ -70,7 +70,7 @@ TEST_P(EveryLawTest, ForceIsMinusGradientOfEnergy) {
   }
 }
 
-// Internal forces have no resultant, and no moment where the law is objective.
+// Internal forces have no resultant, and no moment if the law is objective.
 TEST_P(EveryLawTest, NoResultant) {
   NodalVector force;
   ElasticAndViscousForce(model_, activation_, x_, RandomVectors(model_.nodes(), 3), loaded_.team, loaded_.corners,
@@ -106,8 +106,8 @@ TEST_P(EveryLawTest, StiffnessIsDerivativeOfForce) {
   EXPECT_LT(LargestDifference(product, difference), 1e-5 * LargestNorm(product)) << NameOf(law_);
 }
 
-// A rotated body has no elastic force (but for linear elasticity, which is not objective), and none of the viscous kind
-// while it turns.
+// A rotated body has no elastic force (except with linear elasticity, which is not objective), and a rotating body no
+// viscous force.
 TEST_P(EveryLawTest, RigidMotionIsFree) {
   const Mat3 R = Eigen::AngleAxisd(1.1, Vec3(1, 2, -1).normalized()).toRotationMatrix();
   const Vec3 spin(3, -1, 2);
@@ -123,7 +123,7 @@ TEST_P(EveryLawTest, RigidMotionIsFree) {
   EXPECT_TRUE(report.valid);
   const double deformed = LargestNorm(ElasticForceAt(x_));
   if (std::holds_alternative<LinearElastic>(law_)) {
-    EXPECT_GT(LargestNorm(force), 0.1 * deformed);  // its strain takes rotation for deformation
+    EXPECT_GT(LargestNorm(force), 0.1 * deformed);  // its strain is not invariant under rotation
   } else {
     EXPECT_LT(LargestNorm(force), 1e-10 * deformed);
   }
@@ -133,7 +133,7 @@ TEST_P(EveryLawTest, RigidMotionIsFree) {
 INSTANTIATE_TEST_SUITE_P(Laws, EveryLawTest, ::testing::Range(0, 7),
                          [](const auto& law) { return NameOf(EveryLaw()[law.param]); });
 
-// A linear displacement on an irregular mesh: the same stress everywhere and no force on inner nodes.
+// A linear displacement on an irregular mesh: uniform stress and no force on interior nodes.
 TEST(PatchTest, LinearDisplacementIsInEquilibrium) {
   Body body = BoxBody(kSize, {4, 3, 3}, NeoHookean(std::array{1e4, 0.3}));
   const std::vector<Triangle> surface = BoundaryTriangles(body.tet().mesh);
@@ -162,7 +162,7 @@ TEST(PatchTest, LinearDisplacementIsInEquilibrium) {
   EXPECT_GT(inner, 10);
 }
 
-// Traction on a side: area / 3 of each triangle to its nodes; the resultant is area times traction.
+// Traction on a side: its nodes get area / 3 of each triangle; the resultant is area times traction.
 TEST(LoadTest, TractionIsConsistent) {
   Scene scene = OneBody(BoxBody(kSize, kDivisions, NeoHookean(std::array{1e4, 0.3})));
   scene.bodies[0].loads.push_back({kX1, Traction{Vec3(0, 0, -50)}, Curve::Constant(1)});
@@ -177,7 +177,7 @@ TEST(LoadTest, TractionIsConsistent) {
   for (const Vec3& f : force) sum += f;
   EXPECT_NEAR(sum[2], -50 * kSize[1] * kSize[2], 1e-15);
   EXPECT_NEAR(sum[0], 6, 1e-14);
-  // The diagonals of the side all run the same way: its corners carry one or two triangles of the eight.
+  // All diagonals of the side have the same direction: its corners belong to one or two of the eight triangles.
   const double triangle = kSize[1] * kSize[2] / 8;
   const auto at = [&](double y, double z) {
     for (std::size_t n = 0; n < model.nodes(); ++n) {
@@ -200,7 +200,7 @@ TEST(ModelTest, LumpedMassIsAQuarterToEachCorner) {
   EXPECT_LT((model.Bm3(3) * Dm.transpose() + model.rest_volume()[3] * Mat3::Identity()).norm(), 1e-20);
 }
 
-// D is linear, symmetric and negative semidefinite, and its diagonal is what preconditions it.
+// D is linear, symmetric and negative semidefinite, and its diagonal is that of the preconditioner.
 TEST(ViscousTest, OperatorAndDiagonal) {
   Loaded loaded(SceneOf(NeoHookean(std::array{1e4, 0.3})));
   const NodalVector x = Shaken(loaded.model.rest_positions(), 1e-3, 1);
@@ -227,7 +227,7 @@ TEST(BadElementsTest, NamesThem) {
   NodalVector x = loaded.model.rest_positions(), force;
   const std::array<double, 1> activation = {0};
   EXPECT_TRUE(ElasticForce(loaded.model, activation, x, loaded.team, loaded.corners, force).valid);
-  // A corner of the box, pushed through it: its tetrahedra turn inside out.
+  // A corner of the box is pushed through it, so that its tetrahedra are inverted.
   x[0] = kSize;
   EXPECT_FALSE(ElasticForce(loaded.model, activation, x, loaded.team, loaded.corners, force).valid);
   const BadElements bad = FindBadElements(loaded.model, activation, x);

@@ -1,5 +1,5 @@
-// The loops over chunks of elements side by side against the laws themselves, element by element, and against each
-// other: all instruction sets of this machine, any number of threads.
+// The vectorized loops over chunks of elements against the laws themselves, element by element, and against each other:
+// all instruction sets of this machine, any number of threads.
 #include "core/tet/kernels.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ namespace {
 
 using namespace fascicle::testing;
 
-// What ElasticAndViscousForce says, written down plainly: one element after another, matrices of Eigen, theta and
-// pressure summed up from the elements.
+// A plain version of ElasticAndViscousForce: one element after another, with Eigen's matrices, and theta and pressure
+// summed from the elements.
 struct PlainForces {
   PlainForces(const Setting& s, bool viscous) : force(s.x.size(), Vec3::Zero()) {
     s.model.VisitElement([&]<class Element>(Element) { Add<Element>(s, viscous); });
@@ -108,7 +108,7 @@ TEST_P(KernelsTest, ForcesAreThoseOfTheLaws) {
     EXPECT_TRUE(report.valid);
     EXPECT_NEAR(report.smallest_ratio, plain.smallest, 1e-14);
     EXPECT_NEAR(report.dissipated_power, plain.power, 1e-13 * plain.power);
-    // Forces of neighbours nearly balance: to rounding of what is added up.
+    // Forces of neighbouring elements nearly cancel: to the round-off of the summands.
     EXPECT_LT(LargestDifference(force, plain.force), 1e-12 * LargestNorm(plain.force));
   }
 }
@@ -126,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, KernelsTest,
                                             ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic),
                                             ::testing::Values(VolumeForm::kNodal, VolumeForm::kElement)));
 
-// All sets and any number of threads: the same bits.
+// All instruction sets and any number of threads: the same bits.
 class SameBitsTest : public ::testing::TestWithParam<std::tuple<int, ElementOrder>> {};
 
 TEST_P(SameBitsTest, AnySetAnyThreads) {
@@ -182,7 +182,7 @@ TEST_P(SingleTest, ForcesToSixDigits) {
   const ForceReport single = evaluate(model, InstructionSet::kBaseline, 1, first);
   EXPECT_TRUE(single.valid);
   EXPECT_LT(LargestDifference(first, expected), 2e-5 * LargestNorm(expected));
-  // Positions count from the chunk, ten edges wide, to 6e-8 of that; J is cubic in the edges.
+  // Positions relative to the chunk, ten edges wide, to 6e-8 of that; J is cubic in the edges.
   EXPECT_NEAR(single.smallest_ratio, exact.smallest_ratio, 3 * 10 * 6e-8);
   EXPECT_NEAR(single.dissipated_power, exact.dissipated_power, 1e-5 * exact.dissipated_power);
   for (const InstructionSet set : kInstructionSets) {
@@ -197,7 +197,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, SingleTest,
                          ::testing::Combine(::testing::Range(0, kLawsOfKernels),
                                             ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic)));
 
-// A muscle between fixed ends that contracts to full activation and swings: single precision against double.
+// A muscle between fixed ends that contracts to full activation and vibrates: single precision against double.
 TEST(SingleTest, ContractionFollowsDouble) {
   const auto run = [](Precision precision) {
     Body body =

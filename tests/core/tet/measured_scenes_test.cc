@@ -1,4 +1,4 @@
-// The scenes that tests/bench measures are those that a user could run: valid, and stepped without a problem.
+// The scenes of tests/bench are valid and step without problems.
 #include <gtest/gtest.h>
 
 #include "tests/support/isometric_muscle.h"
@@ -23,7 +23,7 @@ TEST(MeasuredScenes, TheBoxIsValid) {
   EXPECT_GT(VolumeRatiosOf(box.model, 0, box.Bent()).smallest, 0.5) << "bent, but not crushed";
 }
 
-// The whole box falls freely but for what the support holds back.
+// The whole box falls freely, except for the effect of the support.
 TEST(MeasuredScenes, TheFallingBoxFalls) {
   SteppedRun run(FallingBox(4));
   ExpectValid(run.scene);

@@ -4,10 +4,10 @@
 #include "core/tet/forces.h"
 #include "tests/support/tet_scenes.h"
 
-// Elements of all kinds and a state of theirs, for tests of the loops over elements.
+// Elements of all kinds and a state, for tests of the loops over elements.
 namespace fascicle::testing {
 
-// Every law of the closed list, and the muscle with a force-velocity curve.
+// Every law of the list, and the muscle with a force-velocity curve.
 inline std::vector<Material> LawsOfKernels() {
   std::vector<Material> laws = EveryLaw();
   laws.push_back(Muscle(std::array{5e2, 5e2, 1e5, 3e4, 1.2, 0.05, 6.6, 1.4, 5.0, 0.25, 1.4}));
@@ -16,8 +16,7 @@ inline std::vector<Material> LawsOfKernels() {
 }
 inline constexpr int kLawsOfKernels = 9;
 
-// Two bodies, more than one chunk and blocks that are not full; fibres, activation and its scale differ from element to
-// element.
+// Two bodies with several chunks and incomplete blocks; fibres, activation and its scale vary from element to element.
 inline Scene MixedScene(const Material& law, ElementOrder element, VolumeForm volume, int divisions) {
   Scene scene;
   for (int b = 0; b < 2; ++b) {

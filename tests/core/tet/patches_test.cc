@@ -19,7 +19,7 @@ const Vec3 kSize(0.03, 0.02, 0.02);
 
 std::string NameOf(ElementOrder element) { return element == ElementOrder::kLinear ? "linear" : "quadratic"; }
 
-// A box whose inner nodes are moved about.
+// A box whose interior nodes are displaced.
 TetMesh IrregularBox(const std::array<int, 3>& divisions) {
   TetMesh mesh = MakeBox(Vec3::Zero(), kSize, divisions);
   std::vector<bool> inside(mesh.nodes.size(), true);
@@ -55,7 +55,7 @@ struct Patched {
 
 class PatchesTest : public ::testing::TestWithParam<ElementOrder> {};
 
-// A linear displacement on an irregular mesh: no force on inner nodes.
+// A linear displacement on an irregular mesh: no force on interior nodes.
 TEST_P(PatchesTest, LinearDisplacementIsInEquilibrium) {
   Patched box(GetParam(), NearlyIncompressible(), IrregularBox({4, 3, 3}));
   const NodalVector& X = box.model->rest_positions();
@@ -79,7 +79,7 @@ std::vector<Material> PatchedLaws() {
   return {NearlyIncompressible(), Muscle(std::array{5e2, 5e2, 1e6, 3e4, 1.2, 0.05, 6.6, 1.4})};
 }
 
-// f = -dPhi/dx against a sixth-order central difference, at corners and, of quadratic elements, in edges.
+// f = -dPhi/dx against a sixth-order central difference, at corners and, for quadratic elements, at mid-edge nodes.
 TEST_P(PatchesTest, ForceIsMinusGradientOfEnergy) {
   for (const Material& law : PatchedLaws()) {
     Patched box(GetParam(), law, IrregularBox({3, 2, 2}));
@@ -101,7 +101,7 @@ TEST_P(PatchesTest, ForceIsMinusGradientOfEnergy) {
   }
 }
 
-// K p against a difference of forces; K is kept in float.
+// K p against a difference of forces; K is stored in float.
 TEST_P(PatchesTest, StiffnessIsDerivativeOfForce) {
   for (const Material& law : PatchedLaws()) {
     Patched box(GetParam(), law, IrregularBox({3, 2, 2}));
@@ -124,7 +124,7 @@ TEST_P(PatchesTest, StiffnessIsDerivativeOfForce) {
   }
 }
 
-// Rms difference between neighbouring elements over the rms of all about their mean.
+// Rms difference between neighbouring elements relative to the rms deviation from the mean.
 double RelativeJump(const TetMesh& mesh, const std::vector<double>& values) {
   std::map<Triangle, std::vector<std::size_t>> faces;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
@@ -149,7 +149,7 @@ double RelativeJump(const TetMesh& mesh, const std::vector<double>& values) {
   return std::sqrt(jumps / inner / variance);
 }
 
-// Where pressures alternate from node to node, neighbours differ by more than the field has spread.
+// If pressures alternate from node to node, neighbours differ by more than the spread of the field.
 TEST_P(PatchesTest, PressuresOfABentBeamDoNotAlternate) {
   const bool linear = GetParam() == ElementOrder::kLinear;
   SteppedRun run(StaticScene(LockingCantilever(linear ? 4 : 2, Ramp(1)), GetParam()));
@@ -166,8 +166,8 @@ INSTANTIATE_TEST_SUITE_P(Elements, PatchesTest, ::testing::Values(ElementOrder::
 
 // The numerical inf-sup test [Chapelle & Bathe 1993]: the stationary values of
 //   sup_v (q, div v) / (|grad v| |q|)
-// over pressures q of the patches, v zero at both ends of a unit cube of n^3 hexahedra, ascending: the roots of the
-// eigenvalues of B A^-1 B^T with respect to diag(V). The inf-sup constant is the least; `smooth`: with W.
+// over pressures q of the patches, with v zero at both ends of a unit cube of n^3 hexahedra, ascending: the square
+// roots of the eigenvalues of B A^-1 B^T with respect to diag(V). The inf-sup constant is the least. `smooth`: with W.
 Eigen::VectorXd InfSupValues(ElementOrder order, int n, bool smooth) {
   Body body = BoxBody(Vec3::Ones(), {n, n, n}, NearlyIncompressible());
   body.constraints = {Fix(kZ0), Fix(kZ1)};
@@ -181,7 +181,7 @@ Eigen::VectorXd InfSupValues(ElementOrder order, int n, bool smooth) {
   }
   const VolumePatches& patches = model.patches();
   const auto size = static_cast<int>(patches.size());
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(count, count);  // one component's: the same for all three
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(count, count);  // of one component: the same for all three
   std::array<Eigen::MatrixXd, 3> B;
   B.fill(Eigen::MatrixXd::Zero(count, size));
   model.VisitElement([&]<class Element>(Element) {
@@ -227,9 +227,8 @@ Eigen::VectorXd InfSupValues(ElementOrder order, int n, bool smooth) {
   return eigen.eigenvalues().cwiseMax(0).cwiseSqrt();
 }
 
-// Quadratic elements keep clear of zero however fine the mesh. With linear ones some pressures act on no displacement
-// at all; smoothing adds more that nearly do not, those that alternate from node to node, and keeps them off the
-// elements.
+// Quadratic elements stay clear of zero on any mesh. With linear ones some pressures act on no displacement; smoothing
+// adds pressures that alternate from node to node and almost do not, and keeps them off the elements.
 TEST(InfSupTest, QuadraticElementsAreStable) {
   constexpr double kZero = 1e-6;
   std::array<double, 5> quadratic = {};

@@ -1,4 +1,4 @@
-// The steppings against closed forms, and what the solver does when a step can't be made.
+// The steppings against closed forms, and the solver's behaviour if a step fails.
 #include "core/tet/solver.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace fascicle::testing;
 
-// One eigenmode of a small clamped box: vibrations along it are those of a single mass on a spring.
+// One eigenmode of a small clamped box, which vibrates as a single mass on a spring.
 class Mode {
  public:
   explicit Mode(const Damping& damping, Stepping stepping) {
@@ -64,7 +64,7 @@ class Mode {
     const std::array<double, 1> activation = {0};
     Eigen::MatrixXd A(size, size);
     NodalVector unit(model_->nodes(), Vec3::Zero()), ahead, behind;
-    // Columns of K by differences of the (linear) force, which is exact but for rounding.
+    // Columns of K by differences of the (linear) force, exact except for round-off.
     for (Eigen::Index k = 0; k < size; ++k) {
       NodalVector x = model_->rest_positions();
       x[k / 3][k % 3] += 1e-3;
@@ -77,7 +77,7 @@ class Mode {
       }
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (A + A.transpose()));
-    Eigen::Index mode = 0;  // the lowest that is not one of the fixed components'
+    Eigen::Index mode = 0;  // the lowest except for those of fixed components
     while (eigen.eigenvalues()[mode] < 1e-8 * eigen.eigenvalues()[size - 1]) ++mode;
     omega_ = std::sqrt(eigen.eigenvalues()[mode]);
     for (std::size_t n = 0; n < model_->nodes(); ++n) {
@@ -114,7 +114,7 @@ double OrderOf(Mode& mode, double d) {
   return std::log2(coarse / fine);
 }
 
-// The mode's frequency is needed before its damping is chosen.
+// The mode's frequency must be known before its damping is chosen.
 double OmegaOfMode() { return Mode({}, Stepping::kExplicit).omega(); }
 
 TEST(ConvergenceTest, ExplicitIsSecondOrder) {
@@ -128,7 +128,7 @@ TEST(ConvergenceTest, ExplicitWithMassDampingIsSecondOrder) {
   EXPECT_NEAR(OrderOf(mode, a / 2), 2, 0.05);
 }
 
-// The viscous force takes the velocity of half a step before.
+// The viscous force uses the velocity of half a step earlier.
 TEST(ConvergenceTest, ExplicitWithViscousDampingIsFirstOrder) {
   const double omega = OmegaOfMode(), b = 0.05 / omega;
   Mode mode({.stiffness_proportional = b}, Stepping::kExplicit);
@@ -147,7 +147,7 @@ TEST(ConvergenceTest, MixedWithDampingIsFirstOrder) {
   EXPECT_NEAR(OrderOf(mode, a / 2 + b * omega * omega / 2), 1, 0.1);
 }
 
-// Large motion, against the same with a sixteenth of the step: halving divides the error by (4 - 4/256) / (1 - 4/256).
+// Large motion, compared with a sixteenth of the step: halving divides the error by (4 - 4/256) / (1 - 4/256).
 class NonlinearConvergence : public ::testing::TestWithParam<Stepping> {};
 
 TEST_P(NonlinearConvergence, Order) {
@@ -180,7 +180,7 @@ TEST_P(NonlinearConvergence, Order) {
 
 INSTANTIATE_TEST_SUITE_P(Steppings, NonlinearConvergence, ::testing::Values(Stepping::kExplicit, Stepping::kMixed));
 
-// Newton's method ends when it is asked to, and the step that is made later is the one that would have been made.
+// Newton's method stops on request, and the step made later is the same as without the request.
 TEST(StopTest, EndsALongStepAndLeavesNoTrace) {
   Scene scene = OneBody(BoxBody(Vec3(0.02, 0.02, 0.06), {8, 8, 24}, NeoHookean(std::array{2e4, 0.4})));
   scene.tet.stepping = Stepping::kQuasiStatic;
@@ -204,7 +204,7 @@ TEST(StopTest, EndsALongStepAndLeavesNoTrace) {
   EXPECT_EQ(state.positions, expected.positions);
 }
 
-// x = g t^2 / 2 and v = g t at every step, for both steppings: quadratic motion is integrated without error.
+// x = g t^2 / 2 and v = g t at every step, for both steppings: quadratic motion is integrated exactly.
 TEST(FreeFallTest, IsExact) {
   for (const Stepping stepping : {Stepping::kExplicit, Stepping::kMixed}) {
     Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
@@ -227,8 +227,8 @@ TEST(FreeFallTest, IsExact) {
   }
 }
 
-// Without supports and gravity, momentum and angular momentum stay what they are, to round-off, while the body deforms
-// wildly and damping acts.
+// Without supports and gravity, momentum and angular momentum are conserved to round-off, while the body deforms
+// strongly with damping.
 TEST(MomentumTest, IsConserved) {
   for (const Stepping stepping : {Stepping::kExplicit, Stepping::kMixed}) {
     Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
@@ -257,14 +257,14 @@ TEST(MomentumTest, IsConserved) {
     for (int i = 0; i < 2000; ++i) ASSERT_EQ(solver.Advance(state, 100).problem, StepProblem::kNone);
     EXPECT_GT(LargestDifference(state.positions, model.rest_positions()), 0.01);
     const auto [linear_after, angular_after] = momenta();
-    // The implicit solves leave a residual of 1e-14 of their right side in each of 2,000 steps.
+    // The implicit solves leave a residual of 1e-14 of their right-hand side in each of 2,000 steps.
     const double allowed = stepping == Stepping::kExplicit ? 1e-12 : 1e-10;
     EXPECT_LT((linear_after - linear).norm(), allowed * linear.norm());
     EXPECT_LT((angular_after - angular).norm(), allowed * angular.norm());
   }
 }
 
-// A user's step is used as it is while it is stable, and halved when it is not: no energy is made.
+// A user's step is used unchanged while it is stable, and halved otherwise: no energy is created.
 TEST(FixedStepTest, IsHalvedUntilItIsStable) {
   Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
   body.constraints.push_back(Fix(kX0));
@@ -281,20 +281,20 @@ TEST(FixedStepTest, IsHalvedUntilItIsStable) {
     double largest_work = 0, largest_error = 0;
     while (state.time < 0.2) {
       ASSERT_EQ(solver.Advance(state, 100).problem, StepProblem::kNone);
-      // Steps divide the time to `end` evenly: at most one part in their number shorter.
+      // Steps divide the time to `end` evenly, so they are shorter by at most one part in their number.
       EXPECT_NEAR(state.time_step, (factor < 1 ? factor : factor / 4) * limit, 1e-4 * limit);
       const double energy = ElasticEnergy(model, 0, std::array{0.0}, state.positions, team) +
                             KineticEnergy(model, state.velocities, team);
       largest_work = std::max(largest_work, std::abs(state.external_work));
       largest_error = std::max(largest_error, std::abs(energy - state.external_work));
     }
-    // The sudden load excites high modes, whose energy the scheme only keeps on average.
+    // The sudden load excites high modes, whose energy the scheme conserves only on average.
     EXPECT_LT(largest_error, 0.1 * largest_work);
   }
 }
 
-// Nodes thrown at each other near the speed of sound would crush elements in one stable step: the step is cut, and no
-// energy is made of it. With damping the motion dies down and the step is as long again as before.
+// Nodes thrown at each other near the speed of sound would crush elements in one stable step: the step is divided, and
+// no energy is created. With damping the motion decays and the step regains its length.
 TEST(StepCuttingTest, RecoversFromAViolentStart) {
   for (const double damping : {0.0, 100.0}) {
     Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, NeoHookean(std::array{1e4, 0.3}));

@@ -20,7 +20,7 @@ Scene TestScene(const Material& law, const Damping& damping = {}) {
   return OneBody(body);
 }
 
-// The largest eigenvalue of M^-1/2 A M^-1/2 over the free components, from the dense matrix: the obvious way.
+// The largest eigenvalue of M^-1/2 A M^-1/2 over the free components, from the dense matrix.
 template <class Apply>
 double DenseLargestEigenvalue(const TetModel& model, const Apply& apply) {
   const auto size = static_cast<Eigen::Index>(3 * model.nodes());
@@ -54,7 +54,7 @@ class StableStepTest : public ::testing::TestWithParam<int> {
   ThreadTeam team_{1};
 };
 
-// The estimate is on the safe side, and close: Lanczos stops at a residual of 2 % of omega^2, 1 % of the step.
+// The estimate is conservative and close: Lanczos stops at a residual of 2 % of omega^2, 1 % of the step.
 TEST_P(StableStepTest, IsTheInverseOfTheLargestFrequency) {
   const NodalVector x = Shaken(model_.rest_positions(), 5e-4, 3);
   const double exact = 2 / std::sqrt(DenseOmegaSquared(model_, x, team_));
@@ -86,7 +86,7 @@ TEST_P(StableStepTest, SeparatesStableFromUnstable) {
     }
     return LargestDifference(state.positions, model.rest_positions()) / 1e-9;
   };
-  // At 0.99 the highest mode, sampled twice a period, may look 1 / sqrt(1 - 0.99^2) = 7 times its size.
+  // At 0.99 the highest mode, sampled twice per period, may appear 1 / sqrt(1 - 0.99^2) = 7 times as large.
   EXPECT_LT(growth(0.99), 30);
   EXPECT_GT(growth(1.1), 1e3);
 }
@@ -113,7 +113,7 @@ TEST(DampedStableStepTest, AgreesWithTheFormula) {
   const double estimate = LargestStableStep(model, activation, X, true, team, corners, workspace);
   EXPECT_LE(estimate, exact * (1 + 1e-6));
   EXPECT_GE(estimate, exact * 0.97);
-  // Implicit damping costs nothing.
+  // Implicit damping does not reduce the step.
   EXPECT_GT(LargestStableStep(model, activation, X, false, team, corners, workspace), 0.98 * 2 / omega);
 }
 
@@ -125,7 +125,7 @@ TEST(DampedStableStepTest, IsStable) {
   const RunResult run = RunScene(scene);
   ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded);
   EXPECT_LT(run.Last("energy/kinetic"), 1e-3 * run.Last("energy/elastic"));
-  // Work done by the load is stored or dissipated; the viscous force is taken half a step late, so to first order.
+  // The work done by the load is stored or dissipated; first order only, because the viscous force lags half a step.
   EXPECT_NEAR(run.Last("energy/elastic") + run.Last("energy/kinetic") + run.Last("energy/dissipated"),
               run.Last("energy/external_work"), 0.02 * run.Last("energy/external_work"));
 }

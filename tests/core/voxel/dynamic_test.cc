@@ -34,7 +34,7 @@ struct Cantilever {
   VoxelGrid grid;
   VoxelModel model;
   std::vector<VoxelSupport> supports;
-  VoxelField<double> none;  // no force, nothing displaced
+  VoxelField<double> none;  // neither force nor displacement
 };
 
 // The lowest frequency is that of the beam [Timoshenko, Young & Weaver 1974]: 1.8751^2/(2 pi L^2) sqrt(E I/(rho A)).
@@ -72,8 +72,8 @@ TEST(Dynamic, MassIsThatOfTheBody) {
   EXPECT_NEAR(mass, kDensity * 6e-9 * model.mesh().voxels(), 1e-12 * mass);
 }
 
-// Released in its lowest mode, a body stays in it; each step multiplies (u_{n+1}, u_n) by what the scheme's quadratic
-// equation (1 + (w dt)^2 + a dt/2) z^2 - 2 z + 1 - a dt/2 = 0 says: frequency and decay, exactly, for any step.
+// Released in its lowest mode, a body stays in it; each step multiplies (u_{n+1}, u_n) as the scheme's quadratic
+// equation (1 + (w dt)^2 + a dt/2) z^2 - 2 z + 1 - a dt/2 = 0 determines: frequency and decay are exact for any step.
 TEST(Dynamic, ReleasedInAModeFollowsTheSchemesOwnSolution) {
   const Cantilever body({20, 3, 3});
   ThreadTeam team(1);
@@ -103,8 +103,8 @@ TEST(Dynamic, ReleasedInAModeFollowsTheSchemesOwnSolution) {
   }
 }
 
-// The paper's dynamic release: a static load is let go. With small steps the tip swings with the lowest frequency and
-// decays by exp(-a t/2); the oscillation is measured by where it crosses zero.
+// The paper's dynamic release: a static load is removed. With small steps the tip vibrates with the lowest frequency
+// and decays by exp(-a t/2); the frequency is measured by zero crossings.
 TEST(Dynamic, ReleaseSwingsAtTheLowestFrequencyAndDecays) {
   const Cantilever body({20, 3, 4});
   ThreadTeam team(1);
@@ -126,7 +126,7 @@ TEST(Dynamic, ReleaseSwingsAtTheLowestFrequencyAndDecays) {
     ASSERT_LT(state.step, 2000);
     const VoxelStepReport report = solver.Step(body.none, body.none, state);
     ASSERT_TRUE(report.iterations.converged);
-    // Never more energy.
+    // The energy never grows.
     EXPECT_LE(report.kinetic + report.elastic, energy * (1 + 1e-6));
     energy = report.kinetic + report.elastic;
     const double now = state.displacement(tip, 1);
@@ -144,7 +144,7 @@ TEST(Dynamic, ReleaseSwingsAtTheLowestFrequencyAndDecays) {
   EXPECT_NEAR(std::log(peaks[2] / peaks[4]), expected, 0.03 * expected);
 }
 
-// A free body keeps its momentum, and turns as it should when it may.
+// A free body conserves momentum, and rotates correctly if it may.
 TEST(Dynamic, AFreeBodyFlies) {
   const Cantilever body({6, 4, 5});
   ThreadTeam team(1);
@@ -175,7 +175,7 @@ TEST(Dynamic, PrescribedComponentsFollowTheirValues) {
     ASSERT_TRUE(solver.Step(body.none, moved, state).iterations.converged);
     EXPECT_EQ(state.displacement(body.model.mesh().NodeAt({0, 1, 1}), 2), by);
   }
-  // In the end all of it has come along.
+  // In the end the whole body has followed.
   for (std::int32_t n = 0; n < moved.nodes(); ++n) EXPECT_NEAR(state.displacement(n, 2), 1e-3, 1e-6);
 }
 

@@ -30,7 +30,7 @@ TEST(Coarsen, KeepsWhatIsFullEnoughOfTheCommonestMaterial) {
   set({1, 0, 0}, 2, 2);
   set({0, 1, 1}, 1, 6);
   set({2, 1, 1}, 3, 1);  // one of eight
-  set({0, 0, 2}, 1, 5);  // the last layer is filled up
+  set({0, 0, 2}, 1, 5);  // the last layer is padded
   set({1, 1, 2}, 2, 1);
   const VoxelGrid coarse = Coarsen(grid, 0.25);
   EXPECT_THAT(coarse.size, ElementsAre(2, 1, 2));
@@ -72,7 +72,7 @@ TEST(MakeHierarchy, CountsVoxelsAndNodesOfEachLevel) {
   EXPECT_EQ(levels[3].voxels, 1);
 }
 
-// Against the obvious: a node is where a solid voxel has a corner.
+// By definition: there is a node wherever a solid voxel has a corner.
 TEST(VoxelMesh, NumbersCornersOfSolidVoxelsInOrder) {
   const VoxelGrid grid = SpongeGrid({9, 7, 6}, Vec3::Ones());
   const VoxelMesh mesh(grid);

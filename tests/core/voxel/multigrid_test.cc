@@ -15,7 +15,7 @@ namespace {
 using testing::RandomField;
 using testing::SpongeGrid;
 
-// As conjugate gradients need it.
+// Symmetric and positive definite, as conjugate gradients require.
 void ExpectSymmetricAndPositive(const VoxelGrid& grid, const std::string& description) {
   const VoxelMesh mesh(grid);
   const VoxelStiffness stiffness(mesh, {{3e4, 0.3}, {3e6, 0.4}}, Dilatation::kFull, StiffnessOfVoxels(grid));
@@ -69,7 +69,7 @@ TEST(Multigrid, IsSymmetricAndPositiveWithRigidPieces) {
   ExpectSymmetricAndPositive(grid, "pieces");
 }
 
-// Interpolation of a linear field is exact, and the transpose is one.
+// Interpolation of a linear field is exact, and restriction is its transpose.
 TEST(Transfer, InterpolatesLinearlyAndHasItsTranspose) {
   const VoxelGrid grid = SpongeGrid({21, 14, 17}, Vec3::Ones());
   const VoxelMesh fine(grid);
@@ -99,7 +99,7 @@ TEST(Transfer, InterpolatesLinearlyAndHasItsTranspose) {
   }
 }
 
-// K of a coarser level is P^T K P, wherever supports, holes and materials are.
+// K of a coarser level is P^T K P for any supports, holes and materials.
 TEST(LevelStiffness, IsTheGalerkinProduct) {
   VoxelGrid grid = SpongeGrid({13, 10, 9}, Vec3(1, 1.5, 0.8));
   ForVoxels(grid, [&](std::size_t v, const GridIndex& at) {

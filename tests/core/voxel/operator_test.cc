@@ -18,7 +18,7 @@ using testing::SpongeGrid;
 const Vec3 kSpacing(0.9e-3, 1.1e-3, 1.6e-3);
 const VoxelMaterial kMuscle = {3e4, 0.45};
 
-// K of a brick from its definition, sum over Gauss points of B^T D B: slow and obvious.
+// K of a brick by definition, the sum over Gauss points of B^T D B.
 BrickMatrix ByGaussPoints(const Vec3& spacing, const VoxelMaterial& material, Dilatation dilatation) {
   const double mu = material.young_modulus / (2 * (1 + material.poisson_ratio));
   const double lambda = 2 * mu * material.poisson_ratio / (1 - 2 * material.poisson_ratio);

@@ -1,4 +1,4 @@
-// Each mistake by itself, and all of them at once: refused with a field path, in plain words.
+// Each mistake alone, and all of them at once: refused with a field path and a plain message.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ TEST(Refusals, SenselessGrids) {
   EXPECT_THAT(body.Problem(), AllOf(HasSubstr("grid.stiffness: 1 solid voxels"), HasSubstr("(1, 1, 0)")));
   body = Body();
   body.grid.material.pop_back();
-  EXPECT_THAT(body.Problem(), HasSubstr("as many voxels as the grid has"));
+  EXPECT_THAT(body.Problem(), HasSubstr("differ from the number of voxels"));
 }
 
 TEST(Refusals, ModuliOutOfRange) {
@@ -66,7 +66,7 @@ TEST(Refusals, ModuliOutOfRange) {
   EXPECT_THAT(body.Problem(), HasSubstr("materials[0].young_modulus"));
   body.grid.material[3] = 2;
   EXPECT_THAT(body.Problem(),
-              HasSubstr("1 voxels are of a material that is not listed, the first is (3, 0, 0) of material 2"));
+              HasSubstr("1 voxels have a material that is not listed, the first is (3, 0, 0) with material 2"));
 }
 
 TEST(Refusals, SupportsThatDoNotExistOrContradict) {
@@ -96,7 +96,7 @@ TEST(Refusals, AnIslandThatNothingHolds) {
   ForVoxels(body.grid, [&](std::size_t v, const GridIndex& at) {
     if (at[0] >= 4 && at[0] < 7) body.grid.material[v] = 0;
   });
-  EXPECT_THAT(body.Problem(), HasSubstr("nothing holds the island of 32 voxels that begins at (7, 0, 0): it moves "
+  EXPECT_THAT(body.Problem(), HasSubstr("no support holds the island of 32 voxels that starts at (7, 0, 0): it moves "
                                         "along i, j and k, turns about i, j and k"));
 }
 
@@ -122,13 +122,13 @@ TEST(Refusals, RigidModesAreNamed) {
   EXPECT_THAT(body.Problem(), HasSubstr("turns about an axis that is not one of the grid's"));
 }
 
-// Two cubes that touch along an edge are a hinge; held on both sides of it they are not.
+// Two cubes that share an edge form a hinge; with supports on both sides of it they do not.
 TEST(Refusals, IslandsThatTouchInAnEdgeAreAHinge) {
   Body body;
   body.grid = MakeVoxelGrid({8, 8, 4}, Vec3::Constant(1e-3));
   ForVoxels(body.grid,
             [&](std::size_t v, const GridIndex& at) { body.grid.material[v] = at[0] / 4 == at[1] / 4 ? 1 : 0; });
-  EXPECT_THAT(body.Problem(), HasSubstr("the island of 64 voxels that begins at (4, 4, 0): it turns about k ("));
+  EXPECT_THAT(body.Problem(), HasSubstr("the island of 64 voxels that starts at (4, 4, 0): it turns about k ("));
   body.supports.push_back({{{8, 8, 0}}, {true, false, false}});
   EXPECT_EQ(body.Problem(), "");
 }

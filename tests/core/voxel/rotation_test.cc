@@ -1,4 +1,4 @@
-// Bricks that turn: VoxelModel with VoxelRotation::kLarge.
+// Corotated bricks: VoxelModel with VoxelRotation::kLarge.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ struct Sponge {
         bricks(model.K()),
         R(model.mesh().voxels()),
         f(model.mesh().nodes()) {}
-  // Turned far, and strained by some percent in every brick.
+  // A large rotation, and some percent of strain in every brick.
   VoxelField<double> Deformed(double strain) const {
     VoxelField<double> u = Turned(model.mesh(), kQuarterAndMore);
     const VoxelField<double> random = RandomField<double>(u.nodes());
@@ -180,8 +180,8 @@ TEST(RotatedBricks, HaveTheSameBitsForAnyThreadsAndInstructionSet) {
   }
 }
 
-// End of the elastica: a cantilever of unit length and bending stiffness under a force p across, by Runge and Kutta's
-// method from the clamp; the slope theta obeys theta'' = -p cos(theta), theta'(1) = 0.
+// The end of the elastica: a cantilever of unit length and bending stiffness under a lateral force p, integrated by a
+// Runge-Kutta method from the clamp; the slope theta obeys theta'' = -p cos(theta), theta'(1) = 0.
 Eigen::Vector2d ElasticaTip(double p) {
   constexpr int kSteps = 2000;
   const auto shoot = [p](double curvature) {
@@ -211,7 +211,7 @@ TEST(RotatedBricks, ElasticaHasItsTabulatedTip) {
   EXPECT_LT((ElasticaTip(10) - Eigen::Vector2d(1 - 0.55500, 0.81061)).norm(), 1e-5);
 }
 
-// A cantilever of 20 x 1 x 1 bent by 75 degrees, against the elastica; error by the square of the spacing.
+// A cantilever of 20 x 1 x 1 bent by 75 degrees, against the elastica; the error is of second order in the spacing.
 TEST(LargeRotation, CantileverBendsAsTheElastica) {
   constexpr double kLoad = 5;  // P L^2/(E I)
   const Eigen::Vector2d exact = 20 * ElasticaTip(kLoad);
@@ -236,7 +236,7 @@ TEST(LargeRotation, CantileverBendsAsTheElastica) {
   EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2, 0.4);
 }
 
-// The clamp turns by 120 degrees, step by step: the body goes along, without stress.
+// The clamp rotates by 120 degrees in steps, and the body follows without stress.
 TEST(LargeRotation, ATurnedClampTakesTheBodyAlong) {
   const VoxelGrid grid = BoxGrid({12, 4, 3}, {1e-3, 1.5e-3, 1e-3});
   const VoxelModel model(grid, {kMuscle}, Dilatation::kMean, VoxelRotation::kLarge);

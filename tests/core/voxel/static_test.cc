@@ -23,7 +23,7 @@ Vec3 PlaceOf(const VoxelMesh& mesh, const GridIndex& at) {
   return mesh.spacing().cwiseProduct(Vec3(at[0], at[1], at[2]));
 }
 
-// Holds nodes at given displacements, each by a support of its own.
+// Prescribes displacements of nodes, each by a support of its own.
 template <class Which>
 std::vector<VoxelSupport> Prescribe(const VoxelMesh& mesh, const Which& which, const Displacement& u) {
   std::vector<VoxelSupport> supports;
@@ -65,7 +65,7 @@ auto OnSurface(const GridIndex& size) {
   };
 }
 
-// Linear displacements are found exactly, whatever surface holds them, with any spacing.
+// Linear displacements are exact for any supported surface and any spacing.
 TEST(Patch, LinearDisplacementsAreExact) {
   const GridIndex size = {7, 9, 11};
   Mat3 A;
@@ -87,7 +87,7 @@ TEST(Patch, LinearDisplacementsAreExact) {
   }
 }
 
-// A bar pulled by a traction: E, the stress and the contraction across; with faces, forces and body force that sum up.
+// A bar pulled by a traction: E, the stress and the lateral contraction; faces, forces and body forces that add up.
 TEST(Static, TractionOfABarGivesItsStressExactly) {
   const GridIndex size = {20, 4, 5};
   const VoxelGrid grid = BoxGrid(size, {1e-3, 2e-3, 1e-3});
@@ -146,7 +146,7 @@ TEST(Static, ReactionsBalanceLoads) {
   EXPECT_LT((sum + load).norm(), 1e-9 * load.norm());
 }
 
-// Rigid motions of what holds a body: no stress.
+// Rigid motions of the supports cause no stress.
 TEST(Static, RigidMotionGivesNoStress) {
   const GridIndex size = {9, 6, 13};
   const VoxelGrid grid = BoxGrid(size, {1e-3, 1.5e-3, 1e-3});
@@ -167,8 +167,8 @@ TEST(Static, RigidMotionGivesNoStress) {
   }
 }
 
-// Displacements grad phi of a harmonic phi are in equilibrium for any moduli: a cube held all around, its inside free.
-// (Not a polynomial: nodes find cubic ones exactly.)
+// Displacements grad phi of a harmonic phi are in equilibrium for any moduli. All outer nodes of a cube are prescribed,
+// the inner ones are free. (Not a polynomial, because nodal values of cubic ones are exact.)
 TEST(Static, CubeConvergesWithTheSquareOfTheSpacing) {
   const Displacement exact = [](const Vec3& X) {
     const double e = 1e-2 * std::exp(2.5 * X[2]), x = 1.5 * X[0], y = 2 * X[1];
@@ -192,8 +192,8 @@ TEST(Static, CubeConvergesWithTheSquareOfTheSpacing) {
 }
 
 // The plane cantilever under a parabolic shear force at its end, nu = 0 [Augarde & Deeks 2008, Finite Elem. Anal. Des.
-// 44]: held in its exact displacements at both ends, free of traction on all other sides. Its nodes are exact, so that
-// errors are those of the trilinear functions between them, at the voxels' centres.
+// 44]: the exact displacements are prescribed at both ends, other sides are free. Nodal values are exact, so that the
+// errors are those of trilinear interpolation, at the voxels' centres.
 TEST(Static, CantileverConvergesWithTheSquareOfTheSpacing) {
   constexpr double kLength = 4, kDepth = 1, kE = 1e3, kP = 1;
   constexpr double kI = kDepth * kDepth * kDepth / 12;
@@ -225,8 +225,8 @@ TEST(Static, CantileverConvergesWithTheSquareOfTheSpacing) {
   EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2, 0.15);
 }
 
-// Tip of a cantilever of 10 x 1 x 1 under a force at its end, over the beam's P L^3 / (3 E I) (1 + 0.6 (1 + nu)
-// (D/L)^2).
+// Tip displacement of a cantilever of 10 x 1 x 1 under a force at its end, relative to the beam's P L^3 / (3 E I) (1 +
+// 0.6 (1 + nu) (D/L)^2).
 double TipOverBeam(double nu, Dilatation dilatation, std::int32_t n) {
   const VoxelGrid grid = BoxGrid({10 * n, n, n}, Vec3::Constant(1.0 / n));
   const VoxelModel model(grid, {{1e3, nu}}, dilatation);
@@ -249,10 +249,10 @@ TEST(MeanDilatation, DoesNotLockInBending) {
   const double compressible = TipOverBeam(0.3, Dilatation::kFull, 6);
   EXPECT_NEAR(compressible, 1, 0.05);
   EXPECT_NEAR(TipOverBeam(kNu, Dilatation::kMean, 6), compressible, 0.03);
-  EXPECT_LT(TipOverBeam(kNu, Dilatation::kFull, 6), 0.7);  // what is to be avoided
+  EXPECT_LT(TipOverBeam(kNu, Dilatation::kFull, 6), 0.7);  // locking, which mean dilatation avoids
 }
 
-// Balls of 10^4 times the stiffness in a cube: not a matter of two materials alone, every size of ball is there.
+// Balls of 10^4 times the stiffness in a cube, with many different sizes.
 TEST(Static, StiffnessContrastOfTenThousandConverges) {
   constexpr std::int32_t kSide = 32;
   VoxelGrid grid = BoxGrid({kSide, kSide, kSide}, Vec3::Constant(1e-3));
@@ -275,7 +275,7 @@ TEST(Static, StiffnessContrastOfTenThousandConverges) {
   EXPECT_TRUE(solution.iterations.converged);
   std::printf("contrast 1e4: %d iterations\n", solution.iterations.iterations);
   EXPECT_LT(solution.iterations.iterations, 150);
-  // The top's force is the bottom's.
+  // The forces of top and bottom are equal and opposite.
   double top = 0, bottom = 0;
   for (const GridIndex& at : NodesInBox(model.mesh(), {0, 0, 0}, {kSide, kSide, 0}))
     bottom += solution.reaction(model.mesh().NodeAt(at), 2);
@@ -303,8 +303,8 @@ TEST(Static, HasTheSameBitsForAnyThreads) {
   }
 }
 
-// What is carried to a finer level: exact for linear displacements, also where the coarse level lost its voxels.
-TEST(CoarseAndFine, LinearDisplacementsAreCarriedExactly) {
+// Interpolation to a finer level is exact for linear displacements, also where the coarse level has lost voxels.
+TEST(CoarseAndFine, LinearDisplacementsAreInterpolatedExactly) {
   VoxelGrid grid = BoxGrid({12, 10, 9}, Vec3::Constant(1e-3));
   grid.material[grid.IndexOf({11, 9, 8})] = 0;
   const VoxelGrid coarse_grid = Coarsen(Coarsen(grid, 0.5), 0.9);
@@ -315,13 +315,13 @@ TEST(CoarseAndFine, LinearDisplacementsAreCarriedExactly) {
   for (const GridIndex& at : coarse.NodePlaces()) u.Add(node++, linear(PlaceOf(coarse, at)));
   node = 0;
   for (const GridIndex& at : fine.NodePlaces()) expected.Add(node++, linear(PlaceOf(fine, at)));
-  const CarriedField carried = CarryToFine(coarse, u, fine, 4);
-  const CoarseError error = ErrorOfCoarse(carried, expected);
+  const InterpolatedField interpolated = InterpolateToFine(coarse, u, fine, 4);
+  const CoarseError error = ErrorOfCoarse(interpolated, expected);
   EXPECT_EQ(error.left_out, 0);
   EXPECT_LT(error.largest, 1e-15);
   // A known error.
   for (std::int32_t n = 0; n < fine.nodes(); ++n) expected(n, 1) *= 1.5;
-  const CoarseError half = ErrorOfCoarse(carried, expected);
+  const CoarseError half = ErrorOfCoarse(interpolated, expected);
   EXPECT_NEAR(half.largest, 0.5 * 10e-3, 1e-15);
   EXPECT_GT(half.relative, 0.01);
 }

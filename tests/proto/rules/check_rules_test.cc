@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// The one problem at `path`, or an empty one.
+// The only problem at `path`, or an empty one.
 Problem At(const Problems& problems, const std::string& path) {
   Problem found;
   int count = 0;

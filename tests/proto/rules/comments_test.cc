@@ -64,7 +64,7 @@ TEST_F(CommentsTest, EverythingIsCommented) {
 }
 
 TEST_F(CommentsTest, EveryNumberOfASceneHasARule) {
-  // The meaning of these stands elsewhere: a curve's values where the curve is used; any tag may occur in a mesh.
+  // Documented elsewhere: a curve's values where the curve is used; any tag may occur in a mesh.
   const std::set<std::string> exempt = {"fascicle.v1.Curve.values", "fascicle.v1.Region.physical_tag"};
   int with_rule = 0;
   for (const Descriptor* message : messages_) {
@@ -80,7 +80,7 @@ TEST_F(CommentsTest, EveryNumberOfASceneHasARule) {
   EXPECT_GT(with_rule, 60);
 }
 
-// A scene may hold no kind of number that the rules don't know.
+// A scene has no kind of number that the rules do not know.
 TEST_F(CommentsTest, ScenesUseDoubleAndInt32Only) {
   for (const Descriptor* message : messages_) {
     if (!IsOfScenes(*message)) continue;
@@ -88,7 +88,7 @@ TEST_F(CommentsTest, ScenesUseDoubleAndInt32Only) {
       switch (message->field(i)->cpp_type()) {
         case FieldDescriptor::CPPTYPE_DOUBLE:
         case FieldDescriptor::CPPTYPE_INT32:
-        case FieldDescriptor::CPPTYPE_BOOL:  // no number: needs no rule
+        case FieldDescriptor::CPPTYPE_BOOL:  // not a number: needs no rule
         case FieldDescriptor::CPPTYPE_ENUM:
         case FieldDescriptor::CPPTYPE_STRING:
         case FieldDescriptor::CPPTYPE_MESSAGE:

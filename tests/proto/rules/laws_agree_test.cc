@@ -1,5 +1,4 @@
-// The laws stand in two places: the message that a user writes and the list that the core knows. They must say the
-// same.
+// Laws are declared twice: the message that a user writes and the list of the core. Both must agree.
 #include <cmath>
 #include <string>
 

@@ -113,7 +113,7 @@ TEST_F(JobManagerTest, TwoJobsRunAtOnceOnTwoWorkers) {
   const std::string first = manager.Submit(BoxJob(Longest()), nullptr).record.id;
   const std::string second = manager.Submit(BoxJob(Longest()), nullptr).record.id;
   const std::string third = manager.Submit(BoxJob(Longest()), nullptr).record.id;
-  // Neither ends by itself: when both have frames, both are running.
+  // Neither ends by itself: if both have frames, both are running.
   EXPECT_TRUE(WaitForFrames(manager, first, 2));
   EXPECT_TRUE(WaitForFrames(manager, second, 2));
   const std::int64_t before = manager.Get(first)->progress.step;
@@ -133,7 +133,7 @@ TEST_F(JobManagerTest, ARunningJobShowsItsProgress) {
   EXPECT_LT(view.progress.fraction, 1);
   EXPECT_NEAR(view.progress.time_step, 1e-4, 1e-6);  // steps end at frames
   EXPECT_GE(view.frame_count, 2);
-  // And the store learns of it now and then.
+  // The store is updated from time to time.
   EXPECT_TRUE(Eventually([&] { return store_->GetJob(id)->step > 0; }));
 }
 
@@ -162,7 +162,7 @@ TEST_F(JobManagerTest, CancelsARunningJobWithinAStepAndKeepsItsFrames) {
   EXPECT_EQ(done.record.state, JobState::kCancelled);
   EXPECT_GE(done.frame_count, 3);
   EXPECT_EQ(manager.Frames(id)->frame_count(), done.frame_count);
-  // A final job is left as it is.
+  // A finished job is not changed.
   EXPECT_EQ(manager.Cancel(id)->record.end_time_us, done.record.end_time_us);
   EXPECT_FALSE(manager.Cancel("nobody").has_value());
 }
@@ -226,7 +226,7 @@ TEST_F(JobManagerTest, WhatACodecThrowsFailsTheJobAndNothingElse) {
   JobCodec codec = BoxCodec();
   std::atomic<int> frames = 0;
   codec.encode_frame = [&](const Frame& frame) -> std::string {
-    if (frame.index == 5 && frames++ == 0) throw 42;  // once, and not even an exception
+    if (frame.index == 5 && frames++ == 0) throw 42;  // once, and not a std::exception
     return EncodeFrame(frame);
   };
   JobManager manager(*store_, codec, Workers(1));
@@ -250,7 +250,7 @@ TEST_F(JobManagerTest, TheSolverRunsAheadOfTheDiskByAFewFrames) {
   };
   JobManager manager(*store_, codec, Workers(1));
   const std::string id = manager.Submit(BoxJob(Longest()), nullptr).record.id;
-  // Frame 2 is being written, 3 to 5 wait, 6 is in the solver's hand.
+  // Frame 2 is being written, 3 to 5 wait, and the solver has finished 6.
   EXPECT_TRUE(Eventually([&] { return manager.Get(id)->progress.time > 0.0599; }));
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   EXPECT_NEAR(manager.Get(id)->progress.time, 0.06, 1e-3);

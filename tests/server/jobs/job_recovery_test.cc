@@ -1,4 +1,4 @@
-// What becomes of jobs when the process ends, with each store.
+// The fate of jobs if the process ends, with each store.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 class JobRecoveryTest : public ::testing::TestWithParam<bool> {
  protected:
-  // Ends the process, as far as the store is concerned.
+  // Ends the process, as seen by the store.
   void ReopenStore() {
     if (!GetParam()) return;
     store_.reset();
@@ -25,7 +25,7 @@ class JobRecoveryTest : public ::testing::TestWithParam<bool> {
   std::unique_ptr<Store> store_ = GetParam() ? OpenSqliteStore(directory_.path()) : MakeMemoryStore();
 };
 
-// Counts the frames that a manager's workers have made.
+// Counts the frames made by a manager's workers.
 JobCodec CountingCodec(std::atomic<int>& count, std::atomic<std::int64_t>& first) {
   JobCodec codec = BoxCodec();
   codec.encode_frame = [&](const Frame& frame) {
@@ -51,7 +51,7 @@ TEST_P(JobRecoveryTest, ADrainedJobGoesOnFromItsCheckpointToTheSameFrames) {
     EXPECT_EQ(manager.Get(waiting)->record.state, JobState::kQueued);
     stored = view.frame_count;
     EXPECT_LT(stored, 151);
-    // A drained server still accepts jobs, for the next one.
+    // A drained server still accepts jobs for the next server.
     EXPECT_EQ(manager.Submit(BoxJob(spec, "late"), nullptr).record.state, JobState::kQueued);
   }
   ReopenStore();
@@ -176,7 +176,7 @@ TEST_P(JobRecoveryTest, TakesUpJobsInWhateverStateTheyWereLeft) {
   EXPECT_EQ(manager.Get(ids[4])->record.state, JobState::kFailed);
   EXPECT_EQ(manager.Get(ids[4])->record.failure, "old");
   EXPECT_EQ(manager.Get(ids[5])->record.attempt, 1);
-  // New ids come after those that are there.
+  // New ids are greater than the existing ones.
   EXPECT_GT(manager.Submit(BoxJob({}), nullptr).record.id, ids.back());
 }
 

@@ -1,4 +1,4 @@
-// Listeners: told of everything after it is stored, and never again once their handle is gone.
+// Listeners are notified of every event after it is stored, and never after their handle is destroyed.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -20,13 +20,13 @@ TEST(SubscriptionTest, AListenerSeesEveryFrameAndTheEnd) {
   std::atomic<std::int64_t> seen = 0;
   std::atomic<bool> has_ended = false, has_geometry = false;
   const JobManager::Subscription subscription = manager.Subscribe(id, [&] {
-    // The manager may be asked from here.
+    // The manager may be called from here.
     const JobView view = *manager.Get(id);
     seen = view.frame_count;
     has_geometry = manager.Frames(id)->GetGeometry().has_value();
     if (IsFinal(view.record.state)) has_ended = true;
   });
-  // Nobody looks but the listener: it must be told of the last frame and of the end.
+  // Only the listener watches the job: it must be notified of the last frame and of the end.
   EXPECT_TRUE(Eventually([&] { return has_ended.load(); }));
   EXPECT_EQ(seen, 21);
   EXPECT_TRUE(has_geometry);
@@ -127,7 +127,7 @@ TEST(NotifierTest, HandlesMayOutliveIt) {
     handle = notifier.Subscribe("id", [&] { ++calls; });
     notifier.Notify("id");
   }
-  EXPECT_EQ(calls, 1);  // what was to be told is told
+  EXPECT_EQ(calls, 1);  // earlier notifications were delivered
   handle.reset();
 }
 

@@ -1,4 +1,4 @@
-// Every way in which a call can be wrong, and what the client is told.
+// Every way in which a call can be wrong, and the error that clients get.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -56,7 +56,7 @@ TEST_F(ErrorsTest, RequestsWithoutAJobOrOutOfRange) {
   EXPECT_EQ(FieldsOf(status), (std::vector<std::string>{"job.threads", "request_id"}));
 }
 
-// The trailer of a status is limited to 8 KiB in most clients: a longer list would be lost with the whole answer.
+// Most clients limit the trailer of a status to 8 KiB: a longer list would be lost with the whole response.
 TEST_F(ErrorsTest, ManyProblemsReachEveryClient) {
   v1::CreateJobRequest request;
   v1::Scene& scene = *request.mutable_job()->mutable_scene() = SwingingBox(1, 0.1);
@@ -211,7 +211,7 @@ TEST_F(ErrorsTest, PageTokensOfNobody) {
   }
   for (const int size : {-1, 1001}) EXPECT_EQ(ReasonOf(list(size, "", page)), "3 INVALID_ARGUMENT");
 
-  // A token belongs to its filter.
+  // A token is valid only with its filter.
   grpc::ClientContext context;
   v1::ListJobsRequest other;
   other.set_page_token(token);

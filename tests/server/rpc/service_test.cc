@@ -1,4 +1,4 @@
-// What the calls do when they are right.
+// Correct calls.
 #include <map>
 #include <set>
 #include <string>
@@ -53,7 +53,7 @@ TEST_F(JobsTest, AJobsProfileSaysWhereItsTimeWent) {
   };
   EXPECT_GT(profile.wall_seconds(), 0);
   EXPECT_LE(profile.wall_seconds(), 1e-6 * (micros(job.end_time()) - micros(job.start_time())) + 0.01);
-  // All but what goes by between stages; a busy machine may stop the worker there for some milliseconds.
+  // All states except those that may pass between two polls; a busy machine may delay the worker by some milliseconds.
   constexpr double kBetween = 0.03;
   EXPECT_GT(whole, 0.97 * profile.wall_seconds() - kBetween) << profile.DebugString();
   EXPECT_LE(whole, profile.wall_seconds());
@@ -64,7 +64,7 @@ TEST_F(JobsTest, AJobsProfileSaysWhereItsTimeWent) {
   EXPECT_TRUE(stages["commit"].concurrent());
   EXPECT_GT(profile.cpu_seconds(), 0.3 * step);
   EXPECT_EQ(profile.runs(), 1);
-  // It comes with the end of a stream, and not with a list.
+  // It is sent at the end of a stream, and not in a list.
   EXPECT_EQ(ReadStream(*stubs_, AllFramesOf(name)).end->job().profile().SerializeAsString(),
             profile.SerializeAsString());
   grpc::ClientContext context;
@@ -128,7 +128,7 @@ TEST_F(JobsTest, TwoJobsRunAtOnceAndAThirdWaits) {
   const std::string c = stubs_->Submit(LongScene());
   ASSERT_TRUE(stubs_->AwaitState(a, v1::Job::STATE_RUNNING));
   ASSERT_TRUE(stubs_->AwaitState(b, v1::Job::STATE_RUNNING));
-  // Both make frames while the other runs too.
+  // Both produce frames while the other runs.
   const std::int64_t count_a = stubs_->Get(a).frame_count(), count_b = stubs_->Get(b).frame_count();
   EXPECT_TRUE(stubs_->AwaitFrames(a, count_a + 5));
   EXPECT_TRUE(stubs_->AwaitFrames(b, count_b + 5));

@@ -1,4 +1,4 @@
-// The contract of StreamFrames, for jobs that run and jobs that are done.
+// The contract of StreamFrames, for running and finished jobs.
 #include <algorithm>
 #include <string>
 #include <thread>
@@ -44,7 +44,7 @@ TEST_F(StreamTest, AJobIsFollowedFromItsFirstFrameToItsEnd) {
   EXPECT_EQ(record.end->job().name(), name);
   EXPECT_EQ(record.end->next_index(), 101);
   ASSERT_EQ(record.frames.size(), 101u);
-  // Every frame is the stored one.
+  // Every frame equals the stored one.
   const std::vector<v1::FrameInfo> stored = stubs_->List(name);
   ASSERT_EQ(stored.size(), 101u);
   for (std::size_t i = 0; i < stored.size(); ++i) {
@@ -173,7 +173,7 @@ TEST_F(StreamTest, LatestOfADoneJobIsItsLastFrame) {
 }
 
 TEST_F(StreamTest, HeartbeatsTellOfAJobThatWaitsAndOfOneThatIsSlow) {
-  // Two jobs without frames for long keep the workers busy; a third waits.
+  // Two jobs with rare frames keep the workers busy; a third waits.
   v1::Scene slow = SwingingBox(1000, 500);
   for (int i = 0; i < 3; ++i) slow.mutable_bodies(0)->mutable_mesh()->mutable_box()->set_divisions(i, 8);
   const std::string running = stubs_->Submit(slow);
@@ -225,7 +225,7 @@ TEST_F(StreamTest, AStreamOfADeletedJobEnds) {
     return stubs_->jobs->DeleteJob(&context, request, &empty).ok();
   }));
   watcher.join();
-  // It saw the end of the cancelled job, or that the job is gone.
+  // It saw the end of the cancelled job, or that the job was deleted.
   if (record.end) {
     EXPECT_EQ(record.end->job().state(), v1::Job::STATE_CANCELLED);
   } else {

@@ -1,4 +1,4 @@
-// Assets, for each store, and what is special to files.
+// Assets, for each store, and special cases of files.
 #include <gtest/gtest.h>
 
 #include <filesystem>

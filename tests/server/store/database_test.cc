@@ -1,4 +1,4 @@
-// The layer over SQLite, and how files get from one format to the next.
+// The layer over SQLite, and migration of files from one format to the next.
 #include "server/store/database.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What is special to the store on disk: it survives, and it meets files and disks that are not as they should be.
+// The store on disk: it survives the process, and handles defective files and full disks.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -72,7 +72,7 @@ TEST_F(SqliteStoreTest, IsUsedByOneAtATime) {
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_EQ(status, 0);
-  // As long as frames are in use the directory is too.
+  // The directory exists as long as frames are in use.
   store->CreateJob(SampleJob(1), &existing_);
   std::shared_ptr<FrameStore> frames = store->OpenFrames(SampleJob(1).id);
   store.reset();
@@ -87,7 +87,7 @@ TEST_F(SqliteStoreTest, RefusesDataOfANewerVersion) {
   EXPECT_NE(ErrorOf([&] { Open(); }).find("newer version"), std::string::npos);
 }
 
-// control.db as format 1 had it: its jobs have no profile, and get one.
+// control.db in format 1: its jobs have no profile, and get one.
 TEST_F(SqliteStoreTest, JobsOfFormat1AreTakenOver) {
   static constexpr std::array<const char*, 1> kFormat1 = {
       R"(CREATE TABLE jobs (id TEXT PRIMARY KEY NOT NULL, request_id TEXT UNIQUE, request_digest BLOB NOT NULL,
@@ -152,8 +152,8 @@ TEST_F(SqliteStoreTest, ADamagedFileIsToldByNameAndTheOthersGoOn) {
     const std::unique_ptr<Store> store = Open();
     for (int job : {1, 2, 3}) Fill(*store, job, 3, 100'000);
   }
-  std::ofstream(FramesPath(1), std::ios::binary) << std::string(70'000, 'x');  // no database any more
-  fs::resize_file(FramesPath(2), 3 * 32768);                                   // cut off
+  std::ofstream(FramesPath(1), std::ios::binary) << std::string(70'000, 'x');  // not a database any more
+  fs::resize_file(FramesPath(2), 3 * 32768);                                   // truncated
   const std::unique_ptr<Store> store = Open();
   EXPECT_NE(ErrorOf([&] { store->OpenFrames(SampleJob(1).id); }).find(FramesPath(1)), std::string::npos);
   const std::string cut = ErrorOf([&] {
@@ -168,7 +168,7 @@ TEST_F(SqliteStoreTest, ADamagedFileIsToldByNameAndTheOthersGoOn) {
   EXPECT_FALSE(AreFilesOf(1));
 }
 
-// No file may grow past `bytes` while it lives: what a full disk does to a write.
+// While this exists no file may grow beyond `bytes`, which acts like a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {

@@ -84,10 +84,10 @@ TEST_P(StoreContract, GivesTheEarlierJobForARequestIdThatIsTaken) {
   EXPECT_FALSE(store_->CreateJob(second, &existing_));
   ExpectEqual(existing_, first);
   EXPECT_FALSE(store_->GetJob(second.id).has_value());
-  // Jobs without a request id never meet.
+  // Jobs without a request id never conflict.
   EXPECT_TRUE(store_->CreateJob(SampleJob(3), &existing_));
   EXPECT_TRUE(store_->CreateJob(SampleJob(4), &existing_));
-  // A deleted job's request id is free.
+  // The request id of a deleted job can be reused.
   ASSERT_TRUE(store_->DeleteJob(first.id));
   EXPECT_TRUE(store_->CreateJob(second, &existing_));
 }
@@ -175,7 +175,7 @@ TEST_P(StoreContract, FramesStayUsableUntilReleasedWhenTheJobIsDeleted) {
     frames->PutFrame(frame.record, frame.bytes, "");
   }
   store_->DeleteJob(SampleJob(1).id);
-  std::vector<std::thread> readers;  // more at once than there were connections before
+  std::vector<std::thread> readers;  // more concurrent ones than there were connections before
   for (int t = 0; t < 4; ++t) {
     readers.emplace_back([&] {
       for (int i = 0; i < 3; ++i) EXPECT_EQ(ReadFrame(*frames, i), MakeSampleFrame(i, 5000).bytes);
@@ -260,7 +260,7 @@ TEST_P(StoreContract, ReplacesTheCheckpointWithAFrame) {
   EXPECT_EQ(frames->GetCheckpoint(), "first");
   put(2, std::string_view("sec\0nd", 6));
   EXPECT_EQ(frames->GetCheckpoint(), std::string_view("sec\0nd", 6));
-  // The same frame again leaves the frames and takes the checkpoint.
+  // Writing the same frame again keeps the later frames and replaces the checkpoint.
   EXPECT_FALSE(put(1, "again"));
   EXPECT_EQ(frames->GetCheckpoint(), "again");
   EXPECT_EQ(frames->frame_count(), 3);
@@ -278,7 +278,7 @@ TEST_P(StoreContract, AFrameWithAnotherDigestReplacesItAndAllLaterOnes) {
   EXPECT_EQ(ReadFrame(*frames, 0), MakeSampleFrame(0, 100).bytes);
   EXPECT_EQ(ReadFrame(*frames, 1), other.bytes);
   EXPECT_FALSE(frames->ReadChunk(2, 0).has_value());
-  // The checkpoint led past frames that are no longer there.
+  // The checkpoint belongs to frames that have been removed.
   EXPECT_FALSE(frames->GetCheckpoint().has_value());
 }
 

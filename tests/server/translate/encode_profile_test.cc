@@ -66,7 +66,7 @@ TEST(EncodeProfileTest, AddsUpAndPutsWhatIsNewBehindWhatItIsPartOf) {
   EXPECT_EQ(sum.stages(1).seconds(), of_first.stages(1).seconds());
   EXPECT_GE(sum.stages(0).seconds(), of_first.stages(0).seconds() + 0.002);
   EXPECT_GE(sum.wall_seconds(), of_first.wall_seconds() + 0.01);
-  // The same run, told again.
+  // The same run, reported again.
   EXPECT_THAT(NamesOf(EncodeProfile(second)), NamesOf(sum));
 }
 

@@ -7,7 +7,7 @@
 namespace fascicle::server {
 namespace {
 
-// Reads one value out of the bytes of a message, the slow way.
+// Reads one value out of the bytes of a message, bit by bit.
 double DoubleAt(const std::string& bytes, std::size_t index) {
   std::uint64_t bits = 0;
   for (std::size_t i = 0; i < 8; ++i)

@@ -1,4 +1,4 @@
-// Wrong scenes: every problem is named, with its path and a hint, whatever else is wrong.
+// Wrong scenes: every problem is reported with its path and a hint, regardless of others.
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// What is wrong with the box scene after merging `text` into its body.
+// The problems of the box scene after merging `text` into its body.
 Problems WithBody(const std::string& text, const Files& files = {}) {
   v1::Scene scene = BoxScene();
   EXPECT_TRUE(google::protobuf::TextFormat::MergeFromString(text, scene.mutable_bodies(0))) << text;
@@ -241,7 +241,7 @@ TEST(Problems, ChecksOfTheCoreAreRunOnTheBodiesThatAreWhole) {
   EXPECT_THAT(At(problems, "bodies[0].mesh.box.size[0]"), HasSubstr("(0, inf)"));
   EXPECT_THAT(At(problems, "bodies[1].density"), HasSubstr("(0, 30000]"));
   EXPECT_THAT(At(problems, "bodies[1].constraints[1]"), HasSubstr("differently"));
-  EXPECT_THAT(At(problems, "bodies[2].constraints"), HasSubstr("nothing holds"));
+  EXPECT_THAT(At(problems, "bodies[2].constraints"), HasSubstr("no support holds"));
   EXPECT_EQ(problems.count(), 4u) << problems.ToString();
 }
 

@@ -14,7 +14,7 @@
 
 namespace fascicle::server {
 
-// Two tetrahedra on a common face, 10 units long, with tags 1 (a triangle) and 7 (the tetrahedra).
+// Two tetrahedra with a common face, 10 units long, with tags 1 (a triangle) and 7 (the tetrahedra).
 inline const char kTwoTets[] = R"($MeshFormat
 2.2 0 8
 $EndMeshFormat
@@ -61,7 +61,7 @@ inline v1::Scene ParseText(const std::string& text) {
   return scene;
 }
 
-// A box of soft tissue, held at its lower end.
+// A box of soft tissue, fixed at its lower end.
 inline v1::Scene BoxScene() {
   return ParseText(R"(
     name: "box" duration: 1 tet {} output { frame_interval: 0.1 }
@@ -75,7 +75,7 @@ inline v1::Scene BoxScene() {
     })");
 }
 
-// Translates a scene that is in order.
+// Translates a valid scene.
 inline std::shared_ptr<const Scene> Translate(const v1::Scene& scene, const Files& files = {}) {
   Problems problems;
   auto translated = TranslateScene(scene, files.reader(), problems);
@@ -83,7 +83,7 @@ inline std::shared_ptr<const Scene> Translate(const v1::Scene& scene, const File
   return translated;
 }
 
-// What is wrong with a scene.
+// The problems of a scene.
 inline Problems ProblemsOf(const v1::Scene& scene, const Files& files = {}, const TranslateLimits& limits = {}) {
   Problems problems;
   const auto translated = TranslateScene(scene, files.reader(), problems, limits);

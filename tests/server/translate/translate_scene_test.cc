@@ -1,4 +1,4 @@
-// Good scenes: everything arrives in the core, in SI and with defaults.
+// Valid scenes: everything reaches the core, in SI units and with defaults.
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -39,7 +39,7 @@ TEST(TranslateScene, ConvertsLengthsOfABody) {
   EXPECT_EQ(constraint.motion.rotation->axis, Vec3::UnitZ());
   EXPECT_EQ(constraint.motion.rotation->angle.values, std::vector<double>({0, 0.5}));
   ASSERT_TRUE(constraint.motion.translation[1].has_value());
-  // Motions are in metres whatever the body's unit.
+  // Motions are in metres, independently of the body's unit.
   EXPECT_EQ(constraint.motion.translation[1]->values, std::vector<double>({0, 0.25}));
   EXPECT_EQ(constraint.motion.translation[1]->interpolation, Curve::Interpolation::kSmooth);
   EXPECT_FALSE(constraint.motion.translation[0].has_value());
@@ -163,7 +163,7 @@ TEST(TranslateScene, MakesEveryLawWithItsParameters) {
     auto* message = material.GetReflection()->MutableMessage(&material, field);
     std::vector<double> values;
     for (const ParameterInfo& parameter : law.parameters) {
-      // Inside of every range, and another value for each parameter.
+      // Inside of every range, and a different value for each parameter.
       const double low = std::isfinite(parameter.min) ? parameter.min : -1;
       values.push_back(low + (std::min(parameter.max, low + 1) - low) * 0.1 * static_cast<double>(values.size() + 1));
       message->GetReflection()->SetDouble(message, message->GetDescriptor()->FindFieldByName(parameter.name),
@@ -173,7 +173,7 @@ TEST(TranslateScene, MakesEveryLawWithItsParameters) {
       wire.mutable_bodies(0)->mutable_fibres()->mutable_constant()->add_direction(x);
     const auto scene = Translate(wire);
     ASSERT_NE(scene, nullptr) << law.name;
-    // The same law with the same parameters answers the same.
+    // The same law with the same parameters gives the same stress.
     const Material expected = law.make(values);
     Mat3 F = Mat3::Identity();
     F(0, 1) = 0.3;
@@ -278,20 +278,20 @@ TEST(TranslateScene, TurnsFibresByTheirPennation) {
     EXPECT_LT((direction - Vec3(0, std::sin(0.4), std::cos(0.4))).norm(), 1e-15);
   }
 
-  // About the middle of the body's 3 cm along y.
+  // About the middle of the body, which has 3 cm along y.
   for (const double value : {0.0, 1.5, 0.0}) pennation.add_mirror_point(value);
   const auto mirrored = Translate(wire);
   ASSERT_NE(mirrored, nullptr);
   const Body& half = mirrored->bodies[0];
   for (std::size_t e = 0; e < half.tet().fibres.size(); ++e) {
     const double distance = Centroid(half.tet().mesh, e).y() - 0.015;
-    // The middle layer of tetrahedra has some whose centroid is in the plane, up to round-off.
+    // The middle layer of tetrahedra has some with the centroid in the plane, up to round-off.
     if (std::abs(distance) < 1e-9) continue;
     EXPECT_LT((half.tet().fibres[e] - Vec3(0, std::copysign(std::sin(0.4), distance), std::cos(0.4))).norm(), 1e-12);
   }
 }
 
-// The estimate that guards memory before a shape is built must be what is built.
+// The estimate that guards memory before a shape is built must equal the size of the built shape.
 TEST(TranslateScene, EstimatesShapesExactly) {
   for (const char* mesh :
        {"box { size: [0.1, 0.1, 0.1] divisions: [2, 3, 5] }",

@@ -1,4 +1,4 @@
-// Scenes of the voxel method: boxes and images become voxels, and what is wrong with them is named.
+// Scenes of the voxel method: boxes and images become voxels, and problems are reported.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -116,7 +116,7 @@ TEST(VoxelScene, LabelsBecomeVoxelsInTheirPlace) {
   EXPECT_EQ(std::count(body.voxel().materials.of.begin(), body.voxel().materials.of.end(), 1), 8);
   ASSERT_FALSE(body.notes.empty());
   EXPECT_THAT(body.notes[0], HasSubstr("16 voxels"));
-  // Needs what the scene names, so that it is kept with the job.
+  // Needs the files of the scene, so it is kept with the job.
   EXPECT_EQ(AssetsOf(ImageScene(files)).size(), 1u);
 }
 
@@ -131,7 +131,7 @@ TEST(VoxelScene, ThePhantomIsSegmented) {
   wire.mutable_bodies(0)->mutable_regions(0)->mutable_plane()->set_point(2, 8);
   const auto scene = Translate(wire);
   ASSERT_NE(scene, nullptr);
-  // The truth has 117,910 voxels of 0.5 mm: 230 of 4 mm by volume, and those of the rim that are half full.
+  // The true body has 117,910 voxels of 0.5 mm: 230 of 4 mm by volume, plus half-full ones at the rim.
   EXPECT_NEAR(static_cast<double>(scene->bodies[0].voxel().mesh.bricks.size()), 251, 8);
   ASSERT_EQ(scene->bodies[0].notes.size(), 2u);
   EXPECT_THAT(scene->bodies[0].notes[1], HasSubstr("parted at"));
