@@ -5,7 +5,8 @@
 
 namespace fascicle::client {
 
-// A line with the frame's index, time and SHA-256, or a JSON object, on stdout.
+// A line with the frame's index, time and SHA-256, or a JSON object, on stdout. Throws std::runtime_error when that is
+// not the digest of the frame's numbers.
 void PrintDigest(const v1::Frame& frame, bool json);
 
 }  // namespace fascicle::client

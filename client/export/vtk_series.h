@@ -10,10 +10,11 @@
 
 namespace fascicle::client {
 
-// Writes frames as a VTK series that ParaView and others open: one .vtu for each body and frame (binary, appended,
-// zlib), and frames.pvd with their times [s]. Nodes carry `displacement` [m], the frame's node fields and a flag for
-// each region; elements carry the frame's element fields and `rest_fibre`. Each file appears whole or not at all.
-// Not thread-safe. Functions throw std::runtime_error with a message for people.
+// Writes frames as a VTK series that ParaView and others open: for each frame a file of each body
+// (frames/NAME_000000.vtu), line (frames/line_NAME_000000.vtp) and rigid body that moves
+// (frames/rigid_NAME_000000.vtp), one file of each rigid body that stays (frames/fixed_NAME.vtp), and frames.pvd, which
+// names them with their times [s]. What they hold: vtk_files.h. Rigid bodies without a shape are left out. Not
+// thread-safe. Functions throw std::runtime_error with a message for people.
 class VtkSeriesWriter {
  public:
   // Folders are made as needed; files of an earlier series in `folder` are overwritten.
@@ -25,12 +26,20 @@ class VtkSeriesWriter {
 
  private:
   struct Entry {
-    double time;  // [s]
-    std::size_t body;
+    double time;       // [s]
+    std::size_t part;  // number of the object: bodies, then rigid bodies, then lines
+    std::string name;  // of the object
     std::string file;  // relative to the folder
   };
+
+  // Those that stay are written with the first frame.
+  void AddRigidBodies(const v1::Frame& frame, bool first);
+  void AddLines(const v1::Frame& frame);
+
   std::filesystem::path folder_;
-  std::vector<BodyShape> shapes_;
+  std::vector<BodyShape> bodies_;
+  std::vector<RigidShape> rigid_bodies_;
+  std::vector<LineInfo> lines_;
   std::vector<Entry> entries_;
 };
 

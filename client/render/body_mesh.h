@@ -15,6 +15,9 @@ namespace fascicle::client {
 vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std::vector<Vec3>& positions,
                                               const std::vector<double>& values);
 
+// The triangles of a rigid body where it is.
+vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const RigidShape& body, const Pose& pose);
+
 // Outer faces with normals for smooth shading; edges sharper than 40 degrees stay sharp. `smooth`: with
 // corners moved, by less than a voxel, so that steps between voxels are not seen.
 vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid, bool smooth = false);

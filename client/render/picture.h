@@ -16,7 +16,7 @@ namespace fascicle::client {
 // How a frame is drawn.
 struct PictureOptions {
   PictureSize size;
-  // What the surface is coloured by, see ValuesAtNodes; empty: a plain colour.
+  // What bodies and lines are coloured by, see ColourFrames; empty: plain colours.
   std::string colour = "displacement";
   // Values at the ends of the colour scale, in the field's unit; those of the frame when absent.
   std::optional<std::pair<double, double>> range;
@@ -28,6 +28,8 @@ struct PictureOptions {
   bool volume = false;
   bool rest_outline = true;  // the outline of the rest shape, over the body
   bool fibres = false;       // as lines through a transparent surface
+  bool rigid_bodies = true;
+  bool lines = true;  // as tubes
   // Where the eye stands [degree]: azimuth from +x to +y, elevation from the xy plane to +z. When both are absent, a
   // body much longer than wide lies across the picture, others are seen from a corner.
   std::optional<double> azimuth;
@@ -37,7 +39,7 @@ struct PictureOptions {
   bool time = true;  // below the title
 };
 
-// Draws a frame of all bodies and writes a PNG. Throws std::runtime_error with a message for people.
+// Draws a frame of all objects and writes a PNG. Throws std::runtime_error with a message for people.
 void DrawPicture(const v1::Geometry& geometry, const v1::Frame& frame, const PictureOptions& options,
                  const std::filesystem::path& path);
 

@@ -30,7 +30,7 @@ TEST(Encode, GeometryCarriesNodesTetrahedraFibresAndRegions) {
   const auto scene = Translate(wire);
   ASSERT_NE(scene, nullptr);
   const Body& body = scene->bodies[0];
-  const v1::Geometry geometry = EncodeGeometry(*scene, {{"energy/elastic", "J", "Elastic energy"}});
+  const v1::Geometry geometry = EncodeGeometry(*scene, {{}, {}, {{"energy/elastic", "J", "Elastic energy"}}});
   ASSERT_EQ(geometry.bodies_size(), 1);
   const v1::BodyGeometry& encoded = geometry.bodies(0);
   EXPECT_EQ(encoded.name(), "box");
@@ -90,8 +90,14 @@ TEST(Encode, FrameKeepsEveryBit) {
 }
 
 TEST(Encode, FailureKeepsEverything) {
-  const v1::Failure encoded =
-      EncodeFailure({"INVERTED_ELEMENT", "an element turned over", 17, 0.25, "muscle", {4, 9}, "take a smaller step"});
+  const v1::Failure encoded = EncodeFailure({"INVERTED_ELEMENT",
+                                             "an element turned over",
+                                             17,
+                                             0.25,
+                                             ObjectKind::kBody,
+                                             "muscle",
+                                             {4, 9},
+                                             "take a smaller step"});
   EXPECT_EQ(encoded.reason(), "INVERTED_ELEMENT");
   EXPECT_EQ(encoded.message(), "an element turned over");
   EXPECT_EQ(encoded.step(), 17);
