@@ -75,6 +75,7 @@ RigidShape DecodeRigidBody(const v1::RigidBodyGeometry& body) {
   CheckPose(pose[0]);
   shape.pose = pose[0];
   shape.moves = body.moves();
+  shape.unbounded = body.unbounded();
   return shape;
 }
 

@@ -53,6 +53,7 @@ struct RigidShape {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // node indices, all in range
   Pose pose;                                            // finite, its quaternion a unit one
   bool moves = false;                                   // frames have its pose
+  bool unbounded = false;                               // a piece of a plane without end, normal to the z axis
 };
 
 std::vector<RigidShape> DecodeRigidBodies(const v1::Geometry& geometry);

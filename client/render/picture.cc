@@ -104,13 +104,20 @@ void AddBody(const BodyShape& shape, const v1::BodyFrame& frame, const Colouring
   }
 }
 
-// Seen from outside only: an open surface, such as a floor's, hides nothing from below.
+// A plane is like glass from behind, so that a floor hides nothing from below.
 void AddRigidBody(const RigidShape& body, const Pose& pose, vtkRenderer& renderer) {
   if (body.triangles.empty()) return;
-  const auto actor = MakeActor(MakeSurface(*MakeGrid(body, pose)), {});
-  SetMatte(kBone, *actor->GetProperty());
-  actor->GetProperty()->BackfaceCullingOn();
-  renderer.AddActor(actor);
+  const auto surface = MakeSurface(*MakeGrid(body, pose));
+  const auto front = MakeActor(surface, {});
+  SetMatte(kBone, *front->GetProperty());
+  renderer.AddActor(front);
+  if (!body.unbounded) return;
+  front->GetProperty()->BackfaceCullingOn();
+  const auto back = MakeActor(surface, {});
+  SetMatte(kBone, *back->GetProperty());
+  back->GetProperty()->FrontfaceCullingOn();
+  back->GetProperty()->SetOpacity(0.25);
+  renderer.AddActor(back);
 }
 
 void AddLine(const LinePath& path, const std::optional<double>& value, const ColourScale& scale, double radius,
@@ -196,7 +203,8 @@ struct Setting {
   std::vector<RigidShape> rigid_bodies;
   std::vector<LineInfo> lines;
   std::vector<Colouring> colourings;  // of each frame
-  std::array<double, 6> bounds;       // of all that is drawn in all frames, as VTK has them [m]
+  std::array<double, 6> bounds;       // of all that is drawn in all frames but planes, as VTK has them [m]
+  Vec3 up = Vec3::UnitZ();            // out of the first plane where there is one
   double line_radius = 0;             // [m]
 };
 
@@ -212,7 +220,8 @@ vtkBoundingBox BoundsOf(const Setting& setting, std::span<const v1::Frame> frame
     }
     const std::vector<Pose> poses = PosesOf(frame, setting.rigid_bodies);
     for (std::size_t i = 0; i < poses.size() && options.rigid_bodies; ++i) {
-      AddPoints(PositionsAt(setting.rigid_bodies[i], poses[i]), box);
+      const RigidShape& body = setting.rigid_bodies[i];
+      if (!body.unbounded) AddPoints(PositionsAt(body, poses[i]), box);
     }
     for (const LinePath& line : DecodeLines(frame, setting.lines)) {
       if (options.lines) AddPoints(line.points, box);
@@ -229,7 +238,13 @@ Setting MakeSetting(const v1::Geometry& geometry, std::span<const v1::Frame> fra
   setting.lines = DecodeLineInfos(geometry);
   setting.colourings = ColourFrames(setting.shapes, setting.lines, frames, options.colour, options.range);
   const vtkBoundingBox box = BoundsOf(setting, frames, options);
+  if (box.IsValid() == 0) throw std::runtime_error("there is nothing to draw in the frame");
   box.GetBounds(setting.bounds.data());
+  for (const RigidShape& body : setting.rigid_bodies) {
+    if (!body.unbounded) continue;
+    setting.up = RotationOf(body.pose).col(2);
+    break;
+  }
   setting.line_radius = kLineRadius * box.GetDiagonalLength();
   return setting;
 }
@@ -285,7 +300,7 @@ vtkSmartPointer<vtkRenderer> AddPanel(const Setting& setting, const v1::Frame& f
     }
   }
   AddLights(*renderer);
-  AimCamera(options, setting.bounds.data(), width / height, *renderer);
+  AimCamera(options, setting.bounds.data(), setting.up, width / height, *renderer);
   vtkNew<vtkRenderer> overlay;
   overlay->SetLayer(1);
   overlay->SetViewport(renderer->GetViewport());

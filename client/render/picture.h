@@ -31,7 +31,7 @@ struct PictureOptions {
   bool rigid_bodies = true;
   bool lines = true;  // as tubes
   // Where the eye stands [degree]: azimuth from +x to +y, elevation from the xy plane to +z. When both are absent, a
-  // body much longer than wide lies across the picture, others are seen from a corner.
+  // body much longer than wide lies across the picture, others are seen from a corner; up is z, or out of the floor.
   std::optional<double> azimuth;
   std::optional<double> elevation;
   double zoom = 1;

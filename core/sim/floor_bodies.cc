@@ -30,8 +30,8 @@ std::vector<RigidBodyInfo> FloorBodies(const Scene& scene) {
   const Bounds bounds = BoundsOf(corners);
   std::vector<RigidBodyInfo> floors;
   for (const Floor& floor : scene.floors) {
-    floors.push_back(
-        {floor.name, Square(2 * bounds.extent().norm()), PoseOf(floor, (bounds.lowest + bounds.highest) / 2), false});
+    floors.push_back({floor.name, Square(2 * bounds.extent().norm()),
+                      PoseOf(floor, (bounds.lowest + bounds.highest) / 2), false, true});
   }
   return floors;
 }

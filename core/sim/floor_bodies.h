@@ -8,9 +8,8 @@
 
 namespace fascicle {
 
-// The scene's floors as rigid bodies that stay: of each half-space a square of its surface, normal to the z axis of the
-// rigid body. Its middle is below that of the box around all bodies at rest, its side twice the diagonal of that box,
-// so that whatever lies on it is small beside it.
+// The scene's floors as rigid bodies that stay: of each half-space a square of its surface. Its middle is below that of
+// the box around all bodies at rest, and its side is twice the diagonal of that box.
 std::vector<RigidBodyInfo> FloorBodies(const Scene& scene);
 
 }  // namespace fascicle

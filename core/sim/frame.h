@@ -57,6 +57,8 @@ struct RigidBodyInfo {
   TriangleMesh shape;  // along the body's own axes [m]; without triangles when there is nothing to show
   Pose pose;           // at time 0
   bool moves = false;  // each frame has its pose; otherwise it stays where it is
+  // The shape is a piece of a plane without end, normal to the body's z axis, which points out of it.
+  bool unbounded = false;
 };
 
 // A line, such as the path of a muscle or a tendon.

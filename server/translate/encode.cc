@@ -86,6 +86,7 @@ v1::Geometry EncodeGeometry(const Scene& scene, const FrameLayout& layout) {
     encoded.set_triangles(Bytes(body.shape.triangles));
     encoded.set_pose(Bytes(std::vector<Pose>{body.pose}));
     encoded.set_moves(body.moves);
+    encoded.set_unbounded(body.unbounded);
   }
   for (const LineInfo& line : layout.lines) {
     v1::LineGeometry& encoded = *geometry.add_lines();
