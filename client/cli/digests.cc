@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "client/cli/command.h"
+#include "client/lib/decode.h"
 
 namespace fascicle::client {
 namespace {
@@ -23,6 +24,7 @@ std::string HexOf(const std::string& bytes) {
 }  // namespace
 
 void PrintDigest(const v1::Frame& frame, bool json) {
+  CheckDigest(frame);
   if (json) {
     PrintJson(
         {{"frame", frame.index()}, {"time", frame.time()}, {"step", frame.step()}, {"digest", HexOf(frame.digest())}});

@@ -10,6 +10,7 @@
 #include "client/cli/follow.h"
 #include "client/export/csv.h"
 #include "client/export/vtk_series.h"
+#include "client/lib/decode.h"
 #include "client/lib/replace_file.h"
 
 namespace fascicle::client {
@@ -18,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kExamples =
-    R"(  fascicle export 3f2a --out results                  frames.pvd with its .vtu files, and series.csv
+    R"(  fascicle export 3f2a --out results                  frames.pvd with its .vtu and .vtp files, and series.csv
   fascicle export 3f2a --out results --format csv     only the table
   fascicle export 3f2a --out results --from 10 --to 20 --every 2
 )";
@@ -40,6 +41,7 @@ int Export(const Options& options, const Context& context) {
   const auto on_frame = [&](const v1::Geometry& geometry, const v1::Frame& frame) {
     if (options.to && frame.index() > *options.to) return false;
     if ((frame.index() - options.from) % options.every != 0) return true;
+    CheckDigest(frame);
     if (!table) table.emplace(geometry);
     table->Add(frame);
     if (formats.contains("vtk")) {

@@ -21,7 +21,7 @@ bool StaysZero(const SeriesTable::Column& column) {
 std::vector<const SeriesTable::Column*> Choose(const SeriesTable& table, const std::vector<std::string>& globs) {
   std::vector<const SeriesTable::Column*> chosen;
   for (const SeriesTable::Column& column : table.columns()) {
-    const bool wanted = globs.empty() ? !StaysZero(column) && !column.name.starts_with("solver/")
+    const bool wanted = globs.empty() ? !StaysZero(column) && !column.is_pose && !column.name.starts_with("solver/")
                                       : std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {
                                           return MatchesGlob(glob, column.name);
                                         });
@@ -66,10 +66,12 @@ void WritePlot(const std::vector<PlotPanel>& panels, const std::filesystem::path
 PictureOptions DefaultPicture(const v1::Job& job, const v1::Frame& frame) {
   PictureOptions options;
   options.title = job.scene_name();
-  if (frame.bodies_size() > 0) {
-    for (const v1::FieldValues& field : frame.bodies(0).fields()) {
-      if (field.name() == "von_mises_stress") options.colour = field.name();
-    }
+  if (frame.bodies_size() == 0) {
+    options.colour = "";
+    return options;
+  }
+  for (const v1::FieldValues& field : frame.bodies(0).fields()) {
+    if (field.name() == "von_mises_stress") options.colour = field.name();
   }
   return options;
 }

@@ -12,14 +12,14 @@
 namespace fascicle::client {
 
 // The panels of a plot: the columns that match one of `globs`, grouped by unit. Without globs, all columns except those
-// that are always zero and those of the solver. CommandError if a glob matches nothing.
+// that are always zero, those of the solver and poses. CommandError if a glob matches nothing.
 std::vector<PlotPanel> PanelsOf(const SeriesTable& table, const std::vector<std::string>& globs);
 
 // Writes the panels, with at most 8 lines each, as a PNG whose height grows with their number.
 void WritePlot(const std::vector<PlotPanel>& panels, const std::filesystem::path& path);
 
 // Defaults for a picture: the frame's title, coloured by von Mises stress if the scene stores it, otherwise by
-// displacement.
+// displacement; without colours if there are no bodies.
 PictureOptions DefaultPicture(const v1::Job& job, const v1::Frame& frame);
 
 }  // namespace fascicle::client

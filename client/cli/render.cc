@@ -58,6 +58,8 @@ struct Options {
   bool no_surface = false;
   bool no_rest = false;
   bool fibres = false;
+  bool no_rigid_bodies = false;
+  bool no_lines = false;
   std::string view = "auto";
   std::optional<double> azimuth, elevation;
   double zoom = 1;
@@ -130,6 +132,8 @@ PictureOptions PictureOf(const Options& options, const v1::Job& job, const v1::F
   picture.smooth = options.smooth;
   picture.rest_outline = !options.no_rest;
   picture.fibres = options.fibres;
+  picture.rigid_bodies = !options.no_rigid_bodies;
+  picture.lines = !options.no_lines;
   picture.zoom = options.zoom;
   if (const auto view = Views().find(options.view); view != Views().end()) {
     picture.azimuth = view->second.azimuth;
@@ -254,8 +258,9 @@ void AddRender(CLI::App& app, Context& context) {
                    "Rotate the view around the body in this number of pictures (GIF)")
       ->check(CLI::Range(2, 360));
   command->add_option("--fps", options->fps, "Pictures per second of a GIF")->check(CLI::Range(0.1, 50.0));
-  command->add_option("--colour,--color", options->colour,
-                      "Quantity to colour by: displacement, a field of the frame, NAME/COMPONENT, or none");
+  command->add_option(
+      "--colour,--color", options->colour,
+      "Quantity to colour by: displacement, a field of the frame, NAME/COMPONENT, a value of lines, or none");
   command->add_option("--range", options->range, "Range of the colour scale, in the field's unit")
       ->expected(2)
       ->type_name("LOW HIGH");
@@ -263,6 +268,8 @@ void AddRender(CLI::App& app, Context& context) {
   command->add_flag("--no-surface", options->no_surface, "Do not draw the surface");
   command->add_flag("--no-rest", options->no_rest, "Do not draw the outline of the rest shape");
   command->add_flag("--fibres", options->fibres, "Draw the fibres, through a transparent surface");
+  command->add_flag("--no-rigid-bodies", options->no_rigid_bodies, "Leave rigid bodies out, such as floors");
+  command->add_flag("--no-lines", options->no_lines, "Leave lines out, such as the paths of muscles");
   std::vector<std::string> views = {"auto"};
   for (const auto& [view, angles] : Views()) views.push_back(view);
   command->add_option("--view", options->view, "Viewpoint")->check(CLI::IsMember(views));

@@ -27,13 +27,61 @@ Extremes ExtremesOf(const std::vector<double>& values) {
   return extremes;
 }
 
+// What failed. Older servers named a body alone.
+struct FailedObject {
+  std::string kind;  // for people; empty when nothing in particular
+  std::string name;
+};
+
+FailedObject ObjectOf(const v1::Failure& failure) {
+  switch (failure.object_kind()) {
+    case v1::Failure::OBJECT_KIND_BODY:
+      return {"body", failure.object()};
+    case v1::Failure::OBJECT_KIND_RIGID_BODY:
+      return {"rigid body", failure.object()};
+    case v1::Failure::OBJECT_KIND_LINE:
+      return {"line", failure.object()};
+    case v1::Failure::OBJECT_KIND_JOINT:
+      return {"joint", failure.object()};
+    case v1::Failure::OBJECT_KIND_UNSPECIFIED:
+      if (!failure.body().empty()) return {"body", failure.body()};
+      return {};
+    default:  // of a newer server
+      return {"object", failure.object()};
+  }
+}
+
 Json FailureJson(const v1::Failure& failure) {
   Json json = {
       {"reason", failure.reason()}, {"message", failure.message()}, {"step", failure.step()}, {"time", failure.time()}};
+  const FailedObject object = ObjectOf(failure);
+  if (!object.kind.empty()) json["object"] = {{"kind", object.kind}, {"name", object.name}};
   if (!failure.body().empty()) json["body"] = failure.body();
   if (failure.element_ids_size() > 0) json["element_ids"] = failure.element_ids();
   if (!failure.advice().empty()) json["advice"] = failure.advice();
   return json;
+}
+
+std::vector<std::string> NamesOfRigidBodies(const v1::Geometry& geometry, bool moving) {
+  std::vector<std::string> names;
+  for (const v1::RigidBodyGeometry& body : geometry.rigid_bodies()) {
+    if (body.moves() == moving) names.push_back(body.name());
+  }
+  return names;
+}
+
+std::vector<std::string> NamesOfLines(const v1::Geometry& geometry) {
+  std::vector<std::string> names;
+  for (const v1::LineGeometry& line : geometry.lines()) names.push_back(line.name());
+  return names;
+}
+
+// Nothing when there are none.
+void PrintNames(const char* what, const std::vector<std::string>& names) {
+  if (names.empty()) return;
+  std::printf("%s ", what);
+  for (const std::string& name : names) std::printf(" %s", name.c_str());
+  std::printf("\n");
 }
 
 double WallSeconds(const v1::Job& job) {
@@ -77,6 +125,7 @@ Json SummaryJson(const Followed& followed) {
   if (std::isfinite(wall)) json["wall_seconds"] = wall;
   Json series = Json::object();
   for (const SeriesTable::Column& column : table.columns()) {
+    if (column.is_pose) continue;
     const Extremes e = ExtremesOf(column.values);
     series[column.name] = {{"unit", column.unit}, {"final", e.final}, {"min", e.lowest}, {"max", e.highest}};
   }
@@ -84,6 +133,10 @@ Json SummaryJson(const Followed& followed) {
   for (const v1::BodyGeometry& body : followed.geometry.bodies()) {
     for (const std::string& note : body.notes()) json["notes"].push_back(note);
   }
+  for (const v1::RigidBodyGeometry& body : followed.geometry.rigid_bodies()) {
+    json["rigid_bodies"].push_back({{"name", body.name()}, {"moves", body.moves()}});
+  }
+  for (const v1::LineGeometry& line : followed.geometry.lines()) json["lines"].push_back(line.name());
   if (job.has_failure()) json["failure"] = FailureJson(job.failure());
   return json;
 }
@@ -91,7 +144,8 @@ Json SummaryJson(const Followed& followed) {
 void PrintFailure(const v1::Failure& failure) {
   std::printf("failure  %s at t = %.6g s, step %lld\n  %s\n", failure.reason().c_str(), failure.time(),
               static_cast<long long>(failure.step()), failure.message().c_str());
-  if (!failure.body().empty()) std::printf("  body: %s\n", failure.body().c_str());
+  const FailedObject object = ObjectOf(failure);
+  if (!object.kind.empty()) std::printf("  %s: %s\n", object.kind.c_str(), object.name.c_str());
   if (failure.element_ids_size() > 0) {
     std::printf("  elements:");
     for (const std::int64_t id : failure.element_ids()) std::printf(" %lld", static_cast<long long>(id));
@@ -115,16 +169,21 @@ void PrintSummary(const Followed& followed) {
   for (const v1::BodyGeometry& body : followed.geometry.bodies()) {
     for (const std::string& note : body.notes()) std::printf("note  %s\n", note.c_str());
   }
+  PrintNames("rigid bodies that move", NamesOfRigidBodies(followed.geometry, true));
+  PrintNames("rigid bodies that stay", NamesOfRigidBodies(followed.geometry, false));
+  PrintNames("lines", NamesOfLines(followed.geometry));
   if (table.size() == 0) return;
   if (table.frames().front() != 0) {
     std::printf("values of frames %lld to %lld\n", static_cast<long long>(table.frames().front()),
                 static_cast<long long>(table.frames().back()));
   }
   int width = 6;
-  for (const SeriesTable::Column& column : table.columns())
-    width = std::max(width, static_cast<int>(column.name.size()));
+  for (const SeriesTable::Column& column : table.columns()) {
+    if (!column.is_pose) width = std::max(width, static_cast<int>(column.name.size()));
+  }
   std::printf("%-*s  %-6s %13s %13s %13s\n", width, "series", "unit", "final", "min", "max");
   for (const SeriesTable::Column& column : table.columns()) {
+    if (column.is_pose) continue;
     const Extremes e = ExtremesOf(column.values);
     std::printf("%-*s  %-6s %13.6g %13.6g %13.6g\n", width, column.name.c_str(), column.unit.c_str(), e.final, e.lowest,
                 e.highest);

@@ -1,25 +1,12 @@
 #include "client/export/vtk_series.h"
 
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkCellType.h>
-#include <vtkDoubleArray.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkSmartPointer.h>
-#include <vtkUnsignedCharArray.h>
-#include <vtkUnstructuredGrid.h>
-#include <vtkXMLUnstructuredGridWriter.h>
-
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <cstdio>
 #include <pugixml.hpp>
 #include <sstream>
 #include <stdexcept>
 
+#include "client/export/vtk_files.h"
 #include "client/lib/replace_file.h"
 
 namespace fascicle::client {
@@ -27,100 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-vtkSmartPointer<vtkDoubleArray> MakeArray(const std::string& name, int components, std::size_t tuples) {
-  auto array = vtkSmartPointer<vtkDoubleArray>::New();
-  array->SetName(name.c_str());
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
-  return array;
-}
-
-vtkSmartPointer<vtkDoubleArray> MakeArray(const std::string& name, int components, const std::vector<double>& values) {
-  const auto array = MakeArray(name, components, values.size() / static_cast<std::size_t>(components));
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  return array;
-}
-
-void SetMesh(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnstructuredGrid& grid) {
-  const auto coordinates = MakeArray("Points", 3, positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    coordinates->SetTypedTuple(static_cast<vtkIdType>(i), positions[i].data());
-  }
-  vtkNew<vtkPoints> points;
-  points->SetData(coordinates);
-  grid.SetPoints(points);
-  vtkNew<vtkCellArray> cells;
-  cells->AllocateExact(
-      static_cast<vtkIdType>(shape.elements()),
-      static_cast<vtkIdType>(4 * shape.tetrahedra.size() + 8 * shape.bricks.size() + 3 * shape.triangles.size()));
-  for (const auto& t : shape.tetrahedra)
-    cells->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}, vtkIdType{t[3]}});
-  for (const auto& brick : shape.bricks) {
-    std::array<vtkIdType, 8> nodes;
-    for (std::size_t c = 0; c < 8; ++c) nodes[c] = brick[kHexahedronCorners[c]];
-    cells->InsertNextCell(8, nodes.data());
-  }
-  for (const auto& t : shape.triangles) cells->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}});
-  grid.SetCells(CellTypeOf(shape), cells);
-}
-
-void AddDisplacement(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnstructuredGrid& grid) {
-  const auto displacement = MakeArray("displacement", 3, positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Vec3 u = positions[i] - shape.positions[i];
-    displacement->SetTypedTuple(static_cast<vtkIdType>(i), u.data());
-  }
-  grid.GetPointData()->AddArray(displacement);
-}
-
-void AddRegions(const BodyShape& shape, vtkUnstructuredGrid& grid) {
-  for (const BodyShape::Region& region : shape.regions) {
-    vtkNew<vtkUnsignedCharArray> flags;
-    flags->SetName(("region/" + region.name).c_str());
-    flags->SetNumberOfTuples(static_cast<vtkIdType>(shape.positions.size()));
-    flags->Fill(0);
-    for (const std::uint32_t node : region.nodes) flags->SetValue(node, 1);
-    grid.GetPointData()->AddArray(flags);
-  }
-}
-
-void AddRestFibres(const BodyShape& shape, vtkUnstructuredGrid& grid) {
-  if (shape.fibres.empty()) return;
-  const auto fibres = MakeArray("rest_fibre", 3, shape.fibres.size());
-  for (std::size_t i = 0; i < shape.fibres.size(); ++i) {
-    fibres->SetTypedTuple(static_cast<vtkIdType>(i), shape.fibres[i].data());
-  }
-  grid.GetCellData()->AddArray(fibres);
-}
-
-void WriteBody(const BodyShape& shape, const v1::BodyFrame& frame, const fs::path& path) {
-  const std::vector<Vec3> positions = DecodePositions(frame, shape.positions.size());
-  vtkNew<vtkUnstructuredGrid> grid;
-  SetMesh(shape, positions, *grid);
-  AddDisplacement(shape, positions, *grid);
-  AddRegions(shape, *grid);
-  AddRestFibres(shape, *grid);
-  for (const v1::FieldValues& field : frame.fields()) {
-    const auto array = MakeArray(field.name(), field.components(), DecodeField(field, shape));
-    const bool at_nodes = field.location() == v1::FieldValues::LOCATION_NODE;
-    (at_nodes ? static_cast<vtkFieldData*>(grid->GetPointData()) : grid->GetCellData())->AddArray(array);
-  }
-  ReplaceFile(path, [&](const fs::path& beside) {
-    vtkNew<vtkXMLUnstructuredGridWriter> writer;
-    writer->SetInputData(grid);
-    writer->SetFileName(beside.c_str());
-    writer->SetDataModeToAppended();
-    writer->EncodeAppendedDataOff();
-    writer->SetCompressorTypeToZLib();
-    if (writer->Write() != 1)
-      throw std::runtime_error("can't write " + path.string() + ": no permission, or no space left");
-  });
-}
-
-std::string FileName(const std::string& body, std::int64_t frame) {
+// The name of an object's file in a frame, without its extension.
+std::string FileName(const std::string& object, const v1::Frame& frame) {
   char number[32];
-  std::snprintf(number, sizeof number, "%06lld", static_cast<long long>(frame));
-  return "frames/" + body + "_" + number + ".vtu";
+  std::snprintf(number, sizeof number, "%06lld", static_cast<long long>(frame.index()));
+  return "frames/" + object + "_" + number;
 }
 
 // Shortest text that reads back as the same number.
@@ -129,26 +27,60 @@ std::string Exact(double value) {
   return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
 }
 
-}  // namespace
-
-VtkSeriesWriter::VtkSeriesWriter(const v1::Geometry& geometry, fs::path folder)
-    : folder_(std::move(folder)), shapes_(DecodeGeometry(geometry)) {
-  // Names come from the server, which checks them. They must not lead out of the folder in any case.
-  for (const BodyShape& shape : shapes_) {
-    if (shape.name.empty() || shape.name.find('/') != std::string::npos) {
-      throw std::runtime_error("the server sent a body with the unusable name \"" + shape.name + "\"");
+// Names come from the server, which checks them. They must not lead out of the folder in any case.
+template <class Objects>
+void CheckNames(const Objects& objects) {
+  for (const auto& object : objects) {
+    if (object.name.empty() || object.name.find('/') != std::string::npos) {
+      throw std::runtime_error("the server sent an object with the unusable name \"" + object.name + "\"");
     }
   }
 }
 
+}  // namespace
+
+VtkSeriesWriter::VtkSeriesWriter(const v1::Geometry& geometry, fs::path folder)
+    : folder_(std::move(folder)),
+      bodies_(DecodeGeometry(geometry)),
+      rigid_bodies_(DecodeRigidBodies(geometry)),
+      lines_(DecodeLineInfos(geometry)) {
+  CheckNames(bodies_);
+  CheckNames(rigid_bodies_);
+  CheckNames(lines_);
+}
+
 void VtkSeriesWriter::Add(const v1::Frame& frame) {
-  if (static_cast<std::size_t>(frame.bodies_size()) != shapes_.size()) {
+  if (static_cast<std::size_t>(frame.bodies_size()) != bodies_.size()) {
     throw std::runtime_error("the server sent a frame that doesn't fit its geometry");
   }
-  for (std::size_t i = 0; i < shapes_.size(); ++i) {
-    const std::string file = FileName(shapes_[i].name, frame.index());
-    WriteBody(shapes_[i], frame.bodies(static_cast<int>(i)), folder_ / file);
-    entries_.push_back({frame.time(), i, file});
+  const bool first = entries_.empty();
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const std::string file = FileName(bodies_[i].name, frame) + ".vtu";
+    WriteBody(bodies_[i], frame.bodies(static_cast<int>(i)), folder_ / file);
+    entries_.push_back({frame.time(), i, bodies_[i].name, file});
+  }
+  AddRigidBodies(frame, first);
+  AddLines(frame);
+}
+
+void VtkSeriesWriter::AddRigidBodies(const v1::Frame& frame, bool first) {
+  const std::vector<Pose> poses = PosesOf(frame, rigid_bodies_);
+  for (std::size_t i = 0; i < rigid_bodies_.size(); ++i) {
+    const RigidShape& body = rigid_bodies_[i];
+    if (body.triangles.empty()) continue;
+    const std::string file =
+        (body.moves ? FileName("rigid_" + body.name, frame) : "frames/fixed_" + body.name) + ".vtp";
+    if (body.moves || first) WriteRigidBody(body, poses[i], folder_ / file);
+    entries_.push_back({frame.time(), bodies_.size() + i, body.name, file});
+  }
+}
+
+void VtkSeriesWriter::AddLines(const v1::Frame& frame) {
+  const std::vector<LinePath> paths = DecodeLines(frame, lines_);
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const std::string file = FileName("line_" + lines_[i].name, frame) + ".vtp";
+    WriteLine(lines_[i], paths[i], folder_ / file);
+    entries_.push_back({frame.time(), bodies_.size() + rigid_bodies_.size() + i, lines_[i].name, file});
   }
 }
 
@@ -162,8 +94,8 @@ void VtkSeriesWriter::Finish() const {
   for (const Entry& entry : entries_) {
     pugi::xml_node data_set = collection.append_child("DataSet");
     data_set.append_attribute("timestep") = Exact(entry.time).c_str();
-    data_set.append_attribute("part") = static_cast<unsigned long long>(entry.body);
-    data_set.append_attribute("name") = shapes_[entry.body].name.c_str();
+    data_set.append_attribute("part") = static_cast<unsigned long long>(entry.part);
+    data_set.append_attribute("name") = entry.name.c_str();
     data_set.append_attribute("file") = entry.file.c_str();
   }
   std::ostringstream text;

@@ -10,10 +10,11 @@
 
 namespace fascicle::client {
 
-// Writes frames as a VTK series for ParaView and other programs: one .vtu for each body and frame (binary, appended,
-// zlib), and frames.pvd with their times [s]. Nodes have `displacement` [m], the frame's node fields and a flag for
-// each region; elements have the frame's element fields and `rest_fibre`. Each file is complete or absent. Not
-// thread-safe. Functions throw std::runtime_error with a message for users.
+// Writes frames as a VTK series for ParaView and other programs. Each frame has a file for each body
+// (frames/NAME_000000.vtu), each line (frames/line_NAME_000000.vtp) and each rigid body that moves
+// (frames/rigid_NAME_000000.vtp). A rigid body that does not move has one file (frames/fixed_NAME.vtp); one without a
+// shape has none. frames.pvd lists all with their times [s]. vtk_files.h describes their contents. Each file is
+// complete or absent. Not thread-safe. Functions throw std::runtime_error with a message for users.
 class VtkSeriesWriter {
  public:
   // Creates folders as needed. Files of an earlier series in `folder` are overwritten.
@@ -25,12 +26,20 @@ class VtkSeriesWriter {
 
  private:
   struct Entry {
-    double time;  // [s]
-    std::size_t body;
+    double time;       // [s]
+    std::size_t part;  // number of the object: bodies, then rigid bodies, then lines
+    std::string name;  // of the object
     std::string file;  // relative to the folder
   };
+
+  // Those that stay are written with the first frame.
+  void AddRigidBodies(const v1::Frame& frame, bool first);
+  void AddLines(const v1::Frame& frame);
+
   std::filesystem::path folder_;
-  std::vector<BodyShape> shapes_;
+  std::vector<BodyShape> bodies_;
+  std::vector<RigidShape> rigid_bodies_;
+  std::vector<LineInfo> lines_;
   std::vector<Entry> entries_;
 };
 

@@ -1,8 +1,13 @@
 #include "client/lib/decode.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
+#include <span>
 #include <stdexcept>
+
+#include "core/base/frame_digest.h"
 
 namespace fascicle::client {
 namespace {
@@ -17,7 +22,7 @@ std::vector<T> DecodeArray(const std::string& bytes, const std::string& what) {
   return values;
 }
 
-static_assert(sizeof(Vec3) == 3 * sizeof(double));
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Pose) == 7 * sizeof(double));
 
 template <class Cell>
 void CheckNodes(const std::vector<Cell>& cells, std::size_t nodes, const std::string& what) {
@@ -51,6 +56,35 @@ BodyShape DecodeBody(const v1::BodyGeometry& body) {
   return shape;
 }
 
+void CheckPose(const Pose& pose) {
+  double square = 0;
+  for (const double q : pose.quaternion) square += q * q;
+  if (!pose.position.allFinite() || !(std::abs(square - 1) < 1e-6)) {
+    throw std::runtime_error("the server sent a pose that is no place and unit quaternion");
+  }
+}
+
+RigidShape DecodeRigidBody(const v1::RigidBodyGeometry& body) {
+  RigidShape shape;
+  shape.name = body.name();
+  shape.positions = DecodeArray<Vec3>(body.positions(), "the corners of a rigid body");
+  shape.triangles = DecodeArray<std::array<std::uint32_t, 3>>(body.triangles(), "the triangles of a rigid body");
+  CheckNodes(shape.triangles, shape.positions.size(), "a triangle of a rigid body");
+  const std::vector<Pose> pose = DecodeArray<Pose>(body.pose(), "the pose of a rigid body");
+  if (pose.size() != 1) throw std::runtime_error("the server sent a rigid body without its pose");
+  CheckPose(pose[0]);
+  shape.pose = pose[0];
+  shape.moves = body.moves();
+  shape.unbounded = body.unbounded();
+  return shape;
+}
+
+FrameBytes::Bytes BytesOf(const std::string& text) { return std::as_bytes(std::span(text)); }
+
+FrameBytes::Bytes BytesOf(const google::protobuf::RepeatedField<double>& values) {
+  return std::as_bytes(std::span(values.data(), static_cast<std::size_t>(values.size())));
+}
+
 }  // namespace
 
 std::vector<BodyShape> DecodeGeometry(const v1::Geometry& geometry) {
@@ -76,9 +110,95 @@ std::vector<double> DecodeField(const v1::FieldValues& field, const BodyShape& s
   return values;
 }
 
+std::vector<RigidShape> DecodeRigidBodies(const v1::Geometry& geometry) {
+  std::vector<RigidShape> shapes;
+  for (const v1::RigidBodyGeometry& body : geometry.rigid_bodies()) shapes.push_back(DecodeRigidBody(body));
+  return shapes;
+}
+
+std::vector<Pose> DecodePoses(const v1::Frame& frame, std::size_t count) {
+  std::vector<Pose> poses = DecodeArray<Pose>(frame.poses(), "poses");
+  if (poses.size() != count) throw std::runtime_error("the server sent poses that don't fit the rigid bodies");
+  for (const Pose& pose : poses) CheckPose(pose);
+  return poses;
+}
+
+std::vector<Pose> PosesOf(const v1::Frame& frame, const std::vector<RigidShape>& bodies) {
+  const auto count = std::count_if(bodies.begin(), bodies.end(), [](const RigidShape& body) { return body.moves; });
+  const std::vector<Pose> moved = DecodePoses(frame, static_cast<std::size_t>(count));
+  auto next = moved.begin();
+  std::vector<Pose> poses;
+  for (const RigidShape& body : bodies) poses.push_back(body.moves ? *next++ : body.pose);
+  return poses;
+}
+
+std::vector<Vec3> PositionsAt(const RigidShape& body, const Pose& pose) {
+  const Mat3 rotation = RotationOf(pose);
+  std::vector<Vec3> positions;
+  positions.reserve(body.positions.size());
+  for (const Vec3& X : body.positions) positions.push_back(pose.position + rotation * X);
+  return positions;
+}
+
+std::vector<LineInfo> DecodeLineInfos(const v1::Geometry& geometry) {
+  std::vector<LineInfo> lines;
+  for (const v1::LineGeometry& line : geometry.lines()) {
+    lines.push_back({line.name(), {line.values().begin(), line.values().end()}});
+  }
+  return lines;
+}
+
+std::vector<LinePath> DecodeLines(const v1::Frame& frame, const std::vector<LineInfo>& lines) {
+  if (static_cast<std::size_t>(frame.lines_size()) != lines.size()) {
+    throw std::runtime_error("the server sent another number of lines than there are");
+  }
+  std::vector<LinePath> paths;
+  for (const v1::LineFrame& line : frame.lines()) {
+    const LineInfo& info = lines[paths.size()];
+    LinePath path{DecodeArray<Vec3>(line.points(), "the points of a line"),
+                  {line.values().begin(), line.values().end()}};
+    if (path.values.size() != info.values.size()) {
+      throw std::runtime_error("the server sent the line " + info.name + " with another number of values");
+    }
+    for (const Vec3& x : path.points) {
+      if (!x.allFinite())
+        throw std::runtime_error("the server sent a point of the line " + info.name + " without place");
+    }
+    paths.push_back(std::move(path));
+  }
+  return paths;
+}
+
 void CheckFits(const v1::Frame& frame, const v1::Geometry& geometry) {
-  if (frame.bodies_size() != geometry.bodies_size() || frame.series_size() != geometry.series_size()) {
+  const auto& rigid = geometry.rigid_bodies();
+  const auto moving = std::count_if(rigid.begin(), rigid.end(), [](const auto& body) { return body.moves(); });
+  if (frame.bodies_size() != geometry.bodies_size() || frame.lines_size() != geometry.lines_size() ||
+      frame.poses().size() != static_cast<std::size_t>(moving) * sizeof(Pose) ||
+      frame.series_size() != geometry.series_size()) {
     throw std::runtime_error("the server sent a frame that doesn't fit its geometry");
+  }
+}
+
+void CheckDigest(const v1::Frame& frame) {
+  FrameBytes bytes;
+  bytes.index = frame.index();
+  bytes.time = frame.time();
+  bytes.step = frame.step();
+  for (const v1::BodyFrame& body : frame.bodies()) {
+    FrameBytes::Body& of_body = bytes.bodies.emplace_back();
+    of_body.positions = BytesOf(body.positions());
+    for (const v1::FieldValues& field : body.fields()) {
+      of_body.fields.push_back({field.name(), BytesOf(field.values())});
+    }
+  }
+  bytes.series = BytesOf(frame.series());
+  bytes.poses = BytesOf(frame.poses());
+  for (const v1::LineFrame& line : frame.lines())
+    bytes.lines.push_back({BytesOf(line.points()), BytesOf(line.values())});
+  const Digest digest = DigestOf(bytes);
+  if (frame.digest() != std::string(digest.begin(), digest.end())) {
+    throw std::runtime_error("frame " + std::to_string(frame.index()) +
+                             " is damaged: its digest is not that of its numbers");
   }
 }
 

@@ -68,6 +68,12 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std:
   return grid;
 }
 
+vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const RigidShape& body, const Pose& pose) {
+  BodyShape shape;
+  shape.triangles = body.triangles;
+  return MakeGrid(shape, PositionsAt(body, pose), {});
+}
+
 vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid, bool smooth) {
   vtkNew<vtkDataSetSurfaceFilter> surface;
   surface->SetInputData(&grid);

@@ -15,6 +15,9 @@ namespace fascicle::client {
 vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std::vector<Vec3>& positions,
                                               const std::vector<double>& values);
 
+// The triangles of a rigid body in its pose.
+vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const RigidShape& body, const Pose& pose);
+
 // Boundary faces with normals for smooth shading; edges sharper than 40 degrees stay sharp. `smooth`: moves corners, by
 // less than a voxel, to hide the steps between voxels.
 vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid, bool smooth = false);

@@ -1,6 +1,7 @@
 #include "client/render/field_values.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -50,15 +51,13 @@ Tuples FindField(const BodyShape& shape, const v1::BodyFrame& frame, const std::
     }
     return tuples;
   }
-  std::string known = "displacement";
   for (const v1::FieldValues& field : frame.fields()) {
     if (field.name() == name) {
       return {DecodeField(field, shape), static_cast<std::size_t>(field.components()),
               field.location() == v1::FieldValues::LOCATION_NODE, field.unit()};
     }
-    known += ", " + field.name();
   }
-  throw std::runtime_error("there is no field `" + name + "` in the frame; existing fields: " + known +
+  throw std::runtime_error("there is no field `" + name + "` in the frame; existing fields: " + FieldNames(frame) +
                            " (see the scene's output.fields)");
 }
 
@@ -91,6 +90,18 @@ std::vector<double> Reduce(const Tuples& tuples, const std::string& field, const
 }
 
 }  // namespace
+
+bool HasField(const v1::BodyFrame& frame, const std::string& field) {
+  const std::string name = field.substr(0, field.find('/'));
+  return name == "displacement" || std::any_of(frame.fields().begin(), frame.fields().end(),
+                                               [&](const v1::FieldValues& values) { return values.name() == name; });
+}
+
+std::string FieldNames(const v1::BodyFrame& frame) {
+  std::string names = "displacement";
+  for (const v1::FieldValues& field : frame.fields()) names += ", " + field.name();
+  return names;
+}
 
 NodeValues ValuesAtNodes(const BodyShape& shape, const v1::BodyFrame& frame, const std::string& field) {
   const std::size_t slash = field.find('/');

@@ -21,6 +21,11 @@ struct NodeValues {
 // averaged to nodes by rest volume. Throws std::runtime_error that lists the existing fields.
 NodeValues ValuesAtNodes(const BodyShape& shape, const v1::BodyFrame& frame, const std::string& field);
 
+// Whether ValuesAtNodes finds such a field, whatever its component.
+bool HasField(const v1::BodyFrame& frame, const std::string& field);
+// What there is, with commas between.
+std::string FieldNames(const v1::BodyFrame& frame);
+
 // Unit fibre directions in the deformed body at the nodes, averaged as lines (a and -a are the same); zero where there
 // are none.
 std::vector<Vec3> FibresAtNodes(const BodyShape& shape, const std::vector<Vec3>& positions);

@@ -23,58 +23,21 @@
 #include "client/lib/decode.h"
 #include "client/render/body_cloud.h"
 #include "client/render/body_mesh.h"
-#include "client/render/colour_scale.h"
-#include "client/render/field_values.h"
+#include "client/render/colouring.h"
 #include "client/render/gif_writer.h"
+#include "client/render/line_tubes.h"
 #include "client/render/view.h"
 
 namespace fascicle::client {
 namespace {
 
 constexpr double kInk[3] = {0.2, 0.2, 0.2};
+constexpr double kFlesh[3] = {0.78, 0.36, 0.32};
+constexpr double kBone[3] = {0.86, 0.83, 0.75};
+constexpr double kMuscle[3] = {0.66, 0.16, 0.16};
 constexpr int kFibreSeeds = 70;
-constexpr int kScaleWidth = 230;  // [pixel]
-
-struct Colouring {
-  std::vector<std::vector<double>> values;  // for each body: one for each node; empty without a colour
-  std::string title;
-  ColourScale scale;
-};
-
-// The colours of each frame, on a common scale.
-std::vector<Colouring> ColourFrames(const std::vector<BodyShape>& shapes, std::span<const v1::Frame> frames,
-                                    const PictureOptions& options) {
-  std::vector<Colouring> colourings(frames.size());
-  for (Colouring& colouring : colourings) colouring.values.resize(shapes.size());
-  if (options.colour.empty()) return colourings;
-  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
-  std::string title, unit;
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-      NodeValues nodes = ValuesAtNodes(shapes[i], frames[f].bodies(static_cast<int>(i)), options.colour);
-      for (const double value : nodes.values) {
-        lowest = std::min(lowest, value);
-        highest = std::max(highest, value);
-      }
-      colourings[f].values[i] = std::move(nodes.values);
-      title = nodes.title;
-      unit = nodes.unit;
-    }
-  }
-  if (options.range) std::tie(lowest, highest) = *options.range;
-  const ReadableUnit readable = MakeReadable(std::max(std::abs(lowest), std::abs(highest)), unit);
-  std::replace(title.begin(), title.end(), '_', ' ');
-  const ColourScale scale =
-      MakeColourScale(lowest * readable.factor, highest * readable.factor, options.range.has_value());
-  for (Colouring& colouring : colourings) {
-    for (auto& values : colouring.values) {
-      for (double& value : values) value *= readable.factor;
-    }
-    colouring.scale = scale;
-    colouring.title = title + (readable.name.empty() ? "" : " [" + readable.name + "]");
-  }
-  return colourings;
-}
+constexpr double kLineRadius = 0.005;  // of the diagonal of the box around everything
+constexpr int kScaleWidth = 230;       // [pixel]
 
 vtkSmartPointer<vtkActor> MakeActor(vtkPolyData* data, const Colouring& colouring) {
   vtkNew<vtkPolyDataMapper> mapper;
@@ -100,20 +63,24 @@ vtkSmartPointer<vtkActor> MakeLines(vtkPolyData* data, const double colour[3], d
   return actor;
 }
 
+void SetMatte(const double colour[3], vtkProperty& property) {
+  property.SetColor(colour[0], colour[1], colour[2]);
+  property.SetAmbient(0.3);
+  property.SetDiffuse(0.75);
+  property.SetSpecular(0.12);
+  property.SetSpecularPower(25);
+}
+
 void AddBody(const BodyShape& shape, const v1::BodyFrame& frame, const Colouring& colouring, std::size_t index,
              const PictureOptions& options, vtkRenderer& renderer) {
   const std::vector<Vec3> positions = DecodePositions(frame, shape.positions.size());
-  const auto grid = MakeGrid(shape, positions, colouring.values[index]);
+  const auto grid = MakeGrid(shape, positions, colouring.bodies[index]);
   if (options.volume) AddCloud(*grid, colouring.scale, renderer);
   const auto surface = MakeSurface(*grid, options.smooth);
   if (options.surface && !options.volume) {
     const auto actor = MakeActor(surface, colouring);
     vtkProperty& property = *actor->GetProperty();
-    property.SetColor(0.78, 0.36, 0.32);
-    property.SetAmbient(0.3);
-    property.SetDiffuse(0.75);
-    property.SetSpecular(0.12);
-    property.SetSpecularPower(25);
+    SetMatte(kFlesh, property);
     if (options.fibres) property.SetOpacity(0.30);
     renderer.AddActor(actor);
   }
@@ -137,7 +104,35 @@ void AddBody(const BodyShape& shape, const v1::BodyFrame& frame, const Colouring
   }
 }
 
-// The outline of the rest shape as seen by the camera, in front of everything else.
+// A plane is like glass from behind, so that a floor hides nothing from below.
+void AddRigidBody(const RigidShape& body, const Pose& pose, vtkRenderer& renderer) {
+  if (body.triangles.empty()) return;
+  const auto surface = MakeSurface(*MakeGrid(body, pose));
+  const auto front = MakeActor(surface, {});
+  SetMatte(kBone, *front->GetProperty());
+  renderer.AddActor(front);
+  if (!body.unbounded) return;
+  front->GetProperty()->BackfaceCullingOn();
+  const auto back = MakeActor(surface, {});
+  SetMatte(kBone, *back->GetProperty());
+  back->GetProperty()->FrontfaceCullingOn();
+  back->GetProperty()->SetOpacity(0.25);
+  renderer.AddActor(back);
+}
+
+void AddLine(const LinePath& path, const std::optional<double>& value, const ColourScale& scale, double radius,
+             vtkRenderer& renderer) {
+  const auto actor = MakeActor(MakeTube(path.points, radius), {});
+  SetMatte(kMuscle, *actor->GetProperty());
+  if (value && scale.table != nullptr) {
+    double colour[3];
+    scale.table->GetColor(*value, colour);
+    SetMatte(colour, *actor->GetProperty());
+  }
+  renderer.AddActor(actor);
+}
+
+// The outline of the rest shape as the camera sees it, over everything else.
 void AddRestOutlines(const std::vector<BodyShape>& shapes, vtkRenderer& renderer, vtkRenderer& overlay) {
   for (const BodyShape& shape : shapes) {
     vtkNew<vtkPolyDataSilhouette> silhouette;
@@ -205,23 +200,52 @@ std::string TimeText(const v1::Frame& frame) {
 // Data shared by all panels of a picture.
 struct Setting {
   std::vector<BodyShape> shapes;
-  std::vector<Colouring> colourings;  // for each frame
-  std::array<double, 6> bounds;       // of all bodies in all frames, in VTK's order [m]
+  std::vector<RigidShape> rigid_bodies;
+  std::vector<LineInfo> lines;
+  std::vector<Colouring> colourings;  // of each frame
+  std::array<double, 6> bounds;       // of all that is drawn in all frames but planes, as VTK has them [m]
+  Vec3 up = Vec3::UnitZ();            // out of the first plane where there is one
+  double line_radius = 0;             // [m]
 };
+
+void AddPoints(const std::vector<Vec3>& points, vtkBoundingBox& box) {
+  for (const Vec3& x : points) box.AddPoint(x[0], x[1], x[2]);
+}
+
+vtkBoundingBox BoundsOf(const Setting& setting, std::span<const v1::Frame> frames, const PictureOptions& options) {
+  vtkBoundingBox box;
+  for (const v1::Frame& frame : frames) {
+    for (std::size_t i = 0; i < setting.shapes.size(); ++i) {
+      AddPoints(DecodePositions(frame.bodies(static_cast<int>(i)), setting.shapes[i].positions.size()), box);
+    }
+    const std::vector<Pose> poses = PosesOf(frame, setting.rigid_bodies);
+    for (std::size_t i = 0; i < poses.size() && options.rigid_bodies; ++i) {
+      const RigidShape& body = setting.rigid_bodies[i];
+      if (!body.unbounded) AddPoints(PositionsAt(body, poses[i]), box);
+    }
+    for (const LinePath& line : DecodeLines(frame, setting.lines)) {
+      if (options.lines) AddPoints(line.points, box);
+    }
+  }
+  return box;
+}
 
 Setting MakeSetting(const v1::Geometry& geometry, std::span<const v1::Frame> frames, const PictureOptions& options) {
   Setting setting;
   for (const v1::Frame& frame : frames) CheckFits(frame, geometry);
   setting.shapes = DecodeGeometry(geometry);
-  setting.colourings = ColourFrames(setting.shapes, frames, options);
-  vtkBoundingBox box;
-  for (const v1::Frame& frame : frames) {
-    for (std::size_t i = 0; i < setting.shapes.size(); ++i) {
-      const std::size_t nodes = setting.shapes[i].positions.size();
-      for (const Vec3& x : DecodePositions(frame.bodies(static_cast<int>(i)), nodes)) box.AddPoint(x[0], x[1], x[2]);
-    }
-  }
+  setting.rigid_bodies = DecodeRigidBodies(geometry);
+  setting.lines = DecodeLineInfos(geometry);
+  setting.colourings = ColourFrames(setting.shapes, setting.lines, frames, options.colour, options.range);
+  const vtkBoundingBox box = BoundsOf(setting, frames, options);
+  if (box.IsValid() == 0) throw std::runtime_error("there is nothing to draw in the frame");
   box.GetBounds(setting.bounds.data());
+  for (const RigidShape& body : setting.rigid_bodies) {
+    if (!body.unbounded) continue;
+    setting.up = RotationOf(body.pose).col(2);
+    break;
+  }
+  setting.line_radius = kLineRadius * box.GetDiagonalLength();
   return setting;
 }
 
@@ -264,8 +288,19 @@ vtkSmartPointer<vtkRenderer> AddPanel(const Setting& setting, const v1::Frame& f
   for (std::size_t i = 0; i < setting.shapes.size(); ++i) {
     AddBody(setting.shapes[i], frame.bodies(static_cast<int>(i)), setting.colourings[index], i, options, *renderer);
   }
+  if (options.rigid_bodies) {
+    const std::vector<Pose> poses = PosesOf(frame, setting.rigid_bodies);
+    for (std::size_t i = 0; i < poses.size(); ++i) AddRigidBody(setting.rigid_bodies[i], poses[i], *renderer);
+  }
+  if (options.lines) {
+    const Colouring& colouring = setting.colourings[index];
+    const std::vector<LinePath> lines = DecodeLines(frame, setting.lines);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      AddLine(lines[i], colouring.lines[i], colouring.scale, setting.line_radius, *renderer);
+    }
+  }
   AddLights(*renderer);
-  AimCamera(options, setting.bounds.data(), width / height, *renderer);
+  AimCamera(options, setting.bounds.data(), setting.up, width / height, *renderer);
   vtkNew<vtkRenderer> overlay;
   overlay->SetLayer(1);
   overlay->SetViewport(renderer->GetViewport());

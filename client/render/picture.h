@@ -16,7 +16,7 @@ namespace fascicle::client {
 // How to draw a frame.
 struct PictureOptions {
   PictureSize size;
-  // The quantity that colours the surface, see ValuesAtNodes; empty: a plain colour.
+  // What bodies and lines are coloured by, see ColourFrames; empty: plain colours.
   std::string colour = "displacement";
   // Range of the colour scale, in the field's unit; by default that of the frame.
   std::optional<std::pair<double, double>> range;
@@ -28,8 +28,10 @@ struct PictureOptions {
   bool volume = false;
   bool rest_outline = true;  // the outline of the rest shape, in front of the body
   bool fibres = false;       // as lines through a transparent surface
-  // Viewpoint [degree]: azimuth from +x to +y, elevation from the xy plane to +z. If both are absent, a body much
-  // longer than wide lies across the picture; others are seen from a corner.
+  bool rigid_bodies = true;
+  bool lines = true;  // as tubes
+  // Where the eye stands [degree]: azimuth from +x to +y, elevation from the xy plane to +z. When both are absent, a
+  // body much longer than wide lies across the picture, others are seen from a corner; up is z, or out of the floor.
   std::optional<double> azimuth;
   std::optional<double> elevation;
   double zoom = 1;
@@ -37,7 +39,7 @@ struct PictureOptions {
   bool time = true;  // shown below the title
 };
 
-// Draws a frame of all bodies and writes a PNG. Throws std::runtime_error with a message for users.
+// Draws a frame of all objects and writes a PNG. Throws std::runtime_error with a message for people.
 void DrawPicture(const v1::Geometry& geometry, const v1::Frame& frame, const PictureOptions& options,
                  const std::filesystem::path& path);
 

@@ -4,14 +4,16 @@
 #include <vtkRenderer.h>
 
 #include "client/render/picture.h"
+#include "core/base/types.h"
 
 namespace fascicle::client {
 
 // Where the eye stands and what fits into the picture. Parallel projection, so that lengths can be measured.
 
-// Points the camera of `renderer` at what lies in `bounds` [m] (as VTK has them: xmin, xmax, ...); `aspect` is the
-// width of its part of the picture over the height.
-void AimCamera(const PictureOptions& options, const double bounds[6], double aspect, vtkRenderer& renderer);
+// Points the camera of `renderer` at what lies in `bounds` [m] (as VTK has them: xmin, xmax, ...). `up`: what is above
+// (unit) when the options leave the view open. `aspect` is the width of its part of the picture over the height.
+void AimCamera(const PictureOptions& options, const double bounds[6], const Vec3& up, double aspect,
+               vtkRenderer& renderer);
 
 // Draws a bar of a round length with its name into the lower right corner of a renderer of that size [pixel drawn]. The
 // camera must have been aimed.

@@ -1,24 +1,18 @@
 #include "core/sim/frame.h"
 
-#include <bit>
 #include <span>
 #include <utility>
+
+#include "core/base/frame_digest.h"
 
 namespace fascicle {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "digests are over little-endian bytes");
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Pose) == 7 * sizeof(double), "packed, as in digests");
 
-template <class Value>
-void Add(Sha256& sha, const Value& value) {
-  sha.Update(std::as_bytes(std::span(&value, 1)));
-}
-
-// Length first, so that no two different frames give the same bytes.
 template <class Item>
-void AddArray(Sha256& sha, const std::vector<Item>& items) {
-  Add(sha, static_cast<std::uint64_t>(items.size()));
-  sha.Update(std::as_bytes(std::span(items)));
+FrameBytes::Bytes BytesOf(const std::vector<Item>& items) {
+  return std::as_bytes(std::span(items));
 }
 
 }  // namespace
@@ -29,22 +23,19 @@ FieldValues FieldOf(OutputField field, Method method, std::vector<double> values
 }
 
 Digest DigestOf(const Frame& frame) {
-  Sha256 sha;
-  Add(sha, frame.index);
-  Add(sha, frame.time);
-  Add(sha, frame.step);
-  Add(sha, static_cast<std::uint64_t>(frame.bodies.size()));
+  FrameBytes bytes;
+  bytes.index = frame.index;
+  bytes.time = frame.time;
+  bytes.step = frame.step;
   for (const BodyFrame& body : frame.bodies) {
-    AddArray(sha, body.positions);
-    Add(sha, static_cast<std::uint64_t>(body.fields.size()));
-    for (const FieldValues& field : body.fields) {
-      Add(sha, static_cast<std::uint64_t>(field.name.size()));
-      sha.Update(field.name);
-      AddArray(sha, field.values);
-    }
+    FrameBytes::Body& of_body = bytes.bodies.emplace_back();
+    of_body.positions = BytesOf(body.positions);
+    for (const FieldValues& field : body.fields) of_body.fields.push_back({field.name, BytesOf(field.values)});
   }
-  AddArray(sha, frame.series);
-  return sha.Finish();
+  bytes.series = BytesOf(frame.series);
+  bytes.poses = BytesOf(frame.poses);
+  for (const LineFrame& line : frame.lines) bytes.lines.push_back({BytesOf(line.points), BytesOf(line.values)});
+  return DigestOf(bytes);
 }
 
 }  // namespace fascicle

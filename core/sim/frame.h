@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "core/base/digest.h"
+#include "core/base/pose.h"
 #include "core/base/types.h"
+#include "core/geometry/triangle_mesh.h"
 #include "core/scene/output_fields.h"
 
 namespace fascicle {
@@ -27,24 +29,54 @@ struct BodyFrame {
   std::vector<FieldValues> fields;
 };
 
-// The state of all bodies at one time, as plain arrays.
+struct LineFrame {
+  std::vector<Vec3> points;    // in the world, from end to end [m]; how many may change from frame to frame
+  std::vector<double> values;  // one for each of LineInfo::values
+};
+
+// The state of all objects at one time, as plain arrays.
 struct Frame {
   std::int64_t index = 0;
   double time = 0;  // [s]
   std::int64_t step = 0;
   std::vector<BodyFrame> bodies;
-  std::vector<double> series;  // one value for each SeriesInfo of the simulation
+  std::vector<Pose> poses;       // of the rigid bodies that move
+  std::vector<LineFrame> lines;  // one for each of FrameLayout::lines
+  std::vector<double> series;    // one value for each of FrameLayout::series
   Digest digest = {};
 };
 
-// Meaning of one value of Frame::series.
+// Meaning of one number of every frame.
 struct SeriesInfo {
   std::string name;  // `energy/elastic`, `muscle/volume_ratio`, `muscle/reaction/origin/z`, `probe/belly/x`
   std::string unit;
   std::string description;
 };
 
-// SHA-256 over index, time, step, positions, fields (names too) and series as little-endian bytes, in this order.
+// A rigid body, such as a bone or a floor.
+struct RigidBodyInfo {
+  std::string name;    // unique among the rigid bodies
+  TriangleMesh shape;  // along the body's own axes [m]; without triangles when there is nothing to show
+  Pose pose;           // at time 0
+  bool moves = false;  // each frame has its pose; otherwise it stays where it is
+  // The shape is a piece of a plane without end, normal to the body's z axis, which points out of it.
+  bool unbounded = false;
+};
+
+// A line, such as the path of a muscle or a tendon.
+struct LineInfo {
+  std::string name;                // unique among the lines
+  std::vector<SeriesInfo> values;  // such as `activation`, `length`, `tension`
+};
+
+// What a simulation's frames hold beside bodies; the same for all frames.
+struct FrameLayout {
+  std::vector<RigidBodyInfo> rigid_bodies;
+  std::vector<LineInfo> lines;
+  std::vector<SeriesInfo> series;
+};
+
+// See core/base/frame_digest.h.
 Digest DigestOf(const Frame& frame);
 
 }  // namespace fascicle

@@ -8,6 +8,7 @@
 #include "core/base/archive.h"
 #include "core/scene/curves.h"
 #include "core/sim/fingerprint.h"
+#include "core/sim/floor_bodies.h"
 #include "core/sim/method_run.h"
 
 namespace fascicle {
@@ -66,7 +67,7 @@ struct Simulation::Impl {
         scene(std::move(s)),
         team(threads),
         method(MakeMethodRun(*scene, team, p)),
-        series(method->Series()) {
+        layout{FloorBodies(*scene), {}, method->Series()} {
     const double intervals = scene->duration / scene->output.frame_interval;
     // The allowance keeps rounding from adding a frame to a whole number of intervals.
     last_frame = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(intervals * (1 - 1e-12))));
@@ -169,7 +170,8 @@ struct Simulation::Impl {
   Failure FailureOf(const StepOutcome& outcome) const {
     const ProblemText text = TextOf(outcome.problem);
     const RunClock clock = method->clock();
-    return {text.reason,          text.message, clock.step, clock.time, scene->bodies[outcome.bad.body].name,
+    return {text.reason,          text.message,      clock.step,
+            clock.time,           ObjectKind::kBody, scene->bodies[outcome.bad.body].name,
             outcome.bad.elements, text.advice};
   }
 
@@ -177,7 +179,7 @@ struct Simulation::Impl {
   std::shared_ptr<const Scene> scene;
   ThreadTeam team;
   std::unique_ptr<MethodRun> method;
-  std::vector<SeriesInfo> series;
+  FrameLayout layout;
   Digest fingerprint = FingerprintOf(*scene);
   const double curves_end = CurvesEnd(*scene);
   std::int64_t last_frame = 0;
@@ -194,7 +196,7 @@ Simulation::Simulation(std::shared_ptr<const Scene> scene, int threads, Profile*
 
 Simulation::~Simulation() = default;
 
-const std::vector<SeriesInfo>& Simulation::series() const { return impl_->series; }
+const FrameLayout& Simulation::layout() const { return impl_->layout; }
 
 bool Simulation::Restore(std::string_view checkpoint) {
   const bool restored = impl_->Restore(checkpoint);
@@ -230,6 +232,7 @@ Outcome Simulation::Run(FrameSink& sink, std::stop_token stop, std::chrono::mill
                "a frame could not be stored",
                run.method->clock().step,
                run.method->clock().time,
+               ObjectKind::kNone,
                {},
                {},
                "make room where results are kept, then start the job again"}};

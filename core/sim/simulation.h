@@ -23,6 +23,9 @@ struct Progress {
   double time_step = 0;  // [s]
 };
 
+// What a failure can be about.
+enum class ObjectKind { kNone, kBody, kRigidBody, kLine, kJoint };
+
 // Why a run could not go on. Reasons: INVERTED_ELEMENT STEP_TOO_SMALL NOT_CONVERGED NOT_FINITE
 // LEFT_GRID STORAGE.
 struct Failure {
@@ -30,8 +33,9 @@ struct Failure {
   std::string message;
   std::int64_t step = 0;
   double time = 0;  // [s]
-  std::string body;
-  std::vector<std::int64_t> elements;  // at most 16
+  ObjectKind object_kind = ObjectKind::kNone;
+  std::string object;                  // its name; empty when none in particular
+  std::vector<std::int64_t> elements;  // of a body; at most 16
   std::string advice;
 };
 
@@ -61,7 +65,8 @@ class Simulation {
   Simulation(std::shared_ptr<const Scene> scene, int threads, Profile* profile = nullptr);
   ~Simulation();
 
-  const std::vector<SeriesInfo>& series() const;
+  // What every frame holds beside the bodies of the scene.
+  const FrameLayout& layout() const;
 
   // Goes on from a checkpoint of the same scene; false when it is not one (the simulation then starts from rest).
   bool Restore(std::string_view checkpoint);

@@ -31,7 +31,7 @@ struct JobCodec {
   // std::runtime_error if the scene can't be built any more (an asset was lost).
   std::function<std::shared_ptr<const Scene>(const std::string& spec, AssetStore& assets, Profile* profile)>
       decode_scene;
-  std::function<std::string(const Scene&, const std::vector<SeriesInfo>&)> encode_geometry;
+  std::function<std::string(const Scene&, const FrameLayout&)> encode_geometry;
   std::function<std::string(const Frame&)> encode_frame;
   std::function<std::string(const Failure&)> encode_failure;
   // The sum of this run and the earlier ones.

@@ -67,7 +67,7 @@ std::unique_ptr<Simulation> SetUp(const RunContext& context, ActiveJob& job, Pro
   const int threads = record->threads > 0 ? record->threads : context.options.default_threads;
   std::unique_ptr<Simulation> simulation = MakeSimulation(scene, threads, *frames, profile);
   const StageTimer geometry(&profile, "geometry");
-  frames->PutGeometry(context.codec.encode_geometry(*scene, simulation->series()));
+  frames->PutGeometry(context.codec.encode_geometry(*scene, simulation->layout()));
   SetRunning(job);
   return simulation;
 }

@@ -11,7 +11,8 @@ namespace {
 // The wire is little-endian and packed; so is memory, and encoding is copying.
 static_assert(std::endian::native == std::endian::little);
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Tetrahedron) == 4 * sizeof(std::uint32_t) &&
-              sizeof(Brick) == 8 * sizeof(std::uint32_t) && sizeof(Triangle) == 3 * sizeof(std::uint32_t));
+              sizeof(Brick) == 8 * sizeof(std::uint32_t) && sizeof(Triangle) == 3 * sizeof(std::uint32_t) &&
+              sizeof(Pose) == 7 * sizeof(double));
 
 template <class T>
 std::string Bytes(const std::vector<T>& values) {
@@ -44,9 +45,34 @@ void EncodeShape(const SurfaceShape& shape, v1::BodyGeometry& geometry) {
   geometry.set_triangles(Bytes(shape.mesh.triangles));
 }
 
+void EncodeSeries(const std::vector<SeriesInfo>& series, google::protobuf::RepeatedPtrField<v1::SeriesInfo>& encoded) {
+  for (const SeriesInfo& info : series) {
+    v1::SeriesInfo& one = *encoded.Add();
+    one.set_name(info.name);
+    one.set_unit(info.unit);
+    one.set_description(info.description);
+  }
+}
+
+v1::Failure::ObjectKind KindOf(ObjectKind kind) {
+  switch (kind) {
+    case ObjectKind::kNone:
+      return v1::Failure::OBJECT_KIND_UNSPECIFIED;
+    case ObjectKind::kBody:
+      return v1::Failure::OBJECT_KIND_BODY;
+    case ObjectKind::kRigidBody:
+      return v1::Failure::OBJECT_KIND_RIGID_BODY;
+    case ObjectKind::kLine:
+      return v1::Failure::OBJECT_KIND_LINE;
+    case ObjectKind::kJoint:
+      return v1::Failure::OBJECT_KIND_JOINT;
+  }
+  return v1::Failure::OBJECT_KIND_UNSPECIFIED;
+}
+
 }  // namespace
 
-v1::Geometry EncodeGeometry(const Scene& scene, const std::vector<SeriesInfo>& series) {
+v1::Geometry EncodeGeometry(const Scene& scene, const FrameLayout& layout) {
   v1::Geometry geometry;
   for (const Body& body : scene.bodies) {
     v1::BodyGeometry& encoded = *geometry.add_bodies();
@@ -60,12 +86,21 @@ v1::Geometry EncodeGeometry(const Scene& scene, const std::vector<SeriesInfo>& s
       nodes.set_nodes(Bytes(region.nodes));
     }
   }
-  for (const SeriesInfo& info : series) {
-    v1::SeriesInfo& encoded = *geometry.add_series();
-    encoded.set_name(info.name);
-    encoded.set_unit(info.unit);
-    encoded.set_description(info.description);
+  for (const RigidBodyInfo& body : layout.rigid_bodies) {
+    v1::RigidBodyGeometry& encoded = *geometry.add_rigid_bodies();
+    encoded.set_name(body.name);
+    encoded.set_positions(Bytes(body.shape.nodes));
+    encoded.set_triangles(Bytes(body.shape.triangles));
+    encoded.set_pose(Bytes(std::vector<Pose>{body.pose}));
+    encoded.set_moves(body.moves);
+    encoded.set_unbounded(body.unbounded);
   }
+  for (const LineInfo& line : layout.lines) {
+    v1::LineGeometry& encoded = *geometry.add_lines();
+    encoded.set_name(line.name);
+    EncodeSeries(line.values, *encoded.mutable_values());
+  }
+  EncodeSeries(layout.series, *geometry.mutable_series());
   return geometry;
 }
 
@@ -87,6 +122,12 @@ v1::Frame EncodeFrame(const Frame& frame) {
     }
   }
   encoded.mutable_series()->Assign(frame.series.begin(), frame.series.end());
+  encoded.set_poses(Bytes(frame.poses));
+  for (const LineFrame& line : frame.lines) {
+    v1::LineFrame& target = *encoded.add_lines();
+    target.set_points(Bytes(line.points));
+    target.mutable_values()->Assign(line.values.begin(), line.values.end());
+  }
   encoded.set_digest(frame.digest.data(), frame.digest.size());
   return encoded;
 }
@@ -97,7 +138,9 @@ v1::Failure EncodeFailure(const Failure& failure) {
   encoded.set_message(failure.message);
   encoded.set_step(failure.step);
   encoded.set_time(failure.time);
-  encoded.set_body(failure.body);
+  encoded.set_object_kind(KindOf(failure.object_kind));
+  encoded.set_object(failure.object);
+  if (failure.object_kind == ObjectKind::kBody) encoded.set_body(failure.object);
   encoded.mutable_element_ids()->Assign(failure.elements.begin(), failure.elements.end());
   encoded.set_advice(failure.advice);
   return encoded;

@@ -29,13 +29,12 @@ AssetReader ReaderOf(AssetStore& assets) {
 }
 
 JobCodec MakeJobCodec() {
-  return {
-      .decode_scene = DecodeScene,
-      .encode_geometry = [](const Scene& scene,
-                            const std::vector<SeriesInfo>& series) { return Serialize(EncodeGeometry(scene, series)); },
-      .encode_frame = [](const Frame& frame) { return Serialize(EncodeFrame(frame)); },
-      .encode_failure = [](const Failure& failure) { return Serialize(EncodeFailure(failure)); },
-      .encode_profile = [](const RunProfile& profile) { return Serialize(EncodeProfile(profile)); }};
+  return {.decode_scene = DecodeScene,
+          .encode_geometry = [](const Scene& scene,
+                                const FrameLayout& layout) { return Serialize(EncodeGeometry(scene, layout)); },
+          .encode_frame = [](const Frame& frame) { return Serialize(EncodeFrame(frame)); },
+          .encode_failure = [](const Failure& failure) { return Serialize(EncodeFailure(failure)); },
+          .encode_profile = [](const RunProfile& profile) { return Serialize(EncodeProfile(profile)); }};
 }
 
 }  // namespace fascicle::server

@@ -43,7 +43,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
                                             const TranslateLimits& limits = {}, Profile* profile = nullptr);
 
 // To the wire. A frame's digest and numbers are copied bit by bit.
-v1::Geometry EncodeGeometry(const Scene& scene, const std::vector<SeriesInfo>& series);
+v1::Geometry EncodeGeometry(const Scene& scene, const FrameLayout& layout);
 v1::Frame EncodeFrame(const Frame& frame);
 v1::Failure EncodeFailure(const Failure& failure);
 // A run's profile, added to that of the runs before it.

@@ -93,8 +93,8 @@ inline JobCodec BoxCodec() {
     if (spec.cannot_be_decoded) throw std::runtime_error("an asset was lost");
     return MakeScene(spec);
   };
-  codec.encode_geometry = [](const Scene& scene, const std::vector<SeriesInfo>& series) {
-    return scene.name + " with " + std::to_string(series.size()) + " series";
+  codec.encode_geometry = [](const Scene& scene, const FrameLayout& layout) {
+    return scene.name + " with " + std::to_string(layout.series.size()) + " series";
   };
   codec.encode_frame = EncodeFrame;
   codec.encode_failure = [](const Failure& failure) { return failure.reason + ": " + failure.message; };

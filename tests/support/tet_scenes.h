@@ -133,7 +133,7 @@ inline RunResult RunScene(const Scene& scene, int threads = 1) {
   CollectingSink sink;
   RunResult result;
   result.outcome = simulation.Run(sink, {}, std::chrono::milliseconds(0));
-  result.series = simulation.series();
+  result.series = simulation.layout().series;
   result.frames = std::move(sink.frames);
   result.checkpoints = std::move(sink.checkpoints);
   result.progress = sink.progress;

@@ -4,7 +4,9 @@
 #include <vtkDataArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <cmath>
@@ -18,6 +20,7 @@
 #include "client/lib/series_table.h"
 #include "tests/support/files.h"
 #include "tests/support/sample_job.h"
+#include "tests/support/sample_objects.h"
 
 namespace fascicle::client {
 namespace {
@@ -26,6 +29,8 @@ namespace fs = std::filesystem;
 using ::fascicle::testing::Bytes;
 using ::fascicle::testing::ReadFile;
 using ::fascicle::testing::SampleJob;
+using ::fascicle::testing::SampleObjects;
+using ::fascicle::testing::SampleObjectsFrame;
 using ::fascicle::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 
@@ -113,6 +118,83 @@ TEST(VtkSeriesWriter, WritesSurfacesAsTriangles) {
   EXPECT_EQ(grid.GetPointData()->GetArray("cauchy_stress")->GetComponent(3, 5), 2.5);
 }
 
+vtkSmartPointer<vtkPolyData> ReadPolyData(const std::string& path) {
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  return reader->GetOutput();
+}
+
+TEST(VtkSeriesWriter, WritesRigidBodiesWhereTheyAre) {
+  const TemporaryFolder folder;
+  const v1::Geometry geometry = SampleObjects();
+  VtkSeriesWriter writer(geometry, folder.path());
+  for (const int index : {0, 1}) writer.Add(SampleObjectsFrame(index));
+  writer.Finish();
+  const std::string pvd = ReadFile(folder / "frames.pvd");
+  for (const char* entry : {R"(timestep="0" part="0" name="bone" file="frames/rigid_bone_000000.vtp")",
+                            R"(timestep="0.05" part="0" name="bone" file="frames/rigid_bone_000001.vtp")",
+                            R"(timestep="0" part="1" name="ground" file="frames/fixed_ground.vtp")",
+                            R"(timestep="0.05" part="1" name="ground" file="frames/fixed_ground.vtp")",
+                            R"(timestep="0.05" part="3" name="flexor" file="frames/line_flexor_000001.vtp")"}) {
+    EXPECT_THAT(pvd, HasSubstr(entry));
+  }
+  EXPECT_THAT(pvd, ::testing::Not(HasSubstr("joint"))) << "it has no shape";
+  const std::vector<RigidShape> bodies = DecodeRigidBodies(geometry);
+  // Turned by a quarter about z: (x, y, z) goes to (-y, x, z).
+  const auto at = [](const Vec3& X, const Vec3& place) { return Vec3(place + Vec3(-X.y(), X.x(), X.z())); };
+  const auto bone = ReadPolyData(folder / "frames/rigid_bone_000001.vtp");
+  const auto ground = ReadPolyData(folder / "frames/fixed_ground.vtp");
+  for (vtkIdType n = 0; n < 8; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    EXPECT_NEAR((Vec3(bone->GetPoint(n)) - at(bodies[0].positions[i], Vec3(0.04, 0.02, 0))).norm(), 0, 1e-15);
+    EXPECT_NEAR((Vec3(ground->GetPoint(n)) - at(bodies[1].positions[i], Vec3(0, 0, -0.1))).norm(), 0, 1e-15);
+  }
+  ASSERT_EQ(bone->GetNumberOfPolys(), 12);
+  vtkIdType count;
+  const vtkIdType* corners;
+  for (vtkIdType t = 0; t < 12; ++t) {
+    bone->GetCellPoints(t, count, corners);
+    ASSERT_EQ(count, 3);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(corners[c], bodies[0].triangles[static_cast<std::size_t>(t)][c]);
+  }
+}
+
+TEST(VtkSeriesWriter, WritesLinesAsPolylinesWithTheirValues) {
+  const TemporaryFolder folder;
+  VtkSeriesWriter writer(SampleObjects(), folder.path());
+  for (const int index : {0, 1}) writer.Add(SampleObjectsFrame(index));
+  const auto flexor = ReadPolyData(folder / "frames/line_flexor_000001.vtp");
+  ASSERT_EQ(flexor->GetNumberOfPoints(), 4);
+  ASSERT_EQ(flexor->GetNumberOfLines(), 1);
+  EXPECT_EQ(Vec3(flexor->GetPoint(1)), Vec3(0, -0.1, 0));
+  EXPECT_EQ(Vec3(flexor->GetPoint(3)), Vec3(0.1, 0.1, 0));
+  vtkIdType count;
+  const vtkIdType* points;
+  flexor->GetCellPoints(0, count, points);
+  ASSERT_EQ(count, 4);
+  for (vtkIdType i = 0; i < 4; ++i) EXPECT_EQ(points[i], i);
+  ASSERT_NE(flexor->GetCellData()->GetArray("activation"), nullptr);
+  EXPECT_EQ(flexor->GetCellData()->GetArray("activation")->GetTuple1(0), 0.1);
+  EXPECT_EQ(flexor->GetCellData()->GetArray("length")->GetTuple1(0), 0.4);
+  EXPECT_EQ(ReadPolyData(folder / "frames/line_flexor_000000.vtp")->GetNumberOfPoints(), 3);
+  // A line that is not there is an empty file, so that every frame has the same parts.
+  const auto slack = ReadPolyData(folder / "frames/line_slack_000000.vtp");
+  EXPECT_EQ(slack->GetNumberOfPoints(), 0);
+  EXPECT_EQ(slack->GetNumberOfLines(), 0);
+}
+
+TEST(VtkSeriesWriter, RefusesFramesThatDoNotFit) {
+  const TemporaryFolder folder;
+  VtkSeriesWriter writer(SampleObjects(), folder.path());
+  v1::Frame frame = SampleObjectsFrame(1);
+  frame.mutable_lines(0)->add_values(1);
+  EXPECT_THROW(writer.Add(frame), std::runtime_error);
+  frame = SampleObjectsFrame(1);
+  frame.clear_poses();
+  EXPECT_THROW(writer.Add(frame), std::runtime_error);
+}
+
 TEST(VtkSeriesWriter, LeavesNoOtherFiles) {
   const SampleJob job;
   const TemporaryFolder folder;
@@ -127,6 +209,12 @@ TEST(VtkSeriesWriter, LeavesNoOtherFiles) {
 TEST(VtkSeriesWriter, RefusesNamesThatLeadOutOfTheFolder) {
   v1::Geometry geometry = SampleJob().geometry();
   geometry.mutable_bodies(0)->set_name("../evil");
+  EXPECT_THROW(VtkSeriesWriter(geometry, "somewhere"), std::runtime_error);
+  geometry = SampleObjects();
+  geometry.mutable_rigid_bodies(1)->set_name("a/b");
+  EXPECT_THROW(VtkSeriesWriter(geometry, "somewhere"), std::runtime_error);
+  geometry = SampleObjects();
+  geometry.mutable_lines(1)->set_name("");
   EXPECT_THROW(VtkSeriesWriter(geometry, "somewhere"), std::runtime_error);
 }
 

@@ -18,12 +18,16 @@
 #include "client/render/plot.h"
 #include "tests/support/files.h"
 #include "tests/support/sample_job.h"
+#include "tests/support/sample_objects.h"
 
 namespace fascicle::client {
 namespace {
 
+using ::fascicle::testing::AddRigidBody;
 using ::fascicle::testing::Bytes;
 using ::fascicle::testing::SampleJob;
+using ::fascicle::testing::SampleObjects;
+using ::fascicle::testing::SampleObjectsFrame;
 using ::fascicle::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 
@@ -293,6 +297,193 @@ TEST_F(RenderTest, AnimationsAreGifsThatRepeat) {
   ASSERT_EQ(DGifSlurp(gif), GIF_OK);
   EXPECT_EQ(gif->ImageCount, 4);
   DGifCloseFile(gif, &error);
+}
+
+// The colour of bones: warm, where the background is cold.
+bool IsBone(const Pixel& p) { return p[0] > p[2] + 12 && p[0] < p[1] + 25 && p[0] > 90; }
+
+// Where pixels are that a condition holds for.
+struct Extent {
+  int left = 1 << 20, right = -1, bottom = 1 << 20, top = -1;
+  std::size_t count = 0;
+
+  Extent(const Image& image, const std::function<bool(const Pixel&)>& wanted) {
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        if (!wanted(image.pixels[static_cast<std::size_t>(y * image.width + x)])) continue;
+        left = std::min(left, x);
+        right = std::max(right, x);
+        bottom = std::min(bottom, y);
+        top = std::max(top, y);
+        ++count;
+      }
+    }
+  }
+  double width() const { return right - left + 1; }
+  double height() const { return top - bottom + 1; }
+  double x() const { return (left + right) / 2.0; }
+  double y() const { return (bottom + top) / 2.0; }
+};
+
+class ObjectsTest : public RenderTest {
+ protected:
+  // From above, x to the right and y up.
+  PictureOptions FromAbove() {
+    PictureOptions options = Small();
+    options.colour = "";
+    options.azimuth = -90;
+    options.elevation = 90;
+    return options;
+  }
+  Image DrawObjects(const PictureOptions& options, int frame) {
+    const std::string path = folder_ / "objects.png";
+    DrawPicture(SampleObjects(), SampleObjectsFrame(frame), options, path);
+    return ReadPng(path);
+  }
+};
+
+// A box of 40 x 20 mm in a square of 200 mm, then turned by a quarter and moved by (40, 20) mm; the ground is below it.
+TEST_F(ObjectsTest, RigidBodiesAreDrawnWhereTheyAre) {
+  const Extent at_rest(DrawObjects(FromAbove(), 0), IsBone), moved(DrawObjects(FromAbove(), 1), IsBone);
+  const double pixel = at_rest.width() / 0.04;  // a metre
+  EXPECT_GT(at_rest.count, 300u);
+  EXPECT_NEAR(at_rest.height(), 0.02 * pixel, 2);
+  EXPECT_NEAR(static_cast<double>(at_rest.count), at_rest.width() * at_rest.height(), 60) << "it is filled";
+  // The ground shows where the bone has left it: a square of 20 mm around the origin.
+  EXPECT_NEAR(moved.left, at_rest.x() - 0.01 * pixel, 2);
+  EXPECT_NEAR(moved.right, at_rest.x() + 0.05 * pixel, 2);
+  EXPECT_NEAR(moved.bottom, at_rest.y() - 0.01 * pixel, 2);
+  EXPECT_NEAR(moved.top, at_rest.y() + 0.04 * pixel, 2);
+  EXPECT_NEAR(static_cast<double>(moved.count), (0.04 * 0.02 + 0.02 * 0.02) * pixel * pixel, 80);
+  PictureOptions options = FromAbove();
+  options.rigid_bodies = false;
+  EXPECT_EQ(DrawObjects(options, 1).Count(IsBone), 0u);
+}
+
+TEST_F(ObjectsTest, LinesAreDrawnAsTubes) {
+  const Image image = DrawObjects(FromAbove(), 0);
+  const Extent bone(image, IsBone), line(image, IsRed);
+  const double pixel = bone.width() / 0.04;
+  // Along two sides of a square of 200 mm, with a radius of 0.5 % of the diagonal of everything, 0.3 m.
+  EXPECT_NEAR(line.left, bone.x() - 0.1 * pixel, 4);
+  EXPECT_NEAR(line.right, bone.x() + 0.1 * pixel, 4);
+  EXPECT_NEAR(line.bottom, bone.y() - 0.1 * pixel, 4);
+  EXPECT_NEAR(line.top, bone.y() + 0.1 * pixel, 4);
+  const double area = 0.4 * 2 * 0.005 * 0.3 * pixel * pixel;
+  EXPECT_GT(line.count, 0.5 * area);
+  EXPECT_LT(line.count, 1.5 * area);
+  PictureOptions options = FromAbove();
+  options.lines = false;
+  EXPECT_EQ(DrawObjects(options, 0).Count(IsRed), 0u);
+}
+
+TEST_F(ObjectsTest, LinesHaveTheColoursOfTheirValues) {
+  PictureOptions options = FromAbove();
+  options.colour = "activation";
+  const Image image = DrawObjects(options, 1);
+  EXPECT_EQ(image.Count(IsRed), 0u);
+  EXPECT_GT(image.Count(IsViolet), 200u);  // flexor, 0.1
+  EXPECT_GT(image.Count(IsYellow), 80u);   // slack, 0.6
+  options.colour = "length";               // of the one alone
+  EXPECT_GT(DrawObjects(options, 1).Count(IsRed), 50u);
+  options.colour = "tension";
+  try {
+    DrawObjects(options, 1);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("of lines: activation, length"));
+  }
+}
+
+// Beside bodies, in panels and in animations.
+TEST_F(ObjectsTest, EveryPictureHasThem) {
+  v1::Geometry geometry = job_.geometry();
+  geometry.MergeFrom(SampleObjects());
+  std::vector<v1::Frame> frames;
+  for (const int index : {0, 1}) {
+    v1::Frame& frame = frames.emplace_back(job_.frame(index));
+    const v1::Frame objects = SampleObjectsFrame(index);
+    frame.set_poses(objects.poses());
+    *frame.mutable_lines() = objects.lines();
+  }
+  PictureOptions options = FromAbove();
+  options.azimuth = -60;
+  options.elevation = 30;
+  options.rest_outline = false;
+  options.size = {800, 300};
+  for (const char* style : {"surface", "volume"}) {
+    options.colour = "displacement";
+    options.volume = std::string(style) == "volume";
+    options.surface = !options.volume;
+    const std::string path = folder_ / "panels.png";
+    DrawPanels(geometry, frames, options, path);
+    const Image image = ReadPng(path);
+    for (const bool left : {true, false}) {
+      std::size_t bone = 0, red = 0;
+      for (int y = 0; y < image.height; ++y) {
+        for (int x = left ? 0 : 285; x < (left ? 285 : 565); ++x) {
+          const Pixel& p = image.pixels[static_cast<std::size_t>(y * image.width + x)];
+          bone += IsBone(p);
+          red += IsRed(p);
+        }
+      }
+      EXPECT_GT(bone, 100u) << style << left;
+      EXPECT_GT(red, 100u) << style << left;
+    }
+  }
+  const std::string path = folder_ / "objects.gif";
+  DrawAnimation(geometry, frames, options, {.frames_per_second = 5, .turntable = 0}, path);
+  int error = 0;
+  GifFileType* gif = DGifOpenFileName(path.c_str(), &error);
+  ASSERT_NE(gif, nullptr);
+  ASSERT_EQ(DGifSlurp(gif), GIF_OK);
+  ASSERT_EQ(gif->ImageCount, 2);
+  for (int i = 0; i < 2; ++i) {
+    const SavedImage& image = gif->SavedImages[i];
+    const ColorMapObject* colours = image.ImageDesc.ColorMap != nullptr ? image.ImageDesc.ColorMap : gif->SColorMap;
+    std::size_t bone = 0;
+    for (int p = 0; p < 800 * 300; ++p) {
+      const GifColorType& c = colours->Colors[image.RasterBits[p]];
+      bone += IsBone({c.Red, c.Green, c.Blue});
+    }
+    EXPECT_GT(bone, 200u) << i;
+  }
+  DGifCloseFile(gif, &error);
+}
+
+// A plane is not fitted into the picture: it fills it from above, and is like glass from below.
+TEST_F(ObjectsTest, PlanesAreBehindEverything) {
+  v1::Geometry geometry = SampleObjects();
+  const Pose pose = {Vec3(0, -0.15, 0), {std::sqrt(0.5), -std::sqrt(0.5), 0, 0}};  // its z axis is y
+  v1::RigidBodyGeometry& plane = AddRigidBody("plane", pose, false, geometry);
+  plane.set_positions(Bytes(std::vector<double>{-9, -9, 0, 9, -9, 0, 9, 9, 0, -9, 9, 0}));
+  plane.set_triangles(Bytes(std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
+  plane.set_unbounded(true);
+  const auto draw = [&](const PictureOptions& options) {
+    const std::string path = folder_ / "plane.png";
+    DrawPicture(geometry, SampleObjectsFrame(1), options, path);
+    return ReadPng(path);
+  };
+  PictureOptions options = Small();
+  options.colour = "";
+  options.time = false;
+  const std::size_t all = 400 * 300;
+  EXPECT_GT(draw(options).Count(IsBone), 8 * all / 10) << "seen from above its side unless the view is given";
+  options.azimuth = -90;
+  options.elevation = 0;
+  EXPECT_LT(draw(options).Count(IsBone), 4 * all / 10);
+  options.azimuth = 0;
+  options.elevation = 90;
+  EXPECT_NEAR(static_cast<double>(draw(options).Count(IsRed)),
+              static_cast<double>(DrawObjects(options, 1).Count(IsRed)), 60)
+      << "at the same scale as without";
+}
+
+TEST_F(ObjectsTest, AFrameWithNothingToSeeIsRefused) {
+  PictureOptions options = FromAbove();
+  options.rigid_bodies = false;
+  options.lines = false;
+  EXPECT_THROW(DrawObjects(options, 1), std::runtime_error);
 }
 
 TEST_F(RenderTest, RefusesSizesThatNoOneWants) {

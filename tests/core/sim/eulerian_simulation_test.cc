@@ -205,7 +205,7 @@ TEST(EulerianSimulationTest, LeavingTheGridIsAFailureWithAdvice) {
   const RunResult run = RunScene(scene);
   ASSERT_EQ(run.outcome.kind, Outcome::Kind::kFailed);
   EXPECT_EQ(run.outcome.failure.reason, "LEFT_GRID");
-  EXPECT_EQ(run.outcome.failure.body, "cube");
+  EXPECT_EQ(run.outcome.failure.object, "cube");
   EXPECT_THAT(run.outcome.failure.advice, ::testing::HasSubstr("margin"));
   EXPECT_GT(run.outcome.failure.time, 0.01);
   EXPECT_GE(run.frames.size(), 3u);

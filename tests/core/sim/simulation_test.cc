@@ -235,7 +235,8 @@ TEST(FailureTest, CrushedBodyFailsWithElementsAndKeepsItsFrames) {
   ASSERT_EQ(run.outcome.kind, Outcome::Kind::kFailed);
   const Failure& failure = run.outcome.failure;
   EXPECT_EQ(failure.reason, "INVERTED_ELEMENT");
-  EXPECT_EQ(failure.body, "box");
+  EXPECT_EQ(failure.object_kind, ObjectKind::kBody);
+  EXPECT_EQ(failure.object, "box");
   ASSERT_FALSE(failure.elements.empty());
   EXPECT_LE(failure.elements.size(), 16u);
   for (const std::int64_t e : failure.elements) EXPECT_LT(e, 6 * 24);

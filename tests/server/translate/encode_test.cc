@@ -30,7 +30,7 @@ TEST(Encode, GeometryCarriesNodesTetrahedraFibresAndRegions) {
   const auto scene = Translate(wire);
   ASSERT_NE(scene, nullptr);
   const Body& body = scene->bodies[0];
-  const v1::Geometry geometry = EncodeGeometry(*scene, {{"energy/elastic", "J", "Elastic energy"}});
+  const v1::Geometry geometry = EncodeGeometry(*scene, {{}, {}, {{"energy/elastic", "J", "Elastic energy"}}});
   ASSERT_EQ(geometry.bodies_size(), 1);
   const v1::BodyGeometry& encoded = geometry.bodies(0);
   EXPECT_EQ(encoded.name(), "box");
@@ -89,14 +89,100 @@ TEST(Encode, FrameKeepsEveryBit) {
   EXPECT_EQ(encoded.digest(), std::string(frame.digest.begin(), frame.digest.end()));
 }
 
+TEST(Encode, GeometryCarriesRigidBodiesAndLines) {
+  FrameLayout layout;
+  layout.rigid_bodies = {{"humerus",
+                          {{Vec3(1, 2, 3), Vec3(4, 5, 6), Vec3(7, 8, 9.5)}, {{0, 1, 2}, {2, 1, 0}}},
+                          {Vec3(-1, -2, -3), {0, 0, 0, 1}},
+                          true,
+                          false},
+                         {"ground", {}, {}, false, true}};
+  layout.lines = {{"biceps", {{"activation", "1", "how active it is"}, {"length", "m", "of the whole path"}}},
+                  {"cord", {}}};
+  const v1::Geometry geometry = EncodeGeometry(*Translate(BoxScene()), layout);
+  ASSERT_EQ(geometry.rigid_bodies_size(), 2);
+  const v1::RigidBodyGeometry& humerus = geometry.rigid_bodies(0);
+  EXPECT_EQ(humerus.name(), "humerus");
+  EXPECT_TRUE(humerus.moves());
+  EXPECT_FALSE(humerus.unbounded());
+  ASSERT_EQ(humerus.positions().size(), 9u * 8u);
+  EXPECT_EQ(DoubleAt(humerus.positions(), 8), 9.5);
+  ASSERT_EQ(humerus.triangles().size(), 6u * 4u);
+  EXPECT_EQ(IndexAt(humerus.triangles(), 3), 2u);
+  ASSERT_EQ(humerus.pose().size(), 7u * 8u);
+  EXPECT_EQ(DoubleAt(humerus.pose(), 2), -3);
+  EXPECT_EQ(DoubleAt(humerus.pose(), 3), 0) << "w comes first";
+  EXPECT_EQ(DoubleAt(humerus.pose(), 6), 1);
+  EXPECT_FALSE(geometry.rigid_bodies(1).moves());
+  EXPECT_TRUE(geometry.rigid_bodies(1).unbounded());
+  EXPECT_EQ(DoubleAt(geometry.rigid_bodies(1).pose(), 3), 1);
+  ASSERT_EQ(geometry.lines_size(), 2);
+  EXPECT_EQ(geometry.lines(0).name(), "biceps");
+  ASSERT_EQ(geometry.lines(0).values_size(), 2);
+  EXPECT_EQ(geometry.lines(0).values(1).name(), "length");
+  EXPECT_EQ(geometry.lines(0).values(1).unit(), "m");
+  EXPECT_EQ(geometry.lines(0).values(1).description(), "of the whole path");
+  EXPECT_EQ(geometry.lines(1).values_size(), 0);
+}
+
+TEST(Encode, FrameKeepsPosesAndLines) {
+  Frame frame;
+  frame.poses = {{Vec3(1, -0.0, 1e-310), {0.5, -0.5, 0.5, -0.5}}, {}};
+  frame.lines = {{{Vec3(1, 2, 3), Vec3(4, 5, 0.1 + 0.2)}, {0.25, 1e-310}}, {}};
+  const v1::Frame encoded = EncodeFrame(frame);
+  ASSERT_EQ(encoded.poses().size(), 2u * 7u * 8u);
+  EXPECT_TRUE(std::signbit(DoubleAt(encoded.poses(), 1)));
+  EXPECT_EQ(DoubleAt(encoded.poses(), 2), 1e-310);
+  EXPECT_EQ(DoubleAt(encoded.poses(), 4), -0.5);
+  EXPECT_EQ(DoubleAt(encoded.poses(), 10), 1);
+  ASSERT_EQ(encoded.lines_size(), 2);
+  ASSERT_EQ(encoded.lines(0).points().size(), 6u * 8u);
+  EXPECT_EQ(DoubleAt(encoded.lines(0).points(), 5), 0.1 + 0.2);
+  ASSERT_EQ(encoded.lines(0).values_size(), 2);
+  EXPECT_EQ(encoded.lines(0).values(1), 1e-310);
+  EXPECT_TRUE(encoded.lines(1).points().empty());
+}
+
+// Not a byte more than before frames could hold more than bodies.
+TEST(Encode, FrameWithoutPosesAndLinesHasNothingOfThem) {
+  const v1::Frame encoded = EncodeFrame({});
+  std::vector<const google::protobuf::FieldDescriptor*> fields;
+  encoded.GetReflection()->ListFields(encoded, &fields);
+  ASSERT_EQ(fields.size(), 1u);
+  EXPECT_EQ(fields[0]->name(), "digest");
+}
+
+TEST(Encode, FailureNamesItsObjectWithItsKind) {
+  for (const auto& [kind, encoded_kind] : {std::pair{ObjectKind::kBody, v1::Failure::OBJECT_KIND_BODY},
+                                           {ObjectKind::kRigidBody, v1::Failure::OBJECT_KIND_RIGID_BODY},
+                                           {ObjectKind::kLine, v1::Failure::OBJECT_KIND_LINE},
+                                           {ObjectKind::kJoint, v1::Failure::OBJECT_KIND_JOINT},
+                                           {ObjectKind::kNone, v1::Failure::OBJECT_KIND_UNSPECIFIED}}) {
+    Failure failure;
+    failure.object_kind = kind;
+    failure.object = "elbow";
+    const v1::Failure encoded = EncodeFailure(failure);
+    EXPECT_EQ(encoded.object_kind(), encoded_kind);
+    EXPECT_EQ(encoded.object(), "elbow");
+    EXPECT_EQ(encoded.body(), kind == ObjectKind::kBody ? "elbow" : "") << "for clients that know bodies alone";
+  }
+}
+
 TEST(Encode, FailureKeepsEverything) {
-  const v1::Failure encoded =
-      EncodeFailure({"INVERTED_ELEMENT", "an element turned over", 17, 0.25, "muscle", {4, 9}, "take a smaller step"});
+  const v1::Failure encoded = EncodeFailure({"INVERTED_ELEMENT",
+                                             "an element turned over",
+                                             17,
+                                             0.25,
+                                             ObjectKind::kBody,
+                                             "muscle",
+                                             {4, 9},
+                                             "take a smaller step"});
   EXPECT_EQ(encoded.reason(), "INVERTED_ELEMENT");
   EXPECT_EQ(encoded.message(), "an element turned over");
   EXPECT_EQ(encoded.step(), 17);
   EXPECT_EQ(encoded.time(), 0.25);
   EXPECT_EQ(encoded.body(), "muscle");
+  EXPECT_EQ(encoded.object(), "muscle");
   ASSERT_EQ(encoded.element_ids_size(), 2);
   EXPECT_EQ(encoded.element_ids(1), 9);
   EXPECT_EQ(encoded.advice(), "take a smaller step");

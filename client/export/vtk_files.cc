@@ -1,0 +1,158 @@
+#include "client/export/vtk_files.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "client/lib/replace_file.h"
+
+namespace fascicle::client {
+namespace {
+
+namespace fs = std::filesystem;
+
+vtkSmartPointer<vtkDoubleArray> MakeArray(const std::string& name, int components, std::size_t tuples) {
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName(name.c_str());
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
+  return array;
+}
+
+vtkSmartPointer<vtkDoubleArray> MakeArray(const std::string& name, int components, const std::vector<double>& values) {
+  const auto array = MakeArray(name, components, values.size() / static_cast<std::size_t>(components));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  return array;
+}
+
+vtkSmartPointer<vtkPoints> MakePoints(const std::vector<Vec3>& positions) {
+  const auto coordinates = MakeArray("Points", 3, positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    coordinates->SetTypedTuple(static_cast<vtkIdType>(i), positions[i].data());
+  }
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetData(coordinates);
+  return points;
+}
+
+void AddTriangles(const std::vector<std::array<std::uint32_t, 3>>& triangles, vtkCellArray& cells) {
+  for (const auto& t : triangles) cells.InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}});
+}
+
+void SetMesh(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnstructuredGrid& grid) {
+  grid.SetPoints(MakePoints(positions));
+  vtkNew<vtkCellArray> cells;
+  cells->AllocateExact(
+      static_cast<vtkIdType>(shape.elements()),
+      static_cast<vtkIdType>(4 * shape.tetrahedra.size() + 8 * shape.bricks.size() + 3 * shape.triangles.size()));
+  for (const auto& t : shape.tetrahedra)
+    cells->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}, vtkIdType{t[3]}});
+  for (const auto& brick : shape.bricks) {
+    std::array<vtkIdType, 8> nodes;
+    for (std::size_t c = 0; c < 8; ++c) nodes[c] = brick[kHexahedronCorners[c]];
+    cells->InsertNextCell(8, nodes.data());
+  }
+  AddTriangles(shape.triangles, *cells);
+  grid.SetCells(CellTypeOf(shape), cells);
+}
+
+void AddDisplacement(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnstructuredGrid& grid) {
+  const auto displacement = MakeArray("displacement", 3, positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec3 u = positions[i] - shape.positions[i];
+    displacement->SetTypedTuple(static_cast<vtkIdType>(i), u.data());
+  }
+  grid.GetPointData()->AddArray(displacement);
+}
+
+void AddRegions(const BodyShape& shape, vtkUnstructuredGrid& grid) {
+  for (const BodyShape::Region& region : shape.regions) {
+    vtkNew<vtkUnsignedCharArray> flags;
+    flags->SetName(("region/" + region.name).c_str());
+    flags->SetNumberOfTuples(static_cast<vtkIdType>(shape.positions.size()));
+    flags->Fill(0);
+    for (const std::uint32_t node : region.nodes) flags->SetValue(node, 1);
+    grid.GetPointData()->AddArray(flags);
+  }
+}
+
+void AddRestFibres(const BodyShape& shape, vtkUnstructuredGrid& grid) {
+  if (shape.fibres.empty()) return;
+  const auto fibres = MakeArray("rest_fibre", 3, shape.fibres.size());
+  for (std::size_t i = 0; i < shape.fibres.size(); ++i) {
+    fibres->SetTypedTuple(static_cast<vtkIdType>(i), shape.fibres[i].data());
+  }
+  grid.GetCellData()->AddArray(fibres);
+}
+
+template <class Writer, class Data>
+void WriteData(Data& data, const fs::path& path) {
+  ReplaceFile(path, [&](const fs::path& beside) {
+    vtkNew<Writer> writer;
+    writer->SetInputData(&data);
+    writer->SetFileName(beside.c_str());
+    writer->SetDataModeToAppended();
+    writer->EncodeAppendedDataOff();
+    writer->SetCompressorTypeToZLib();
+    if (writer->Write() != 1)
+      throw std::runtime_error("can't write " + path.string() + ": no permission, or no space left");
+  });
+}
+
+}  // namespace
+
+void WriteBody(const BodyShape& shape, const v1::BodyFrame& frame, const fs::path& path) {
+  const std::vector<Vec3> positions = DecodePositions(frame, shape.positions.size());
+  vtkNew<vtkUnstructuredGrid> grid;
+  SetMesh(shape, positions, *grid);
+  AddDisplacement(shape, positions, *grid);
+  AddRegions(shape, *grid);
+  AddRestFibres(shape, *grid);
+  for (const v1::FieldValues& field : frame.fields()) {
+    const auto array = MakeArray(field.name(), field.components(), DecodeField(field, shape));
+    const bool at_nodes = field.location() == v1::FieldValues::LOCATION_NODE;
+    (at_nodes ? static_cast<vtkFieldData*>(grid->GetPointData()) : grid->GetCellData())->AddArray(array);
+  }
+  WriteData<vtkXMLUnstructuredGridWriter>(*grid, path);
+}
+
+void WriteRigidBody(const RigidShape& body, const Pose& pose, const fs::path& path) {
+  vtkNew<vtkPolyData> surface;
+  surface->SetPoints(MakePoints(PositionsAt(body, pose)));
+  vtkNew<vtkCellArray> triangles;
+  AddTriangles(body.triangles, *triangles);
+  surface->SetPolys(triangles);
+  WriteData<vtkXMLPolyDataWriter>(*surface, path);
+}
+
+void WriteLine(const LineInfo& line, const LinePath& state, const fs::path& path) {
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(MakePoints(state.points));
+  const auto count = static_cast<vtkIdType>(state.points.size());
+  if (count > 1) {
+    vtkNew<vtkCellArray> cells;
+    cells->InsertNextCell(count);
+    for (vtkIdType i = 0; i < count; ++i) cells->InsertCellPoint(i);
+    data->SetLines(cells);
+    for (std::size_t v = 0; v < line.values.size(); ++v) {
+      data->GetCellData()->AddArray(MakeArray(line.values[v].name(), 1, std::vector<double>{state.values[v]}));
+    }
+  }
+  WriteData<vtkXMLPolyDataWriter>(*data, path);
+}
+
+}  // namespace fascicle::client

@@ -1,0 +1,18 @@
+#ifndef FASCICLE_CLIENT_RENDER_LINE_TUBES_H_
+#define FASCICLE_CLIENT_RENDER_LINE_TUBES_H_
+
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+
+#include <vector>
+
+#include "core/base/types.h"
+
+namespace fascicle::client {
+
+// A round tube with closed ends along a path; empty when the path has no length. Path and radius [m].
+vtkSmartPointer<vtkPolyData> MakeTube(const std::vector<Vec3>& points, double radius);
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_RENDER_LINE_TUBES_H_

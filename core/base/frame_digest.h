@@ -1,0 +1,47 @@
+#ifndef FASCICLE_CORE_BASE_FRAME_DIGEST_H_
+#define FASCICLE_CORE_BASE_FRAME_DIGEST_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/base/digest.h"
+
+namespace fascicle {
+
+// The numbers of a frame as little-endian bytes, in whichever form they are held: as arrays by the simulation, as a
+// message by clients. Both get the same digest.
+struct FrameBytes {
+  using Bytes = std::span<const std::byte>;
+  struct Field {
+    std::string_view name;
+    Bytes values;  // doubles
+  };
+  struct Body {
+    Bytes positions;  // 3 doubles a node
+    std::vector<Field> fields;
+  };
+  struct Line {
+    Bytes points;  // 3 doubles each
+    Bytes values;  // doubles
+  };
+
+  std::int64_t index = 0;
+  double time = 0;  // [s]
+  std::int64_t step = 0;
+  std::vector<Body> bodies;
+  Bytes series;  // doubles
+  Bytes poses;   // 7 doubles each
+  std::vector<Line> lines;
+};
+
+// SHA-256 over index, time, step, bodies (positions, fields with their names) and series, in this order; then over
+// poses and over lines, each only where there are any, so that a frame without them has the digest of the time before
+// frames could hold them. Every array is preceded by its number of items: different frames never give the same bytes.
+Digest DigestOf(const FrameBytes& frame);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_BASE_FRAME_DIGEST_H_

@@ -1,0 +1,30 @@
+#ifndef FASCICLE_CORE_BASE_POSE_H_
+#define FASCICLE_CORE_BASE_POSE_H_
+
+#include <array>
+
+#include "core/base/types.h"
+
+namespace fascicle {
+
+// Position and orientation of a rigid body: the point X of the body's own axes is at x = position + R X in the world.
+struct Pose {
+  Vec3 position = Vec3::Zero();  // of the origin of the body's axes, in the world [m]
+  // Unit quaternion (w, x, y, z), Hamilton's convention: R X is the vector part of q X q*. q and -q are the same
+  // orientation.
+  std::array<double, 4> quaternion = {1, 0, 0, 0};
+};
+
+// The matrix R of a unit quaternion.
+inline Mat3 RotationOf(const Pose& pose) {
+  const auto [w, x, y, z] = pose.quaternion;
+  Mat3 R;
+  R << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),  //
+      2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),   //
+      2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
+  return R;
+}
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_BASE_POSE_H_
