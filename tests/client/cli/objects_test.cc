@@ -25,7 +25,7 @@ namespace fascicle::service_test {
 namespace {
 
 using ::fascicle::testing::Finished;
-using ::fascicle::testing::ReadText;
+using ::fascicle::testing::ReadFile;
 using ::fascicle::testing::RunProgram;
 using ::fascicle::testing::TemporaryFolder;
 using ::testing::HasSubstr;
