@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_TET_POTENTIAL_H_
 #define FASCICLE_CORE_TET_POTENTIAL_H_
 
+#include "core/materials/tensor_algebra.h"
 #include "core/tet/points.h"
 
 namespace fascicle {
