@@ -62,7 +62,7 @@ std::string Refusal(const Pieces& pieces, const FebioOptions& options = {}) {
 std::string NoticesOf(const ImportedScene& imported) {
   std::string text;
   for (const Notice& notice : imported.notices) {
-    const char* kind = notice.kind == Notice::Kind::kNotTaken  ? "not taken "
+    const char* kind = notice.kind == Notice::Kind::kNotTaken  ? "unsupported "
                        : notice.kind == Notice::Kind::kChanged ? "changed "
                                                                : "setting ";
     text += kind + notice.where + ": " + notice.message + "\n";
@@ -173,7 +173,8 @@ TEST(FebioMaterialTest, TransverselyIsotropicMooneyRivlin) {
   // FEBio's own active contraction is a different law, which is not supported.
   pieces.material.insert(pieces.material.find("<fiber"),
                          "<active_contraction lc=\"1\"><ascl>1</ascl></active_contraction>");
-  EXPECT_THAT(NoticesOf(Import(pieces)), HasSubstr("not taken model.feb:1: Material/material `m`/active_contraction"));
+  EXPECT_THAT(NoticesOf(Import(pieces)),
+              HasSubstr("unsupported model.feb:1: Material/material `m`/active_contraction"));
 }
 
 TEST(FebioMaterialTest, MixtureWithActiveContraction) {
@@ -406,7 +407,7 @@ TEST(FebioStepTest, OneStepIsTaken) {
   pieces.control.clear();
   const ImportedScene imported = Import(pieces);
   EXPECT_EQ(imported.scene.bodies(0).constraints_size(), 2);
-  EXPECT_THAT(NoticesOf(imported), HasSubstr("not taken model.feb:1: Step/step `2`: a scene has one step"));
+  EXPECT_THAT(NoticesOf(imported), HasSubstr("unsupported model.feb:1: Step/step `2`: a scene has one step"));
 }
 
 TEST(FebioNoticeTest, EverythingThatIsNotTakenIsTold) {
@@ -419,9 +420,9 @@ TEST(FebioNoticeTest, EverythingThatIsNotTakenIsTold) {
   pieces.material.insert(pieces.material.find("</material>"), "<youth>7</youth>");
   const std::string notices = NoticesOf(Import(pieces));
   for (const char* notice :
-       {"not taken model.feb:2: Contact", "not taken model.feb:4: Initial", "not taken model.feb:5: Constraints",
-        "not taken model.feb:1: Boundary/bc `rigid`", "not taken model.feb:1: Loads/surface_load `fluid traction`",
-        "not taken model.feb:1: Loads/edge_load `force`", "not taken model.feb:1: Material/material `m`/youth"}) {
+       {"unsupported model.feb:2: Contact", "unsupported model.feb:4: Initial", "unsupported model.feb:5: Constraints",
+        "unsupported model.feb:1: Boundary/bc `rigid`", "unsupported model.feb:1: Loads/surface_load `fluid traction`",
+        "unsupported model.feb:1: Loads/edge_load `force`", "unsupported model.feb:1: Material/material `m`/youth"}) {
     EXPECT_THAT(notices, HasSubstr(notice));
   }
   EXPECT_THAT(notices, ::testing::Not(HasSubstr("Output")));
