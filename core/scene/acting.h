@@ -57,7 +57,7 @@ struct Load {
   std::int32_t region = 0;  // index into Body::regions
   std::variant<Traction, NodalForce> kind;
   Curve scale = Curve::Constant(1);
-  bool kept = false;  // the scale as a series: of a unit force it is the force [N]
+  bool kept = false;  // whether the scale is a series in the output; for a unit force it is the force [N]
 };
 template <>
 inline constexpr auto kFieldNames<Load> = FieldNames("region", "", "scale", "kept");
@@ -69,16 +69,16 @@ struct Gravity {
 template <>
 inline constexpr auto kFieldNames<Gravity> = FieldNames("acceleration", "scale");
 
-// A rigid half-space that bodies can't enter: all x with (x - point) . normal < 0.
+// A rigid half-space that bodies cannot enter: all x with (x - point) . normal < 0.
 struct Floor {
   std::string name;
   Vec3 point = Vec3::Zero();    // [m]
-  Vec3 normal = Vec3::UnitZ();  // unit, out of the floor
+  Vec3 normal = Vec3::UnitZ();  // unit, outward
 };
 template <>
 inline constexpr auto kFieldNames<Floor> = FieldNames("name", "point", "normal");
 
-// A force per deformed volume towards a plane.
+// A plane force field: a force per deformed volume towards a plane.
 struct Squeeze {
   Vec3 point = Vec3::Zero();    // [m]
   Vec3 normal = Vec3::UnitX();  // unit

@@ -46,10 +46,10 @@ struct Body {
   std::vector<Region> regions;            // of the shape's mesh
   std::vector<Constraint> constraints;
   std::vector<Load> loads;
-  // What the user should know of how the body came about; does not change results.
+  // Remarks for the user on how the body was built; without effect on results.
   std::vector<std::string> notes;
 
-  // The shape, which must be of that kind.
+  // The shape, which must have this type.
   const TetShape& tet() const { return std::get<TetShape>(shape); }
   TetShape& tet() { return std::get<TetShape>(shape); }
   const VoxelShape& voxel() const { return std::get<VoxelShape>(shape); }

@@ -6,7 +6,7 @@
 namespace fascicle::scene_checks {
 namespace {
 
-// Both interpolations stay between the values of neighbouring points.
+// Both interpolations stay between the values of adjacent points.
 void CheckRange(const Curve& curve, const std::string& path, Problems& problems) {
   if (std::none_of(curve.values.begin(), curve.values.end(), [](double value) { return value < 0 || value > 1; })) {
     return;
@@ -23,7 +23,7 @@ void CheckScale(const std::vector<double>& scale, std::size_t elements, const st
   const auto wrong = std::find_if(scale.begin(), scale.end(), [](double s) { return !(s >= 0 && s <= 1); });
   if (wrong != scale.end()) {
     problems.Add(path, "the value of element " + std::to_string(wrong - scale.begin()) + " is outside [0, 1]",
-                 "it is the part of the activation that reaches the element");
+                 "it is a factor on the activation of the element");
   }
 }
 

@@ -5,7 +5,7 @@
 namespace fascicle::scene_checks {
 namespace {
 
-// What the method needs and the body has not; null: nothing.
+// What a body of the method needs and this one lacks; null: nothing.
 const char* Lacking(Method method, const Shape& shape) {
   switch (method) {
     case Method::kTet: {
@@ -36,8 +36,8 @@ void CheckBodies(const Scene& scene, Problems& problems) {
     if (!(body.density > 0))
       problems.Add(JoinPath(path, "density"), "a body needs mass", "give a density above 0 kg/m^3");
     if (!names.insert(body.name).second) {
-      problems.Add(JoinPath(path, "name"), "another body is called `" + body.name + "` too",
-                   "series and files are named after bodies: give each its own name");
+      problems.Add(JoinPath(path, "name"), "another body is called `" + body.name + " `",
+                   "series and files are named after bodies: give each a unique name");
     }
   }
 }

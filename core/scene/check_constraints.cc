@@ -19,14 +19,14 @@ bool SameRotation(const std::optional<Rotation>& a, const std::optional<Rotation
          (!a || (a->point == b->point && a->axis == b->axis && SameCurve(a->angle, b->angle)));
 }
 
-// Whether both ask for the same motion along one axis.
+// Whether both prescribe the same motion along one axis.
 bool Agree(const Constraint& a, const Constraint& b, int axis) {
   return SameCurve(a.motion.translation[axis], b.motion.translation[axis]) &&
          SameRotation(a.motion.rotation, b.motion.rotation);
 }
 
 void CheckBody(const Body& body, const std::string& path, Problems& problems) {
-  // Regions of a surface are volumes of the body, which may have none of its nodes.
+  // Regions of a surface are volumes, which may contain none of its nodes.
   const bool volumes = std::holds_alternative<SurfaceShape>(body.shape);
   std::map<std::pair<std::int32_t, int>, std::size_t> holder;  // the first constraint on a node and axis
   for (std::size_t k = 0; k < body.constraints.size(); ++k) {
@@ -47,8 +47,8 @@ void CheckBody(const Body& body, const std::string& path, Problems& problems) {
         const auto [first, is_new] = holder.try_emplace({node, axis}, k);
         if (is_new || reported || Agree(body.constraints[first->second], constraint, axis)) continue;
         problems.Add(where,
-                     "asks node " + std::to_string(node) + " to move differently along " + "xyz"[axis] + " than " +
-                         IndexPath("constraints", first->second) + " does",
+                     "prescribes a motion of node " + std::to_string(node) + " to move differently along " +
+                         "xyz"[axis] + " than " + IndexPath("constraints", first->second) + " does",
                      "regions that share nodes need the same motion, or different axes");
         reported = true;
       }

@@ -13,7 +13,7 @@ bool DependsOnSpeed(const Material& material) {
 
 void CheckPlasticity(const Plasticity& plasticity, const std::string& path, Problems& problems) {
   if (!(plasticity.yield_stress > 0)) {
-    problems.Add(JoinPath(path, "yield_stress"), "must be above 0 Pa", "leave plasticity out of an elastic body");
+    problems.Add(JoinPath(path, "yield_stress"), "must be above 0 Pa", "omit plasticity for an elastic body");
   }
   if (!(plasticity.relaxation_time >= 0 && std::isfinite(plasticity.relaxation_time))) {
     problems.Add(JoinPath(path, "relaxation_time"), "must be a finite time of at least 0 s");
@@ -30,13 +30,13 @@ void CheckSqueeze(const Squeeze& squeeze, const std::string& path, Problems& pro
   }
 }
 
-// Regions are places in the material here: a tag of the mesh file tells none.
+// Regions are parts of the material here, which the tags of a mesh file do not define.
 void CheckPlace(const Body& body, std::int32_t region, const std::string& path, Problems& problems) {
   if (region < 0 || region >= static_cast<std::int32_t>(body.regions.size())) return;
   const std::vector<Selector>& selectors = body.regions[region].selectors;
   if (std::any_of(selectors.begin(), selectors.end(),
                   [](const Selector& s) { return std::holds_alternative<TagSelector>(s); })) {
-    problems.Add(JoinPath(path, "region"), "a tag does not tell which points of the material are meant",
+    problems.Add(JoinPath(path, "region"), "a tag does not define which material points are meant",
                  "select the region by plane, box, sphere or side");
   }
 }
@@ -46,19 +46,19 @@ void CheckBody(const Body& body, const std::string& path, Problems& problems) {
     CheckPlasticity(*plasticity, JoinPath(path, "plasticity"), problems);
   }
   if (body.damping.stiffness_proportional != 0 || body.damping.viscosity != 0) {
-    problems.Add(JoinPath(path, "damping"), "the eulerian method damps in proportion to mass only",
-                 "give mass_proportional alone");
+    problems.Add(JoinPath(path, "damping"), "the eulerian method has mass-proportional damping only",
+                 "use mass_proportional only");
   }
   if (DependsOnSpeed(body.material)) {
-    problems.Add(JoinPath(path, "material"), "the eulerian method does not know how fast fibres shorten",
-                 "leave max_velocity at 0, or use the tet method");
+    problems.Add(JoinPath(path, "material"), "the eulerian method does not support the rate of fibres",
+                 "omit max_velocity, or use the tet method");
   }
   for (std::size_t k = 0; k < body.constraints.size(); ++k) {
     const Constraint& constraint = body.constraints[k];
     const std::string where = JoinPath(path, IndexPath("constraints", k));
     if (!std::all_of(constraint.axes.begin(), constraint.axes.end(), [](bool held) { return held; })) {
-      problems.Add(JoinPath(where, "axes"), "supports of the eulerian method hold all three axes",
-                   "leave the axes out, or use the tet method");
+      problems.Add(JoinPath(where, "axes"), "supports of the eulerian method prescribe all three axes",
+                   "omit the axes, or use the tet method");
     }
     CheckPlace(body, constraint.region, where, problems);
   }
@@ -72,7 +72,8 @@ void CheckBody(const Body& body, const std::string& path, Problems& problems) {
 void CheckEulerian(const Scene& scene, Problems& problems) {
   if (scene.method != Method::kEulerian) {
     if (scene.squeezes.empty()) return;
-    problems.Add("squeezes", "only the eulerian method knows them", "put loads on regions, or use the eulerian method");
+    problems.Add("squeezes", "only the eulerian method supports them",
+                 "put loads on regions, or use the eulerian method");
     return;
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -80,7 +81,7 @@ void CheckEulerian(const Scene& scene, Problems& problems) {
     CheckBody(scene.bodies[i], IndexPath("bodies", i), problems);
   }
   if (!scene.floors.empty()) {
-    problems.Add("floors", "the eulerian method does not know floors yet", "leave them out, or use the tet method");
+    problems.Add("floors", "the eulerian method does not support floors", "omit them, or use the tet method");
   }
   for (std::size_t k = 0; k < scene.squeezes.size(); ++k) {
     CheckSqueeze(scene.squeezes[k], IndexPath("squeezes", k), problems);

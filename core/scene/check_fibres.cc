@@ -10,8 +10,8 @@ bool Needs(const Material& material) {
   return std::visit([](const auto& law) { return law.kNeedsFibres; }, material);
 }
 
-//   needed  by the body's own law
-//   count   of directions that there must be, where there are any
+//   needed  whether the body's own law needs fibres
+//   count   required number of directions, if there are any
 void CheckField(const FibreField& fibres, bool needed, std::size_t count, const std::string& path, Problems& problems) {
   if (fibres.empty()) {
     if (needed) {
@@ -26,7 +26,7 @@ void CheckField(const FibreField& fibres, bool needed, std::size_t count, const 
     return;
   }
   for (std::size_t e = 0; e < fibres.size(); ++e) {
-    // Rounding leaves unit vectors within some 1e-16 of length 1; 1e-6 also lets through those kept in float.
+    // Rounding leaves unit vectors within some 1e-16 of length 1; 1e-6 also accepts those stored as floats.
     if (std::abs(fibres[e].norm() - 1) < 1e-6) continue;
     problems.Add(path, "the fibre direction of tetrahedron " + std::to_string(e) + " is not a unit vector");
     return;
@@ -38,7 +38,7 @@ void CheckShape(const TetShape& shape, bool needed, const std::string& path, Pro
   CheckField(shape.fibres, needed, shape.mesh.tetrahedra.size(), path, problems);
 }
 
-// Laws with fibres are refused with their material: CheckVoxel.
+// CheckVoxel reports materials with fibres.
 void CheckShape(const VoxelShape&, bool, const std::string&, Problems&) {}
 
 void CheckShape(const SurfaceShape& shape, bool needed, const std::string& path, Problems& problems) {

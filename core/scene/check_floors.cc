@@ -7,7 +7,7 @@
 namespace fascicle::scene_checks {
 namespace {
 
-// How deep the body's rest shape, moved by its initial displacement, is in a floor [m]; negative above it.
+// Penetration depth of the body's rest shape, moved by its initial displacement, into a floor [m]; negative above it.
 double DepthOf(const Body& body, const Floor& floor) {
   const auto* tet = std::get_if<TetShape>(&body.shape);
   double deepest = -INFINITY;
@@ -19,7 +19,7 @@ double DepthOf(const Body& body, const Floor& floor) {
   return deepest;
 }
 
-// Bodies may lie on a floor: this part of their size is round-off.
+// Bodies may lie on a floor: a depth below this part of their size is round-off.
 double RoundOff(const Body& body) {
   double size = 0;
   for (const Vec3& x : body.nodes()) size = std::max(size, (x - body.nodes()[0]).norm());
@@ -42,7 +42,7 @@ void CheckFloors(const Scene& scene, Problems& problems) {
       char text[64];
       std::snprintf(text, sizeof(text), "%.3g m", depth);
       problems.Add(path, "the body `" + body.name + "` starts " + text + " inside of the floor",
-                   "move the floor, or turn its normal: it points to the side where bodies are");
+                   "move the floor, or reverse its normal, which must point towards the bodies");
     }
   }
 }

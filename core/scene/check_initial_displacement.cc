@@ -15,7 +15,8 @@ void CheckInitialDisplacement(const Scene& scene, Problems& problems) {
           path, std::to_string(u.size()) + " displacements for " + std::to_string(tet->mesh.nodes.size()) + " nodes");
     }
     const auto wrong = std::find_if(u.begin(), u.end(), [](const Vec3& x) { return !x.allFinite(); });
-    if (wrong != u.end()) problems.Add(path, "that of node " + std::to_string(wrong - u.begin()) + " is not finite");
+    if (wrong != u.end())
+      problems.Add(path, "the value of node " + std::to_string(wrong - u.begin()) + " is not finite");
   }
 }
 

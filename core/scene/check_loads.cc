@@ -14,7 +14,7 @@ void CheckLoad(const Body& body, const Load& load, const std::string& path, Prob
     problems.Add(JoinPath(path, "region"), "region `" + region.name + "` has no nodes");
   } else if (NeedsSurface(load) && region.triangles.empty() && region.quads.empty()) {
     problems.Add(JoinPath(path, "region"),
-                 "the load needs surface, but region `" + region.name + "` holds no whole face of the surface",
+                 "the load needs surface, but region `" + region.name + "` contains no complete face of the surface",
                  "choose a larger region, one by side or by tag, or a nodal_force");
   }
 }

@@ -27,7 +27,7 @@ void CheckOutput(const Scene& scene, Problems& problems) {
   if (!(output.frame_interval > 0)) {
     problems.Add("output.frame_interval", "the time between frames must be positive");
   } else if (scene.duration / output.frame_interval > kMaxFrames) {
-    problems.Add("output.frame_interval", "this gives more than 100,000 frames", "take a longer interval");
+    problems.Add("output.frame_interval", "this gives more than 100,000 frames", "use a longer interval");
   }
   const bool fibres = std::any_of(scene.bodies.begin(), scene.bodies.end(), HasFibres);
   for (std::size_t i = 0; i < output.fields.size(); ++i) {
@@ -39,7 +39,7 @@ void CheckOutput(const Scene& scene, Problems& problems) {
     const Probe& probe = output.probes[i];
     const std::string path = JoinPath("output", IndexPath("probes", i));
     if (!names.insert(probe.name).second) {
-      problems.Add(JoinPath(path, "name"), "another probe is called `" + probe.name + "` too");
+      problems.Add(JoinPath(path, "name"), "another probe is called `" + probe.name + "`");
     }
     if (probe.body < 0 || probe.body >= static_cast<std::int32_t>(scene.bodies.size())) {
       problems.Add(JoinPath(path, "body"), "there is no such body");

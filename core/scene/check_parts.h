@@ -9,7 +9,7 @@
 
 namespace fascicle::scene_checks {
 
-// Each element has a value of those that there are.
+// Checks that each element refers to an existing value.
 template <class Value>
 void CheckParts(const Parts<Value>& parts, std::size_t elements, const std::string& path, Problems& problems) {
   if (parts.of.empty()) return;
@@ -20,7 +20,7 @@ void CheckParts(const Parts<Value>& parts, std::size_t elements, const std::stri
     return part < 0 || static_cast<std::size_t>(part) > parts.more.size();
   });
   if (wrong != parts.of.end()) {
-    problems.Add(path, "element " + std::to_string(wrong - parts.of.begin()) + " asks for number " +
+    problems.Add(path, "element " + std::to_string(wrong - parts.of.begin()) + " refers to number " +
                            std::to_string(*wrong) + " of " + std::to_string(parts.more.size()));
   }
 }

@@ -16,7 +16,7 @@ void CheckScene(const Scene& scene, Problems& problems) {
   scene_checks::CheckVoxel(scene, problems);
   scene_checks::CheckEulerian(scene, problems);
   scene_checks::CheckOutput(scene, problems);
-  // Sums up loads over curves, so only where those are sound.
+  // Adds up loads over curves, so the curves must be valid.
   if (problems.empty()) scene_checks::CheckSupports(scene, problems);
 }
 

@@ -24,7 +24,7 @@ double VolumeOf(const VoxelShape& shape) {
 }
 double VolumeOf(const SurfaceShape& shape) { return EnclosedVolume(shape.mesh); }
 
-// Whether the scene asks for places where nothing moves.
+// Whether the scene asks for an equilibrium.
 bool IsStatic(const Scene& scene) {
   if (scene.method == Method::kVoxel) {
     return scene.voxel.stepping == VoxelStepping::kStatic || scene.voxel.start_loaded;
@@ -40,8 +40,8 @@ std::array<bool, 3> HeldAxes(const Body& body) {
   return held;
 }
 
-// Whether the loads on a body have a resultant along `axis` at some time, up to round-off. Between the points of their
-// curves the scales lie between those at the points, so the points are enough.
+// Whether the loads on a body have a resultant along `axis` at any time, up to round-off. Between the points of their
+// curves the scales lie between those at the points, so it is enough to check the points.
 bool Pushes(const Scene& scene, const Body& body, const std::vector<Vec3>& resultants, double mass, int axis) {
   std::vector<double> times = scene.gravity.scale.times;
   for (const Load& load : body.loads) times.insert(times.end(), load.scale.times.begin(), load.scale.times.end());
@@ -57,7 +57,7 @@ bool Pushes(const Scene& scene, const Body& body, const std::vector<Vec3>& resul
   });
 }
 
-// Whether some floor pushes along an axis: what falls on it comes to rest, or bounces.
+// Whether a floor acts along an axis: a body that falls on it comes to rest, or bounces.
 bool HasFloorAcross(const Scene& scene, int axis) {
   return std::any_of(scene.floors.begin(), scene.floors.end(),
                      [axis](const Floor& floor) { return std::abs(floor.normal[axis]) > 0.01; });
@@ -75,14 +75,14 @@ void CheckSupports(const Scene& scene, Problems& problems) {
     for (int axis = 0; axis < 3; ++axis) {
       if (!held[axis] && IsStatic(scene)) {
         problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
-                     std::string("nothing holds the body along ") + "xyz"[axis],
-                     "equilibrium needs a place to be: add a constraint, or use a stepping with inertia");
+                     std::string("no support holds the body along ") + "xyz"[axis],
+                     "the equilibrium is not unique: add a constraint, or use a stepping with inertia");
         continue;
       }
       if (held[axis] || HasFloorAcross(scene, axis) || !Pushes(scene, body, resultants, mass, axis)) continue;
       problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
-                   std::string("nothing holds the body against its loads along ") + "xyz"[axis],
-                   "it would fly away: add a constraint, or take out the load or gravity");
+                   std::string("no support balances the loads on the body along ") + "xyz"[axis],
+                   "it would accelerate indefinitely: add a constraint, or remove the load or gravity");
     }
   }
 }

@@ -7,8 +7,7 @@ void CheckTet(const Scene& scene, Problems& problems) {
   const TetMethod& method = scene.tet;
   if (method.precision == Precision::kSingle && method.stepping != Stepping::kExplicit &&
       method.stepping != Stepping::kMixed) {
-    problems.Add("tet.precision", "steps that are solved for need double precision",
-                 "leave it off, or take explicit or mixed stepping");
+    problems.Add("tet.precision", "implicit steps need double precision", "omit it, or use explicit or mixed stepping");
   }
 }
 

@@ -15,12 +15,12 @@ void CheckLaws(const Body& body, const std::string& path, Problems& problems) {
   std::vector<Material> laws = body.voxel().materials.more;
   laws.push_back(body.material);
   if (!std::all_of(laws.begin(), laws.end(), [](const Material& m) { return IsLinear(m) || IsCorotated(m); })) {
-    problems.Add(JoinPath(path, "material"), "voxels are linear elastic, but a material here is not",
+    problems.Add(JoinPath(path, "material"), "voxels must be linear elastic, but a material is not",
                  "linear_elastic for small deflections, corotated_linear for large rotations; other laws need the tet "
                  "method");
   } else if (std::any_of(laws.begin(), laws.end(), IsLinear) && std::any_of(laws.begin(), laws.end(), IsCorotated)) {
     problems.Add(JoinPath(path, "region_materials"), "mix linear_elastic and corotated_linear",
-                 "take one of them for the whole body");
+                 "use one of them for the whole body");
   }
 }
 
@@ -30,15 +30,15 @@ void CheckLeftOut(const Body& body, const std::string& path, Problems& problems)
   };
   if (!is_zero(body.activation)) {
     problems.Add(JoinPath(path, "activation"), "voxels don't contract",
-                 "put the muscle's force on a region as a load, or use the tet method");
+                 "apply the muscle's force as a load on a region, or use the tet method");
   }
   if (body.damping.stiffness_proportional != 0 || body.damping.viscosity != 0) {
-    problems.Add(JoinPath(path, "damping"), "the voxel method damps in proportion to mass only",
-                 "give mass_proportional alone");
+    problems.Add(JoinPath(path, "damping"), "the voxel method has mass-proportional damping only",
+                 "use mass_proportional only");
   }
 }
 
-// Whether every axis of the image is one of the world's, so that world components are grid components.
+// Whether every axis of the image is parallel to a world axis, so that world components are grid components.
 bool IsAlongAxes(const Mat3& direction) { return (direction.cwiseAbs().array() > 1 - 1e-9).count() == 3; }
 
 void CheckAxes(const Body& body, const std::string& path, Problems& problems) {
@@ -47,8 +47,8 @@ void CheckAxes(const Body& body, const std::string& path, Problems& problems) {
     const auto& axes = body.constraints[k].axes;
     if (axes[0] == axes[1] && axes[1] == axes[2]) continue;
     problems.Add(JoinPath(path, JoinPath(IndexPath("constraints", k), "axes")),
-                 "single axes can't be held where the image stands askew",
-                 "hold all three, or resample the image along x, y and z");
+                 "single axes can't be prescribed if the image is not aligned with the world axes",
+                 "prescribe all three, or resample the image along x, y and z");
   }
 }
 
@@ -64,18 +64,18 @@ void CheckVoxel(const Scene& scene, Problems& problems) {
     CheckAxes(scene.bodies[i], path, problems);
   }
   if (!scene.floors.empty()) {
-    problems.Add("floors", "voxels don't know floors", "leave them out, or use the tet method");
+    problems.Add("floors", "the voxel method does not support floors", "omit them, or use the tet method");
   }
   if (scene.voxel.stepping == VoxelStepping::kDynamic && scene.output.frame_interval > 0) {
     const double frames = scene.duration / scene.output.frame_interval;
     if (std::abs(frames - std::round(frames)) > 1e-9 * frames) {
       problems.Add("duration",
-                   "is no whole number of frame intervals, but the voxel method's steps are all equally long",
+                   "is not a multiple of the frame interval, but the voxel method's steps are all equally long",
                    "choose the duration as a multiple of output.frame_interval");
     }
   }
   if (scene.voxel.stepping == VoxelStepping::kStatic && scene.output.settle_speed) {
-    problems.Add("output.settle_speed", "static solutions have no speed", "leave it out, or step dynamically");
+    problems.Add("output.settle_speed", "static solutions have no speed", "omit it, or use dynamic stepping");
   }
 }
 

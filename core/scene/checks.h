@@ -3,40 +3,40 @@
 
 #include "core/scene/scene.h"
 
-// The checks that CheckScene runs, one to a file. Each adds what it finds to `problems` and leaves the rest alone.
+// The checks run by CheckScene, one per file. Each adds the problems of its subject.
 namespace fascicle::scene_checks {
 
-// At least one body; each of the method's shape and not empty, with a positive density and a name of its own.
+// At least one body; each has the shape of the method, not empty, a positive density and a unique name.
 void CheckBodies(const Scene& scene, Problems& problems);
-// Materials of the parts of a body: one for each element, of those that there are.
+// Materials of the parts of a body: every element has an existing one.
 void CheckMaterials(const Scene& scene, Problems& problems);
-// Activations within [0, 1]; those of the parts of a body as materials are; what reaches each tetrahedron.
+// Activations within [0, 1], of bodies and of their parts; activation scales.
 void CheckActivations(const Scene& scene, Problems& problems);
 // Initial displacements: one for each node, finite.
 void CheckInitialDisplacement(const Scene& scene, Problems& problems);
-// Fibre directions where a law needs them: one for each tetrahedron, finite and of unit length.
+// Fibre directions, if a law needs them: one for each tetrahedron, finite and of unit length.
 void CheckFibres(const Scene& scene, Problems& problems);
 // Every curve of the scene: as many values as times, times increasing, all finite.
 void CheckCurves(const Scene& scene, Problems& problems);
-// Constraints that name a region of the body and do not ask two things of one node.
+// Constraints refer to a region of the body and do not prescribe different motions of a node.
 void CheckConstraints(const Scene& scene, Problems& problems);
-// Loads on regions that exist, have nodes, and have surface where the load needs one.
+// Loads are on regions that exist, have nodes, and have surface faces if the load needs them.
 void CheckLoads(const Scene& scene, Problems& problems);
-// A load or gravity that nothing, not even a floor, holds against: the body would fly away.
+// Loads or gravity without a support, or a floor, that balances them: the body would accelerate indefinitely.
 void CheckSupports(const Scene& scene, Problems& problems);
-// Floors with a unit normal, that no body starts in.
+// Floors have a unit normal, and no body starts inside of one.
 void CheckFloors(const Scene& scene, Problems& problems);
-// Probes that follow a node that exists; the number of frames; duration.
+// Probes refer to existing nodes; number of frames; duration.
 void CheckOutput(const Scene& scene, Problems& problems);
 
-// What a method has no answer for; of scenes of other methods, what it alone knows. Their settings together.
-// tet: single precision in steps that are solved for.
+// The remaining checks report what a method does not support, and settings that only the method has.
+// tet: single precision requires explicit or mixed stepping.
 void CheckTet(const Scene& scene, Problems& problems);
-// voxel: other laws than its two, activation, floors, damping that is not proportional to mass, single axes held across
-// the axes of an image.
+// voxel: the two supported laws, activation, floors, damping, and single axes of supports on images that are not
+// aligned with the world.
 void CheckVoxel(const Scene& scene, Problems& problems);
-// eulerian: tags of supports, single axes, floors, damping that is not proportional to mass, laws that depend on speed;
-// numbers of plasticity and force fields, and force fields in scenes of other methods.
+// eulerian: regions by tag, single axes, floors, damping, laws that depend on the rate; plasticity and plane force
+// fields, also in scenes of other methods.
 void CheckEulerian(const Scene& scene, Problems& problems);
 
 }  // namespace fascicle::scene_checks

@@ -6,11 +6,11 @@
 namespace fascicle {
 namespace {
 
-// Where a value stands in the scene. Becomes text only for those that ask: there may be a million values.
+// The path of a value in the scene. It is made into text only on demand, since there may be a million values.
 struct Place {
   const Place* parent = nullptr;
   const char* name = "";
-  std::int64_t index = -1;  // in a list; negative: it is a member, called `name`
+  std::int64_t index = -1;  // in a list; negative: a member with this name
 
   std::string Path() const {
     const std::string of_parent = parent == nullptr ? "" : parent->Path();
@@ -49,7 +49,7 @@ class CurveVisitor {
     TakeList(list, place);
   }
 
-  // Anything else has no curves.
+  // Other types contain no curves.
   template <class Value>
   void Take(const Value&, const Place&) const {}
 

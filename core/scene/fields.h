@@ -9,12 +9,12 @@
 
 namespace fascicle {
 
-// The members of the scene's structs, listed once: what is done to every field of a scene (fingerprint.h, curves.h)
-// goes through VisitFields and needs no list of its own.
+// The members of the scene's structs, listed once. Operations on every field of a scene (fingerprint.h, curves.h) use
+// VisitFields instead of lists of their own.
 
-// The names of the members of `Struct` in their order, as scene.proto calls them; "" where its messages have no such
-// level. Each struct of a scene has its names right behind it. A struct with more or fewer members than names does not
-// compile where it is visited.
+// The names of the members of `Struct` in their order, as in scene.proto; "" where its messages do not have this level.
+// Each struct of a scene is followed by its names. Visiting a struct whose numbers of members and names differ does not
+// compile.
 template <class Struct>
 inline constexpr std::array<const char*, 0> kFieldNames = {};
 
@@ -26,7 +26,7 @@ constexpr std::array<const char*, sizeof...(Names)> FieldNames(Names... names) {
 template <class Struct>
 concept HasFields = !kFieldNames<std::remove_const_t<Struct>>.empty();
 
-// Numbers, and matrices and arrays of numbers: values without members, stored without gaps.
+// Numbers, and matrices and arrays of numbers: stored without gaps and without members of their own.
 template <class Value>
 inline constexpr bool kIsFlat = std::is_arithmetic_v<Value> || std::is_enum_v<Value>;
 template <class Scalar, int kRows, int kColumns>

@@ -9,9 +9,9 @@
 
 namespace fascicle {
 
-// What steps a scene. The settings of the other methods are not looked at.
+// The method that steps a scene. Settings of the other methods are ignored.
 enum class Method { kTet, kVoxel, kEulerian };
-// As in scene.proto.
+// The names in scene.proto.
 inline constexpr std::array<const char*, 3> kMethodNames = {"tet", "voxel", "eulerian"};
 
 enum class Stepping { kExplicit, kMixed, kBackwardEuler, kNewmark, kBdf2, kQuasiStatic };
@@ -19,12 +19,12 @@ enum class Stepping { kExplicit, kMixed, kBackwardEuler, kNewmark, kBdf2, kQuasi
 // Polynomial order of the displacement in an element: 4 or 10 nodes.
 enum class ElementOrder { kLinear, kQuadratic };
 
-// Where the volume energy of nearly incompressible laws acts: on averages around nodes, or in each element by itself,
-// which locks.
+// Where the volume energy of nearly incompressible laws acts: on nodal averages, or in each element separately, which
+// locks.
 enum class VolumeForm { kNodal, kElement };
 enum class Precision { kDouble, kSingle };
 
-// How the linear systems of Newton's method are solved; automatic: iteratively where they are large.
+// Solver for the linear systems of Newton's method; automatic: iterative for large systems.
 enum class LinearSolver { kAutomatic, kDirect, kIterative };
 
 struct TetMethod {
@@ -34,8 +34,8 @@ struct TetMethod {
   Precision precision = Precision::kDouble;
   std::optional<double> time_step;  // [s]; automatic when absent
   LinearSolver linear_solver = LinearSolver::kAutomatic;
-  double newton_tolerance = 1e-8;  // relative force at which the iterations of implicit steps end
-  double safety = 0.9;             // part of the stable step that is taken
+  double newton_tolerance = 1e-8;  // relative force at which Newton iterations end
+  double safety = 0.9;             // fraction of the stable step
   double solver_tolerance = 1e-8;  // relative residual of the linear solves of damping
 };
 template <>
@@ -47,29 +47,29 @@ enum class VoxelStepping { kStatic, kDynamic };
 
 struct VoxelMethod {
   VoxelStepping stepping = VoxelStepping::kStatic;
-  bool mean_dilatation = false;     // the volume strain of a brick as its mean, which does not lock
+  bool mean_dilatation = false;     // whether the dilatation of a brick is averaged, which prevents locking
   std::optional<double> time_step;  // [s]; the frame interval when absent
   double tolerance = 1e-8;          // relative residual at which solutions end
-  bool start_loaded = false;        // in equilibrium with what acts at time 0
+  bool start_loaded = false;        // whether to start in equilibrium with the loads at time 0
 };
 template <>
 inline constexpr auto kFieldNames<VoxelMethod> = FieldNames("stepping", "dilatation", "time_step", "tolerance",
                                                             "start_loaded");
 
 enum class VolumeTreatment {
-  kNone,            // the law's own resistance alone
-  kDivergenceFree,  // div v = 0, which drifts
-  kPreserved,       // div v = (1 - J)/(dt J), which does not [Fan 2013, 3.2]
+  kNone,            // only the law's own bulk modulus
+  kDivergenceFree,  // div v = 0, with drift
+  kPreserved,       // div v = (1 - J)/(dt J), without drift [Fan 2013, 3.3]
 };
 
 struct EulerianMethod {
   double cell_size = 0;        // [m]
-  double margin = 0.5;         // of a body's largest extent
-  std::optional<Bounds> room;  // that bodies move in, in place of the margin [m]
+  double margin = 0.5;         // relative to the body's largest extent
+  std::optional<Bounds> room;  // extent of the grid, in place of the margin [m]
   VolumeTreatment volume = VolumeTreatment::kPreserved;
   double stabilization = 0.05;
   bool implicit_elasticity = false;
-  std::optional<double> time_step;  // the longest [s]
+  std::optional<double> time_step;  // upper bound [s]
   bool maccormack = false;
 };
 template <>

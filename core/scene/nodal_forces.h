@@ -12,29 +12,29 @@
 
 namespace fascicle {
 
-// What a load acts on, whatever the elements.
+// The region on which a load acts, for any element type.
 struct LoadedRegion {
-  // A face of the rest surface, and the nodes that what acts on it goes to in equal parts: consistent with the shape
-  // functions of linear triangles and bilinear quads, whose corners these are, and of quadratic triangles, where they
-  // are the middles of the edges.
+  // A face of the rest surface, and the nodes that share a force on it in equal parts. This is consistent with the
+  // shape functions of linear triangles and bilinear quads, whose nodes are the corners, and of quadratic triangles,
+  // whose nodes are the mid-edge nodes.
   struct Face {
-    Vec3 area = Vec3::Zero();  // its outward normal, as long as it is large [m^2]
-    int count = 0;             // of nodes
+    Vec3 area = Vec3::Zero();  // outward normal times area [m^2]
+    int count = 0;             // number of nodes
     std::array<std::int32_t, 4> nodes = {};
   };
   std::vector<std::int32_t> nodes;
   std::vector<Face> faces;
 };
 
-// A region of a mesh with corner nodes alone.
+// A region of a mesh that has corner nodes only.
 //   X  rest positions of the mesh's nodes [m]
 LoadedRegion LoadedRegionOf(const Region& region, const std::vector<Vec3>& X);
 
-// Whether a load of this kind acts on faces, and the region must have some.
+// Whether this load acts on faces, so that the region must have some.
 bool NeedsSurface(const Load& load);
 
-// The force of a load on each node at scale 1 [N]; ordered, so that sums do not depend on where things lie in memory.
-// To add a kind of load: a message in scene.proto, a struct in acting.h, its translation and its two functions in
+// The force of a load on each node at scale 1 [N]; ordered by node, so that sums are reproducible.
+// To add a kind of load: a message in scene.proto, a struct in acting.h, its translation, and its two functions in
 // nodal_forces.cc.
 std::map<std::int32_t, Vec3> NodalForcesOf(const Load& load, const LoadedRegion& region);
 

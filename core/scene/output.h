@@ -11,7 +11,7 @@
 
 namespace fascicle {
 
-// A node whose displacement is a series.
+// A node whose displacement is written as a series.
 struct Probe {
   std::string name;
   std::int32_t body = 0;
@@ -20,7 +20,7 @@ struct Probe {
 template <>
 inline constexpr auto kFieldNames<Probe> = FieldNames("name", "body", "point");
 
-// What is kept of a run.
+// What is stored of a run.
 struct Output {
   double frame_interval = 0;  // [s]
   std::vector<OutputField> fields;

@@ -106,10 +106,10 @@ void CheckOutputField(OutputField field, std::span<const OutputField> before, Me
   if (std::find(before.begin(), before.end(), field) != before.end()) {
     problems.Add(path, "is listed twice", "list each field once");
   } else if (const auto m = static_cast<std::size_t>(method); !info.methods.at(m)) {
-    problems.Add(path, std::string("the ") + kMethodNames.at(m) + " method has no " + info.name,
-                 "leave the field out, or use another method");
+    problems.Add(path, std::string("the ") + kMethodNames.at(m) + " method does not provide " + info.name,
+                 "omit the field, or use another method");
   } else if (info.needs_fibres && !fibres) {
-    problems.Add(path, "no body has fibres", "give a body `fibres`, or leave the field out");
+    problems.Add(path, "no body has fibres", "give a body `fibres`, or omit the field");
   }
 }
 

@@ -14,8 +14,8 @@
 
 namespace fascicle {
 
-// The fields that frames may hold, as scene.proto's Field. To add one: a value there and here, a row of the table in
-// output_fields.cc, and what it is at a point in PutField.
+// The fields that frames may contain, as scene.proto's Field. To add one: a value there and here, a row of the table in
+// output_fields.cc, and its formula in PutField.
 enum class OutputField {
   kVelocity,
   kCauchyStress,
@@ -29,23 +29,23 @@ enum class OutputField {
 // Where the values of a field are.
 enum class FieldLocation { kNode, kTetrahedron, kBrick };
 
-// What a field is computed from, at each point.
+// The input from which a field is computed at each point.
 enum class FieldSource {
   kMotion,       // of nodes: MaterialPoint::v; its values are at nodes
   kDeformation,  // F, J and a0
-  kStress        // sigma; means over cells are of the tensor
+  kStress        // sigma; averages over cells are taken of the tensor
 };
 
-// All that is to be known of a field.
+// Properties of a field.
 struct OutputFieldInfo {
   OutputField field;
   const char* name;  // as in scene.proto
   const char* unit;
   std::size_t components;
   FieldSource from;
-  std::array<bool, 3> methods = {true, true, true};  // those that can give it: tet, voxel, eulerian
+  std::array<bool, 3> methods = {true, true, true};  // those that provide it: tet, voxel, eulerian
   bool needs_fibres = false;
-  bool is_direction = false;  // of unit length, or zero where there is none
+  bool is_direction = false;  // of unit length, or zero if there is no direction
 };
 
 constexpr std::size_t kMostComponents = 6;
@@ -53,30 +53,30 @@ constexpr std::size_t kMostComponents = 6;
 // The table, in the order of OutputField.
 std::span<const OutputFieldInfo> OutputFields();
 const OutputFieldInfo& InfoOf(OutputField field);
-// nullptr when there is no such field.
+// Null if there is no such field.
 const OutputFieldInfo* FindOutputField(std::string_view name);
 
-// The state of a body at a point. Only what the field is computed from has to be set.
+// The state of a body at a point. Only the inputs of the field must be set.
 struct MaterialPoint {
   Vec3 v = Vec3::Zero();      // [m/s]
   Mat3 F = Mat3::Identity();  // deformation gradient [1]
   double J = 1;               // det F [1]
-  Vec3 a0 = Vec3::Zero();     // rest direction of the fibre; zero: there is none
+  Vec3 a0 = Vec3::Zero();     // rest direction of the fibre; zero: none
   Mat3 sigma = Mat3::Zero();  // Cauchy stress [Pa]
 };
 
-// The field at a point: InfoOf(field).components values. A direction is not of unit length yet, so that means of it can
-// be taken: F a0.
+// The field at a point: InfoOf(field).components values. Directions are not normalized yet (F a0), so that they can be
+// averaged.
 void PutField(OutputField field, const MaterialPoint& at, double* values);
 
-// Makes what PutField, or a mean of it, gives for a direction of unit length; leaves zero.
+// Normalizes directions from PutField or their averages; zero stays zero.
 void NormalizeDirections(std::span<double> values);
 
-// Where a field's values are in the frames of a method, and how many places there are in a body of that shape.
+// Where a method's frames have the values of a field, and their number for a body of that shape.
 FieldLocation LocationOf(const OutputFieldInfo& info, Method method);
 std::size_t PlacesOf(const OutputFieldInfo& info, const Shape& shape);
 
-// Adds a problem, at `path`, where a field is among those listed before it, or a scene can't give it.
+// Adds a problem at `path` if the field is already in `before`, or the scene cannot provide it.
 //   fibres  whether any body has fibres
 void CheckOutputField(OutputField field, std::span<const OutputField> before, Method method, bool fibres,
                       const std::string& path, Problems& problems);

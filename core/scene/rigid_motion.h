@@ -13,13 +13,13 @@ struct RigidMotion {
   Vec3 angular_velocity = Vec3::Zero();  // [rad/s]
   Vec3 point = Vec3::Zero();             // [m]
   Vec3 translation = Vec3::Zero();       // [m]
-  Vec3 velocity = Vec3::Zero();          // of the translation [m/s]
+  Vec3 velocity = Vec3::Zero();          // rate of the translation [m/s]
 
   Vec3 PositionOf(const Vec3& X) const { return rotation * (X - point) + point + translation; }
   Vec3 VelocityOf(const Vec3& X) const { return angular_velocity.cross(rotation * (X - point)) + velocity; }
 };
 
-// Motion of one constraint at a time.
+// Motion of a constraint at a time.
 RigidMotion MotionAt(const Motion& motion, double time);
 
 }  // namespace fascicle

@@ -13,8 +13,9 @@
 
 namespace fascicle {
 
-// What is simulated, in SI and with everything resolved: the messages of scene.proto one for one, see there for the
-// meaning. Built by the server's translation or by hand, then checked by CheckScene and never changed.
+// The definition of a simulation, in SI units with all references resolved. Its structs correspond to the messages of
+// scene.proto, which explains their fields. Built by the server's translation or by hand, checked by CheckScene, then
+// constant.
 struct Scene {
   std::string name;
   std::vector<Body> bodies;  // all of the method's shape
@@ -24,7 +25,7 @@ struct Scene {
   TetMethod tet;
   VoxelMethod voxel;
   EulerianMethod eulerian;
-  std::vector<Squeeze> squeezes;  // of the eulerian method
+  std::vector<Squeeze> squeezes;  // plane force fields, for the eulerian method
   double duration = 0;            // [s]
   Output output;
 };
@@ -32,10 +33,10 @@ template <>
 inline constexpr auto kFieldNames<Scene> = FieldNames("name", "bodies", "gravity", "floors", "", "tet", "voxel",
                                                       "eulerian", "squeezes", "duration", "output");
 
-// Checks what concerns more than one field: constraints that contradict each other in a node, loads on regions without
-// surface, fibres missing for a law that needs them, activation outside [0, 1], bodies without mass, bodies that start
-// in a floor, frame counts, a whole body free to fly away under load (not a problem when gravity or loads are absent).
-// One check per file in this room.
+// Checks relations between fields: contradictory constraints at a node, loads on regions without surface, missing
+// fibres, activation outside [0, 1], bodies without mass, bodies that start inside of a floor, number of frames, and
+// bodies that loads would accelerate indefinitely (without loads and gravity, free bodies are allowed). Each file of
+// this room has one check.
 void CheckScene(const Scene& scene, Problems& problems);
 
 }  // namespace fascicle

@@ -16,8 +16,8 @@
 
 namespace fascicle {
 
-// The shape of a body at rest, and what is given part by part of it. Each method has a shape of its own. All have a
-// `mesh`, whose nodes are those that frames show, regions select and probes follow [m].
+// The shape of a body at rest, and data of its parts. Each method has its own type of shape. All have a `mesh` [m];
+// frames, regions and probes refer to its nodes.
 
 template <>
 inline constexpr auto kFieldNames<CurvedEdge> = FieldNames("ends", "middle");
@@ -32,29 +32,29 @@ inline constexpr auto kFieldNames<BrickMesh> = FieldNames("grid", "nodes", "bric
 template <>
 inline constexpr auto kFieldNames<TriangleMesh> = FieldNames("nodes", "triangles");
 
-// Values beside the one of the whole body, and which one each element has.
+// Values besides that of the whole body, and the value of each element.
 template <class Value>
 struct Parts {
   std::vector<Value> more;
-  std::vector<std::int32_t> of;  // 0: that of the body, k: more[k - 1]; empty: all have that of the body
+  std::vector<std::int32_t> of;  // 0: the body's value, k: more[k - 1]; empty: all have the body's value
 };
 template <class Value>
 inline constexpr auto kFieldNames<Parts<Value>> = FieldNames("", "of");
 
-// Tetrahedra, of the tet method.
+// Tetrahedra, for the tet method.
 struct TetShape {
   TetMesh mesh;
   FibreField fibres;  // one for each tetrahedron, or none
   Parts<Material> materials;
   Parts<Curve> activations;
-  std::vector<double> activation_scale;    // part of the activation that reaches each tetrahedron [0, 1]; empty: all
+  std::vector<double> activation_scale;    // fraction of the activation that reaches each tetrahedron [0, 1]; empty: 1
   std::vector<Vec3> initial_displacement;  // of each node at time 0 [m], may tangle the mesh; empty: none
 };
 template <>
 inline constexpr auto kFieldNames<TetShape> = FieldNames("mesh", "fibres", "region_materials", "region_activations",
                                                          "activation_scale", "initial_displacement");
 
-// Bricks, the solid voxels of a grid, of the voxel method.
+// Bricks, the solid voxels of a grid, for the voxel method.
 struct VoxelShape {
   BrickMesh mesh;
   Parts<Material> materials;
@@ -62,7 +62,7 @@ struct VoxelShape {
 template <>
 inline constexpr auto kFieldNames<VoxelShape> = FieldNames("mesh", "region_materials");
 
-// Plastic flow at constant volume [Fan 2013, 3.5; Bargteil et al. 2007].
+// Isochoric plastic flow [Fan 2013, 3.5; Bargteil et al. 2007].
 struct Plasticity {
   double yield_stress = 0;     // von Mises Cauchy stress above which the body flows [Pa]
   double relaxation_time = 0;  // time constant of the decay of the stress above it [s]; 0: at once
@@ -70,10 +70,10 @@ struct Plasticity {
 template <>
 inline constexpr auto kFieldNames<Plasticity> = FieldNames("yield_stress", "relaxation_time");
 
-// A closed surface, of the eulerian method.
+// A closed surface, for the eulerian method.
 struct SurfaceShape {
   TriangleMesh mesh;
-  TetMesh filling;    // the tetrahedra whose boundary the surface is, which carry the fibres [m]; may be empty
+  TetMesh filling;    // tetrahedra inside of the surface, which carry the fibres [m]; may be empty
   FibreField fibres;  // one for each tetrahedron of the filling, or one for a body without filling, or none
   std::optional<Plasticity> plasticity;
 };

@@ -22,7 +22,7 @@ Curve TranslateExcitation(const v1::Excitation& excitation, double duration, con
     own.Add(JoinPath(path, "curve"), "is missing", kCurveHint);
   }
   problems.Append("", own);
-  // Durations out of range are reported with the rules.
+  // Durations out of range are reported by the rules.
   if (!own.empty() || !ObeysRules(excitation) || !(duration > 0 && duration <= 1000)) return Curve::Constant(0);
   const ActivationDynamics dynamics = {excitation.activation_time(), excitation.deactivation_time(),
                                        excitation.initial_activation()};
@@ -43,7 +43,8 @@ Curve TranslateActivation(const BodySource& source, Problems& problems) {
   if (!wire.has_excitation()) return activation;
   const std::string path = JoinPath(source.path, "excitation");
   if (wire.has_activation()) {
-    problems.Add(path, "is given beside an activation", "the activation follows from the excitation: give one of them");
+    problems.Add(path, "is given beside an activation",
+                 "the activation follows from the excitation: give only one of them");
   }
   return TranslateExcitation(wire.excitation(), source.duration, path, problems);
 }

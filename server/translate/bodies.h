@@ -7,13 +7,13 @@
 
 namespace fascicle::server {
 
-// A body, and whether what ties its parts together (mesh, regions, supports, loads) is there for CheckScene to look at.
+// A body, and whether it is complete enough (mesh, regions, supports, loads) for CheckScene.
 struct TranslatedBody {
   Body body;
   bool complete = false;
 };
 
-// A body with the shape that the method asks for.
+// A body with the shape of the method.
 TranslatedBody TranslateBody(const BodySource& source, Method method, Problems& problems);
 
 }  // namespace fascicle::server

@@ -12,17 +12,17 @@
 
 namespace fascicle::server {
 
-// A body as it stands in a scene message, and what it takes to translate it.
+// A body's message, and everything needed to translate it.
 struct BodySource {
   const v1::Body& wire;  // defaults filled in
   std::string path;      // `bodies[0]`
   double duration;       // of the scene [s]
   const AssetReader& assets;
-  std::int64_t& budget;  // elements that are left for the body; reduced by those it has
+  std::int64_t& budget;  // elements left for the body; reduced by its number of elements
   Profile* profile;      // may be nullptr
 };
 
-// Adds a problem for each of the named fields of the body that is given: its shape has no use for them.
+// Adds a problem for each of the named fields that the body has, because its shape does not support them.
 void RefuseFields(const BodySource& source, std::initializer_list<const char*> fields, const std::string& message,
                   const std::string& hint, Problems& problems);
 

@@ -17,9 +17,9 @@
 namespace fascicle::server {
 namespace {
 
-// The factors of the fit's matrix fill up: time grows with the third power, to some seconds.
+// The fit's matrix fills in: time grows with the third power of the size, up to some seconds.
 constexpr std::int64_t kMostControls = 4000;
-// More would be taken from jobs that run.
+// More threads would slow down running jobs.
 constexpr unsigned kMostThreads = 4;
 
 std::optional<BsplineSolid> ReadSolid(const v1::FileRef& file, double unit, const std::string& path,
@@ -35,7 +35,7 @@ std::optional<BsplineSolid> ReadSolid(const v1::FileRef& file, double unit, cons
   return BsplineSolid(solid->bases(), std::move(controls));
 }
 
-// Degrees and numbers of control points that belong together; rules have been checked.
+// Checks that degrees match numbers of control points; the rules have been checked before.
 void CheckSizes(const v1::FittedSolid& fitted, const std::string& path, Problems& problems) {
   std::int64_t controls = 1;
   for (int d = 0; d < 3; ++d) {
@@ -46,7 +46,7 @@ void CheckSizes(const v1::FittedSolid& fitted, const std::string& path, Problems
   }
   if (controls > kMostControls) {
     problems.Add(JoinPath(path, "controls"), std::to_string(controls) + " control points are too many",
-                 "at most " + std::to_string(kMostControls) + "; 5 5 16 will do for most muscles");
+                 "at most " + std::to_string(kMostControls) + "; 5 5 16 is enough for most muscles");
   }
 }
 
@@ -75,11 +75,11 @@ void AddNotes(const BsplineFibreField& field, const std::string& path, std::vect
     char farthest[32];
     std::snprintf(farthest, sizeof(farthest), "%.2g mm", 1e3 * field.farthest);
     notes.push_back(path + ": " + std::to_string(field.outside) + of + "have their centroid outside of the solid, by " +
-                    farthest + " at most; they have the fibre of its nearest point");
+                    farthest + " at most; they have the fibre of the nearest point");
   }
   if (field.folded > 0) {
     notes.push_back(path + ": at the centroids of " + std::to_string(field.folded) + of +
-                    "the solid is turned inside out, and its fibres cross");
+                    "the solid is inverted, and its fibres cross");
   }
 }
 

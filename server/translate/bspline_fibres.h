@@ -13,9 +13,8 @@
 
 namespace fascicle::server {
 
-// Fibres along a B-spline solid from a file, in the body's `unit`, or fitted to the mesh. `mesh` may be nullptr: then
-// only what does not depend on it is checked. Empty where something is wrong. `notes` tells where the solid misses the
-// mesh.
+// Fibres along a B-spline solid from a file, in the body's `unit`, or fitted to the mesh. If `mesh` is null, checks
+// only what does not depend on it. Empty if something is wrong. Adds notes where the solid does not contain the mesh.
 FibreField TranslateBsplineFibres(const v1::BsplineFibres& bspline, v1::LengthUnit unit, const std::string& path,
                                   const TranslatedTetrahedra* mesh, const NamedRegions& regions,
                                   const AssetReader& assets, std::vector<std::string>& notes, Problems& problems);

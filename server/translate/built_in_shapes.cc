@@ -28,7 +28,7 @@ std::int64_t CheckTorus(const v1::TorusShape& shape, const std::string& path, Pr
   if (shape.minor_radius() >= shape.major_radius()) {
     problems.Add(JoinPath(path, "minor_radius"),
                  "is " + Text(shape.minor_radius()) + ", not less than the major radius " + Text(shape.major_radius()),
-                 "the tube would meet itself");
+                 "the tube would intersect itself");
   }
   return Tetrahedra(shape.divisions_across(), shape.divisions_across(), shape.divisions_around());
 }

@@ -13,14 +13,14 @@ namespace fascicle::server {
 
 struct ShapeSize {
   std::string path;             // of the shape
-  std::int64_t tetrahedra = 0;  // that MakeShape would make
+  std::int64_t tetrahedra = 0;  // number of tetrahedra that MakeShape would make
 };
 
-// Checks the parameters of a built-in shape (defaults filled in) against each other, without building it. Nothing when
-// it can't be built or none is given.
+// Checks the parameters of a built-in shape (defaults filled in) against each other, without building it. Nothing if it
+// can't be built or if there is none.
 std::optional<ShapeSize> CheckShape(const v1::Mesh& mesh, const std::string& path, Problems& problems);
 
-// Builds a shape that CheckShape accepted; `metres` in its length unit.
+// Builds a shape that CheckShape has accepted; `metres` is its length unit.
 TetMesh MakeShape(const v1::Mesh& mesh, double metres);
 
 }  // namespace fascicle::server

@@ -7,7 +7,7 @@ namespace {
 
 const char kAxes[] = "x, y or z";
 
-// 0, 1, 2; nothing, with a problem, for AXIS_UNSPECIFIED. Unknown numbers are reported with the rules.
+// 0, 1, 2; nothing, with a problem, for AXIS_UNSPECIFIED. Unknown numbers are reported by the rules.
 std::optional<std::size_t> AxisIndex(v1::Axis axis, const std::string& path, Problems& problems) {
   if (axis >= v1::AXIS_X && axis <= v1::AXIS_Z) return static_cast<std::size_t>(axis - v1::AXIS_X);
   if (axis == v1::AXIS_UNSPECIFIED) problems.Add(path, "is missing", kAxes);
@@ -45,8 +45,8 @@ void TranslateTranslation(const v1::Motion& motion, const std::array<bool, 3>& a
     if (result.translation[*axis]) {
       problems.Add(JoinPath(entry, "axis"), AxisName(*axis) + " has a curve already", "one curve for each axis");
     } else if (!axes[*axis]) {
-      problems.Add(JoinPath(entry, "axis"), AxisName(*axis) + " is moved but not constrained",
-                   "add it to the constraint's axes, or leave the axes out to constrain all three");
+      problems.Add(JoinPath(entry, "axis"), AxisName(*axis) + " has a motion but is not constrained",
+                   "add it to the constraint's axes, or omit the axes to constrain all three");
     }
     result.translation[*axis] = std::move(curve);
   }

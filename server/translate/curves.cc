@@ -8,7 +8,7 @@ namespace fascicle::server {
 namespace {
 
 constexpr int kMaxPoints = 10'000;
-constexpr int kMaxReported = 5;  // wrong values of one curve
+constexpr int kMaxReported = 5;  // reported values of one curve
 
 void CheckTimes(const v1::Curve& curve, const std::string& path, Problems& problems) {
   if (curve.times_size() > kMaxPoints) {
@@ -18,7 +18,7 @@ void CheckTimes(const v1::Curve& curve, const std::string& path, Problems& probl
     if (!(curve.times(i) <= curve.times(i - 1))) continue;
     problems.Add(JoinPath(path, IndexPath("times", static_cast<std::size_t>(i))),
                  "is " + Text(curve.times(i)) + " s after " + Text(curve.times(i - 1)) + " s",
-                 "times must increase strictly; for a jump, put two points close to each other");
+                 "times must increase strictly; for a jump, use two close points");
     return;
   }
 }
@@ -33,7 +33,7 @@ void CheckValues(const v1::Curve& curve, const CurveUse& use, const std::string&
   int wrong = 0;
   for (int i = 0; i < curve.values_size(); ++i) {
     const double value = curve.values(i);
-    // What is not finite is reported with the rules.
+    // Values that are not finite are reported by the rules.
     if (!std::isfinite(value) || (value >= use.min && value <= use.max)) continue;
     if (++wrong > kMaxReported) return;
     problems.Add(JoinPath(path, IndexPath("values", static_cast<std::size_t>(i))),

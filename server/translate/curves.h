@@ -9,11 +9,11 @@
 
 namespace fascicle::server {
 
-// What a curve's values mean where it is used: scene.proto says it there, for the rule lines can't.
+// Meaning and range of a curve's values, which scene.proto gives at each use, because rule lines cannot.
 struct CurveUse {
   const char* unit;
   double min, max;  // inclusive
-  double neutral;   // the value of the constant curve that stands for a wrong one in later checks
+  double neutral;   // constant value that replaces an invalid curve in later checks
 };
 inline constexpr CurveUse kActivationCurve = {"1", 0, 1, 0};
 inline constexpr CurveUse kFactorCurve = {"1", -1000, 1000, 1};
@@ -21,7 +21,8 @@ inline constexpr CurveUse kTranslationCurve = {"m", -10, 10, 0};
 inline constexpr CurveUse kJointAngleCurve = {"rad", 0, 3.14159, 0};
 inline constexpr CurveUse kAngleCurve = {"rad", -1000, 1000, 0};
 
-// Problems: more than 10,000 points, as many values as times, times that don't increase, values out of range.
+// Problems: more than 10,000 points, different numbers of values and times, times that don't increase, values out of
+// range.
 Curve TranslateCurve(const v1::Curve& curve, const CurveUse& use, const std::string& path, Problems& problems);
 
 }  // namespace fascicle::server

@@ -8,7 +8,7 @@
 namespace fascicle::server {
 namespace {
 
-// The wire is little-endian and packed; so is memory, and encoding is copying.
+// The wire format is little-endian and packed, like memory, so encoding is copying.
 static_assert(std::endian::native == std::endian::little);
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Tetrahedron) == 4 * sizeof(std::uint32_t) &&
               sizeof(Brick) == 8 * sizeof(std::uint32_t) && sizeof(Triangle) == 3 * sizeof(std::uint32_t) &&
@@ -40,7 +40,7 @@ void EncodeShape(const TetShape& shape, v1::BodyGeometry& geometry) {
 
 void EncodeShape(const VoxelShape& shape, v1::BodyGeometry& geometry) { geometry.set_bricks(Bytes(shape.mesh.bricks)); }
 
-// The filling and its fibres are no more than how a surface came about.
+// The filling of a surface and its fibres are not encoded.
 void EncodeShape(const SurfaceShape& shape, v1::BodyGeometry& geometry) {
   geometry.set_triangles(Bytes(shape.mesh.triangles));
 }

@@ -10,13 +10,13 @@ namespace {
 
 using Stages = google::protobuf::RepeatedPtrField<v1::Profile::Stage>;
 
-// The stage of that name, or else a new one, behind the stage that it is part of and all of that one's parts.
+// The stage with this name, or a new one inserted after its parent and all of the parent's descendants.
 v1::Profile::Stage& FindOrInsert(const std::string& name, bool concurrent, Stages& stages) {
   const auto same = [&](const v1::Profile::Stage& stage) {
     return stage.name() == name && stage.concurrent() == concurrent;
   };
   if (const auto found = std::find_if(stages.begin(), stages.end(), same); found != stages.end()) return *found;
-  const std::string whole = name.substr(0, name.rfind('/') + 1);  // of what it is part of, with the slash; may be empty
+  const std::string whole = name.substr(0, name.rfind('/') + 1);  // name of the parent, with the slash; may be empty
   const auto part = [&](const v1::Profile::Stage& stage) {
     return stage.concurrent() == concurrent && (stage.name() + "/").starts_with(whole);
   };

@@ -11,13 +11,13 @@
 
 namespace fascicle::server {
 
-// The nodes that fibres run between.
+// The nodes at both ends of the fibres.
 struct FibreEnds {
   std::span<const std::int32_t> origin, insertion;
 };
 
-// The two regions that `wire` (HarmonicFibres or FittedSolid at `path`) names; nothing where one is unknown or empty,
-// or where both are the same. The ends point into `regions`.
+// The two regions given by `wire` (HarmonicFibres or FittedSolid at `path`); nothing if one is unknown or empty, or if
+// both are the same. The ends refer to `regions`.
 template <class Wire>
 std::optional<FibreEnds> FindFibreEnds(const Wire& wire, const std::string& path, const NamedRegions& regions,
                                        Problems& problems) {

@@ -15,7 +15,7 @@ namespace {
 FibreField TranslateHarmonic(const v1::HarmonicFibres& harmonic, const std::string& path,
                              const TranslatedTetrahedra* mesh, const NamedRegions& regions, Problems& problems) {
   const auto ends = FindFibreEnds(harmonic, path, regions, problems);
-  // Broken meshes have been reported.
+  // Invalid meshes have been reported.
   if (!ends || mesh == nullptr || !mesh->sound) return {};
   Problems own;
   FibreField fibres = HarmonicFibres(mesh->mesh, ends->origin, ends->insertion, own);
@@ -49,7 +49,7 @@ FibreField TranslateField(const BodySource& source, const std::string& path, con
   return own.empty() ? field : FibreField();
 }
 
-// A law of the body, or of a part of it, that needs fibres; nullptr when none does.
+// A law of the body, or of a part of it, that needs fibres; null if none does.
 const LawInfo* LawWithFibres(const v1::Body& body) {
   const LawInfo* law = LawOf(body.material());
   if (law != nullptr && law->needs_fibres) return law;

@@ -12,12 +12,12 @@
 
 namespace fascicle::server {
 
-// The fibres of tetrahedra; empty when the body has none. `mesh` may be nullptr: then only what does not depend on it
-// is checked. Where something is wrong a constant field stands in for later checks. Adds to `notes` what is noteworthy.
+// The fibres of tetrahedra; empty if the body has none. If `mesh` is null, checks only what does not depend on it. A
+// constant field replaces invalid fibres in later checks. Adds remarks to `notes`.
 FibreField TranslateFibres(const BodySource& source, const TranslatedTetrahedra* mesh, const NamedRegions& regions,
                            std::vector<std::string>& notes, Problems& problems);
 
-// Adds a problem where a law of the body needs fibres and none are given.
+// Adds a problem if a law of the body needs fibres and none are given.
 void CheckFibresAreGiven(const BodySource& source, Problems& problems);
 
 }  // namespace fascicle::server

@@ -21,7 +21,7 @@ std::string DigestOfAsset(const std::string& asset) {
 std::optional<std::string> ReadFile(const v1::FileRef& file, const std::string& path, const AssetReader& assets,
                                     Problems& problems) {
   if (file.path().empty()) {
-    problems.Add(JoinPath(path, "path"), "is missing", "the file's name tells its format");
+    problems.Add(JoinPath(path, "path"), "is missing", "the file's extension gives its format");
   }
   if (file.asset().empty()) {
     problems.Add(JoinPath(path, "asset"), "is missing: the file was not read or uploaded",
@@ -30,7 +30,8 @@ std::optional<std::string> ReadFile(const v1::FileRef& file, const std::string& 
   }
   const std::string digest = DigestOfAsset(file.asset());
   if (digest.empty()) {
-    problems.Add(JoinPath(path, "asset"), "is no name of an asset", "`assets/` and 64 lower-case hexadecimal digits");
+    problems.Add(JoinPath(path, "asset"), "is not the name of an asset",
+                 "`assets/` and 64 lower-case hexadecimal digits");
     return std::nullopt;
   }
   auto bytes = assets(digest);

@@ -10,11 +10,11 @@
 
 namespace fascicle::server {
 
-// Bytes of the file that `file` names; nothing, with a problem, when its digest is malformed or its asset is not there.
+// The bytes of a file; nothing, with a problem, if its digest is malformed or its asset is missing.
 std::optional<std::string> ReadFile(const v1::FileRef& file, const std::string& path, const AssetReader& assets,
                                     Problems& problems);
 
-// The 64 hexadecimal digits of `assets/{sha256}`; empty when it is not of this form.
+// The 64 hexadecimal digits of `assets/{sha256}`; empty if the name has another form.
 std::string DigestOfAsset(const std::string& asset);
 
 }  // namespace fascicle::server

@@ -14,7 +14,7 @@
 namespace fascicle::server {
 namespace {
 
-// A server translates many scenes at once: what one image may take while it is worked on [byte].
+// Memory limit for one image [byte]; a server translates several scenes at once.
 constexpr std::int64_t kMemoryLimit = std::int64_t{4} << 30;
 
 GridIndex ToGridIndex(const google::protobuf::RepeatedField<std::int32_t>& values) {
@@ -32,7 +32,7 @@ std::optional<RawLayout> TranslateRaw(const v1::ImageShape& shape, double metres
   raw.header_bytes = shape.raw().header_bytes();
   const auto type = VoxelTypeOf(shape.raw().type());
   if (!type) {
-    problems.Add(JoinPath(path, "raw.type"), "\"" + shape.raw().type() + "\" is no type of numbers",
+    problems.Add(JoinPath(path, "raw.type"), "\"" + shape.raw().type() + "\" is not a number type",
                  "uint8, int8, uint16, int16, uint32, int32, float32 or float64");
     return std::nullopt;
   }
@@ -48,7 +48,7 @@ std::optional<VolumeImage> ReadImage(const v1::ImageShape& shape, double metres,
         .image;
   }
   const std::string file_path = JoinPath(path, "file");
-  std::vector<std::pair<std::string, std::string>> named;  // and their bytes
+  std::vector<std::pair<std::string, std::string>> named;  // files and their bytes
   const auto read = [&](const v1::FileRef& file, const std::string& at) {
     auto bytes = ReadFile(file, at, assets, problems);
     if (bytes) named.emplace_back(file.path(), std::move(*bytes));
@@ -118,7 +118,7 @@ ImageStage TranslateStage(const v1::ImageShape& shape, double metres) {
   return stage;
 }
 
-// Where a problem of the stage stands in the message.
+// The path in the message of a problem of the stage.
 std::string WirePath(const std::string& path, const v1::ImageShape& shape) {
   const auto renamed = [&path](std::string_view from, std::string_view to) {
     return std::string(to) + path.substr(from.size());
@@ -148,7 +148,7 @@ void AddNote(const StagedImage& staged, const std::string& path, std::vector<std
   notes.push_back(path + ": " + text);
   std::string thresholds;
   for (const double threshold : staged.thresholds) thresholds += (thresholds.empty() ? "" : ", ") + Text(threshold);
-  if (!thresholds.empty()) notes.push_back(path + ": classes are parted at " + thresholds);
+  if (!thresholds.empty()) notes.push_back(path + ": thresholds between classes: " + thresholds);
 }
 
 }  // namespace
@@ -158,7 +158,7 @@ std::optional<VoxelGrid> TranslateImage(const v1::ImageShape& shape, double metr
                                         Problems& problems) {
   const bool has_source = shape.has_file() || shape.has_phantom();
   if (!has_source) problems.Add(path, "has no source", "give one of: file, phantom");
-  // What does not obey the rules is told with them.
+  // Violations of the rules are reported by the rules.
   if (!ObeysRules(shape) || !has_source) return std::nullopt;
   const ImageStage stage = TranslateStage(shape, metres);
   Problems of_settings;

@@ -11,8 +11,8 @@
 
 namespace fascicle::server {
 
-// The voxels of an image shape (defaults filled in), by its stages; `metres` in the body's length unit. Notes tell what
-// came out of them. Nothing where something is wrong.
+// The voxels of an image shape (defaults filled in) after all stages; `metres` is the body's length unit. Notes
+// describe the results of the stages. Nothing if something is wrong.
 std::optional<VoxelGrid> TranslateImage(const v1::ImageShape& shape, double metres, const std::string& path,
                                         const AssetReader& assets, std::vector<std::string>& notes, Problems& problems);
 

@@ -6,11 +6,11 @@
 
 namespace fascicle::server {
 
-// Reads from a store, which must outlive the reader.
+// Reads assets from a store, which must outlive the reader.
 AssetReader ReaderOf(AssetStore& assets);
 
-// How jobs become bytes: a spec is a serialized v1::Job with scene and threads; geometry, frames and failures are
-// serialized v1::Geometry, v1::Frame and v1::Failure. Stateless and thread-safe.
+// Conversions of jobs to bytes: a spec is a serialized v1::Job with scene and threads; geometry, frames and failures
+// are serialized v1::Geometry, v1::Frame and v1::Failure. Stateless and thread-safe.
 JobCodec MakeJobCodec();
 
 }  // namespace fascicle::server

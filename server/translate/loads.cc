@@ -7,7 +7,7 @@ namespace fascicle::server {
 
 namespace {
 
-// A unit force, whose scale is the muscle's pull [N].
+// A unit force, whose scale is the muscle's force [N].
 void TranslateStern(const v1::SternForce& wire, double duration, const std::string& path, Load& load,
                     Problems& problems) {
   Problems own;
@@ -24,7 +24,7 @@ void TranslateStern(const v1::SternForce& wire, double duration, const std::stri
   problems.Append("", own);
   load.kind = NodalForce{direction};
   load.kept = true;
-  // Durations out of range are reported with the rules.
+  // Durations out of range are reported by the rules.
   if (!own.empty() || !ObeysRules(wire) || !(duration > 0 && duration <= 1000)) return;
   const SternMuscle muscle = {wire.origin_distance(), wire.insertion_distance(),   wire.peak_force(),
                               wire.optimal_angle(),   wire.contractile_fraction(), wire.hill_curvature(),
@@ -48,7 +48,7 @@ std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_p
       const std::string stern = JoinPath(path, "stern");
       TranslateStern(load.stern(), duration, stern, translated, problems);
       if (load.has_scale()) {
-        problems.Add(JoinPath(path, "scale"), "is given beside a muscle's force", "its activation is what changes it");
+        problems.Add(JoinPath(path, "scale"), "is given beside a muscle's force", "change its activation instead");
       }
     } else if (load.has_traction()) {
       translated.kind = Traction{ToVec3(load.traction().vector())};

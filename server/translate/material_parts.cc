@@ -12,7 +12,7 @@
 namespace fascicle::server {
 namespace {
 
-// Indices of the law's parameters that the first line of a file names; nothing where something is wrong with it.
+// Indices of the law's parameters named by the first line of a file; nothing if the line is invalid.
 std::optional<std::vector<std::size_t>> ReadColumns(std::string_view line, const LawInfo& law, Problems& problems) {
   std::vector<std::size_t> columns;
   Problems own;
@@ -23,7 +23,7 @@ std::optional<std::vector<std::size_t>> ReadColumns(std::string_view line, const
     if (found == law.parameters.end()) {
       std::string names;
       for (const ParameterInfo& p : law.parameters) names += (names.empty() ? "" : ", ") + std::string(p.name);
-      own.Add({}, "the first line: `" + std::string(word.substr(0, 64)) + "` is no parameter of " + law.name,
+      own.Add({}, "the first line: `" + std::string(word.substr(0, 64)) + "` is not a parameter of " + law.name,
               "it names columns, of: " + names);
     } else if (std::find(columns.begin(), columns.end(), column) != columns.end()) {
       own.Add({}, "the first line names `" + std::string(word) + "` twice");
@@ -36,7 +36,7 @@ std::optional<std::vector<std::size_t>> ReadColumns(std::string_view line, const
   return columns;
 }
 
-// A material for each element, from a file whose first line names the parameters that the others give.
+// A material for each element, from a file whose first line names the parameters given by the others.
 std::vector<Material> ReadMaterials(std::string_view text, const LawInfo& law, std::vector<double> values,
                                     std::size_t elements, Problems& problems) {
   TextLines lines(text);
@@ -89,7 +89,7 @@ void MarkRegion(const std::string& name, const std::string& path, const NamedReg
   if (!index) return;
   const Region& region = regions.regions[*index];
   if (region.elements.empty() && !region.nodes.empty()) {
-    problems.Add(path, "region `" + name + "` holds no element",
+    problems.Add(path, "region `" + name + "` contains no element",
                  "select by plane, box or sphere, which take those with their centroid inside, by side with a depth, "
                  "or by a tag of tetrahedra or voxels");
   }
@@ -111,7 +111,7 @@ Parts<Material> TranslateMaterialParts(const BodySource& source, std::optional<s
   }
   if (wire.has_element_parameters()) {
     const auto of_elements = TranslateElementParameters(source, elements, own);
-    // Those of elements that a region covers have no use.
+    // Removes materials that no element uses because regions cover them.
     for (std::size_t t = 0; t < of_elements.size(); ++t) {
       if (parts.of[t] != 0) continue;
       parts.more.push_back(of_elements[t]);

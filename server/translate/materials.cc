@@ -7,7 +7,7 @@
 namespace fascicle::server {
 namespace {
 
-// The message of the law, whose fields are named as the law's parameters: nothing here knows any single law.
+// The field of the law, whose message has fields named like the law's parameters. No law is named here.
 const google::protobuf::FieldDescriptor* LawField(const v1::Material& material) {
   const auto* oneof = material.GetDescriptor()->FindOneofByName("law");
   return material.GetReflection()->GetOneofFieldDescriptor(material, oneof);

@@ -11,14 +11,15 @@
 
 namespace fascicle::server {
 
-// The law that a material message names; nullptr when it names none.
+// The law of a material message; null if it has none.
 const LawInfo* LawOf(const v1::Material& material);
 
-// The values of its law's parameters in their order, defaults filled in; it names a law and obeys the rules.
+// The values of the law's parameters in their order, defaults filled in. The message must have a law and obey the
+// rules.
 std::vector<double> ParametersOf(const v1::Material& material);
 
-// The material that a body or a part of it has; nullptr, a problem, where there is none. A soft isotropic one stands
-// for a wrong one in later checks.
+// The material of a body or of a part of it; `material` is null, which is a problem, if there is none. A soft isotropic
+// material replaces an invalid one in later checks.
 Material TranslateMaterial(const v1::Material* material, const std::string& owner_path, Problems& problems);
 
 Damping TranslateDamping(const v1::Body& body);

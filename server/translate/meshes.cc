@@ -21,7 +21,7 @@ void CheckElements(const v1::Mesh& mesh, const std::string& path, Problems& prob
   if (wanted && !mesh.has_elements()) {
     problems.Add(JoinPath(path, "elements"), "is missing", "the .ele file of " + mesh.file().path());
   } else if (!wanted && mesh.has_elements()) {
-    problems.Add(JoinPath(path, "elements"), "is given, but the mesh is no TetGen .node file", "leave it out");
+    problems.Add(JoinPath(path, "elements"), "is given, but the mesh is not a TetGen .node file", "omit it");
   }
 }
 
@@ -43,7 +43,7 @@ std::optional<TetMesh> ReadMeshFile(const v1::Mesh& mesh, const std::string& pat
   return read;
 }
 
-// What region selection and the boundary rely on. CheckMesh names the culprits.
+// Whether regions and the boundary can be found. CheckMesh reports the causes.
 bool IsAddressable(const TetMesh& mesh) {
   const auto count = static_cast<std::int64_t>(mesh.nodes.size());
   const auto in_range = [count](const auto& cell) {
@@ -76,9 +76,8 @@ VoxelGrid BoxOfVoxels(const v1::BoxShape& shape, double metres) {
   return grid;
 }
 
-// Whether the mesh names a source; a body without a mesh is a problem. (A mesh without a source is reported with the
-// rules.)
-//   choices  the sources that there are, for the message
+// Whether the mesh has a source. A body without a mesh is a problem here; the rules report a mesh without a source.
+//   choices  the possible sources, for the message
 bool NamesSource(const BodySource& source, const char* choices, Problems& problems) {
   if (source.wire.has_mesh()) return source.wire.mesh().source_case() != v1::Mesh::SOURCE_NOT_SET;
   problems.Add(JoinPath(source.path, "mesh"), "is missing", std::string("give one of: ") + choices);
@@ -91,11 +90,11 @@ void CheckUnit(const BodySource& source, const char* kind, Problems& problems) {
                "mm, cm or m");
 }
 
-// Whether the mesh is of tetrahedra; other sources are problems.
+// Whether the mesh consists of tetrahedra; other sources are problems.
 bool IsOfTetrahedra(const BodySource& source, const char* method, Problems& problems) {
   const std::string path = JoinPath(source.path, "mesh");
   if (source.wire.mesh().has_image()) {
-    problems.Add(JoinPath(path, "image"), std::string("the ") + method + " method takes no image",
+    problems.Add(JoinPath(path, "image"), std::string("the ") + method + " method does not support images",
                  "`fascicle mesh` fills the labels of an image with tetrahedra, `fascicle segment` makes labels; or "
                  "use the voxel method");
     return false;
@@ -112,7 +111,7 @@ std::optional<TetMesh> TetrahedraOfFile(const BodySource& source, const std::str
   CheckUnit(source, "mesh", problems);
   auto mesh = ReadMeshFile(source.wire.mesh(), path, source.assets, problems);
   if (!mesh || !Spend(static_cast<std::int64_t>(mesh->tetrahedra.size()), "tetrahedra", source.budget,
-                      JoinPath(path, "file"), "take a coarser mesh", problems)) {
+                      JoinPath(path, "file"), "use a coarser mesh", problems)) {
     return std::nullopt;
   }
   const double metres = MetresIn(source.wire.unit());
@@ -125,7 +124,7 @@ std::optional<TetMesh> TetrahedraOfFile(const BodySource& source, const std::str
 std::optional<TetMesh> TetrahedraOfShape(const BodySource& source, const std::string& path, Problems& problems) {
   CheckElements(source.wire.mesh(), path, problems);
   const auto shape = CheckShape(source.wire.mesh(), path, problems);
-  if (!shape || !Spend(shape->tetrahedra, "tetrahedra", source.budget, shape->path, "take fewer divisions", problems)) {
+  if (!shape || !Spend(shape->tetrahedra, "tetrahedra", source.budget, shape->path, "use fewer divisions", problems)) {
     return std::nullopt;
   }
   return MakeShape(source.wire.mesh(), MetresIn(source.wire.unit()));
@@ -136,7 +135,7 @@ std::optional<BrickMesh> BricksOfBox(const BodySource& source, const std::string
   if (!ObeysRules(box)) return std::nullopt;
   std::int64_t count = 1;
   for (const std::int32_t divisions : box.divisions()) count *= divisions;
-  if (!Spend(count, "voxels", source.budget, path, "take fewer divisions", problems)) return std::nullopt;
+  if (!Spend(count, "voxels", source.budget, path, "use fewer divisions", problems)) return std::nullopt;
   return MakeBrickMesh(BoxOfVoxels(box, MetresIn(source.wire.unit())));
 }
 
@@ -147,7 +146,7 @@ std::optional<BrickMesh> BricksOfImage(const BodySource& source, const std::stri
   if (!grid) return std::nullopt;
   BrickMesh mesh = MakeBrickMesh(std::move(*grid));
   if (!Spend(static_cast<std::int64_t>(mesh.bricks.size()), "voxels", source.budget, path,
-             "take a higher level, or a smaller region", problems)) {
+             "use a higher level, or a smaller region", problems)) {
     return std::nullopt;
   }
   return mesh;
@@ -187,7 +186,7 @@ std::optional<BrickMesh> TranslateBricks(const BodySource& source, std::vector<s
   if (!NamesSource(source, "image, box", problems)) return std::nullopt;
   if (source.wire.mesh().has_image()) return BricksOfImage(source, JoinPath(path, "image"), notes, problems);
   if (source.wire.mesh().has_box()) return BricksOfBox(source, JoinPath(path, "box"), problems);
-  problems.Add(path, "the voxel method takes an image or a box",
+  problems.Add(path, "the voxel method needs an image or a box",
                "voxels of an image: image; tetrahedra need the tet method");
   return std::nullopt;
 }
@@ -205,10 +204,10 @@ std::optional<TriangleMesh> TranslateSurfaceFile(const BodySource& source, Probl
   auto surface = ReadSurface(file.path(), *bytes, own);
   problems.Append(file_path, own);
   if (!surface || !Spend(static_cast<std::int64_t>(surface->triangles.size()), "triangles", source.budget, file_path,
-                         "take a coarser surface", problems)) {
+                         "use a coarser surface", problems)) {
     return std::nullopt;
   }
-  // Of an unknown size, it would be said to be too large for its grid, or too small.
+  // Without a unit, its size relative to the grid is unknown.
   if (source.wire.unit() == v1::LENGTH_UNIT_UNSPECIFIED) return std::nullopt;
   for (Vec3& x : surface->nodes) x *= MetresIn(source.wire.unit());
   return surface;

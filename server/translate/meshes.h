@@ -14,25 +14,25 @@
 
 namespace fascicle::server {
 
-// The path of the source that a body's mesh names, such as `bodies[0].mesh.box`.
+// The path of the source of a body's mesh, such as `bodies[0].mesh.box`.
 std::string SourcePath(const v1::Mesh& mesh, const std::string& body_path);
 
-// The mesh of a body in metres, one function for each kind. Nothing when there is no mesh that other checks could look
-// at. What it has of elements is taken from the source's budget.
+// The mesh of a body in metres, one function for each kind. Nothing if there is no mesh for further checks. Elements
+// are deducted from the source's budget.
 
 struct TranslatedTetrahedra {
   TetMesh mesh;       // indices in range and coordinates finite
-  bool sound = true;  // CheckMesh found nothing
+  bool sound = true;  // whether CheckMesh found no problem
 };
 
-// Of a mesh file or a built-in shape. `method`: its name, for messages.
+// From a mesh file or a built-in shape. `method` is the method's name for messages.
 std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source, const char* method,
                                                         Problems& problems);
 
-// The voxels of an image or a box. Adds to `notes` what came out of an image.
+// The voxels of an image or a box. Adds results of the image's stages to `notes`.
 std::optional<BrickMesh> TranslateBricks(const BodySource& source, std::vector<std::string>& notes, Problems& problems);
 
-// The triangles of a surface file, which the mesh names.
+// The triangles of the mesh's surface file.
 std::optional<TriangleMesh> TranslateSurfaceFile(const BodySource& source, Problems& problems);
 
 }  // namespace fascicle::server

@@ -24,8 +24,8 @@ Stepping ToStepping(v1::Stepping stepping) {
   }
 }
 
-// Quadratic elements where steps are solved for, unless the scene says otherwise: there they are the more accurate ones
-// for the time they take.
+// Unless the scene says otherwise, implicit steppings use quadratic elements, which are more accurate for the same
+// time.
 ElementOrder ToElement(v1::Element element, Stepping stepping) {
   if (element == v1::ELEMENT_LINEAR) return ElementOrder::kLinear;
   if (element == v1::ELEMENT_QUADRATIC) return ElementOrder::kQuadratic;
@@ -33,7 +33,7 @@ ElementOrder ToElement(v1::Element element, Stepping stepping) {
   return is_explicit ? ElementOrder::kLinear : ElementOrder::kQuadratic;
 }
 
-// Where bodies may move; nothing where it is not given, or wrong.
+// The extent of the grid; nothing if it is not given, or invalid.
 std::optional<Bounds> TranslateRoom(const v1::EulerianMethod& method, Problems& problems) {
   if (method.lowest().empty() && method.highest().empty()) return std::nullopt;
   for (const auto& [name, size] : {std::pair("lowest", method.lowest_size()), {"highest", method.highest_size()}}) {
@@ -45,7 +45,7 @@ std::optional<Bounds> TranslateRoom(const v1::EulerianMethod& method, Problems& 
     if (room.lowest[axis] < room.highest[axis]) continue;
     problems.Add(JoinPath("eulerian", IndexPath("lowest", static_cast<std::size_t>(axis))),
                  "is " + Text(room.lowest[axis]) + ", not below the highest, " + Text(room.highest[axis]),
-                 "exchange lowest and highest");
+                 "swap lowest and highest");
     return std::nullopt;
   }
   return room;

@@ -7,8 +7,8 @@
 
 namespace fascicle::server {
 
-// How a scene (defaults filled in) is stepped, method by method. A neutral method stands for a wrong one, and for one
-// that the scene does not name.
+// The settings of each method for a scene (defaults filled in). Neutral settings replace invalid ones, and those of
+// methods that the scene does not use.
 TetMethod TranslateTetMethod(const v1::Scene& scene);
 VoxelMethod TranslateVoxelMethod(const v1::Scene& scene);
 EulerianMethod TranslateEulerianMethod(const v1::Scene& scene, Problems& problems);

@@ -9,13 +9,13 @@ namespace {
 
 constexpr std::size_t kMaxLength = 64;
 constexpr std::size_t kMaxListed = 10;
-const char kPattern[] = "letters, digits, `_`, `-` and `.`, 1 to 64 characters";
+const char kSyntax[] = "letters, digits, `_`, `-` and `.`, 1 to 64 characters";
 
 bool IsNameCharacter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
 }
 
-// Files are named after names, so they must not mean a folder.
+// Files are named after names, so a name must not denote a folder.
 bool IsName(const std::string& name) {
   return !name.empty() && name.size() <= kMaxLength && std::all_of(name.begin(), name.end(), IsNameCharacter) &&
          name != "." && name != "..";
@@ -29,11 +29,12 @@ std::string Shortened(const std::string& name) {
 
 void Names::Add(const std::string& name, const std::string& path, Problems& problems) {
   if (name.empty()) {
-    problems.Add(path, "is missing", kPattern);
+    problems.Add(path, "is missing", kSyntax);
   } else if (!IsName(name)) {
-    problems.Add(path, "'" + Shortened(name) + "' is not a name", kPattern);
+    problems.Add(path, "'" + Shortened(name) + "' is not a name", kSyntax);
   } else if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
-    problems.Add(path, "'" + name + "' is the name of another " + what_, "every " + what_ + " needs a name of its own");
+    problems.Add(path, "'" + name + "' is already the name of another " + what_,
+                 "every " + what_ + " needs a unique name");
   }
   names_.push_back(name);
 }

@@ -10,15 +10,15 @@
 
 namespace fascicle::server {
 
-// The names of a list's entries (bodies, regions, probes): their pattern, uniqueness, and references to them.
+// The names of a list's entries (bodies, regions, probes): their syntax, uniqueness, and references to them.
 class Names {
  public:
-  // `what` is for messages: "region".
+  // `what` names an entry in messages: "region".
   explicit Names(std::string what) : what_(std::move(what)) {}
 
-  // The name of the next entry, which stands at `path`. Adds a problem when it is malformed or taken.
+  // Adds the name of the next entry, which is at `path`. Adds a problem if it is malformed or already used.
   void Add(const std::string& name, const std::string& path, Problems& problems);
-  // The entry that the reference at `path` means; a problem with the nearest name when there is none.
+  // The entry to which the reference at `path` refers; a problem with the nearest name if there is none.
   std::optional<std::size_t> Find(const std::string& name, const std::string& path, Problems& problems) const;
 
  private:

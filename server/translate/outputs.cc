@@ -19,11 +19,11 @@ bool AnyFibres(const v1::Scene& scene) {
 
 void CheckFrameCount(const v1::Scene& scene, Problems& problems) {
   const double duration = scene.duration(), interval = scene.output().frame_interval();
-  // Wrong numbers are reported with the rules.
+  // Invalid numbers are reported by the rules.
   if (!std::isfinite(duration) || !(duration > 0) || !std::isfinite(interval) || !(interval > 0)) return;
   const double frames = std::ceil(duration / interval) + 1;
   if (frames <= kMaxFrames) return;
-  problems.Add("output.frame_interval", "gives " + Text(frames) + " frames; at most 100,000 are kept",
+  problems.Add("output.frame_interval", "gives " + Text(frames) + " frames; at most 100,000 are allowed",
                "at least " + Text(duration / (kMaxFrames - 1)) + " s for this duration");
 }
 
@@ -39,7 +39,7 @@ std::vector<OutputField> TranslateFields(const v1::Scene& scene, Method method, 
     }
     const OutputFieldInfo* info = FindOutputField(NameOf(*value));
     if (info == nullptr) {
-      problems.Add(path, "is a field that this server does not compute", "leave it out");
+      problems.Add(path, "is a field that this server does not compute", "omit it");
       continue;
     }
     CheckOutputField(info->field, fields, method, AnyFibres(scene), path, problems);
@@ -59,10 +59,11 @@ void CheckFrameSize(const Output& output, const std::vector<Body>& bodies, std::
   }
   if (bytes <= max_bytes) return;
   problems.Add("output.fields", "each frame would have " + std::to_string(bytes) + " bytes",
-               "at most " + std::to_string(max_bytes) + "; keep fewer fields or take coarser meshes");
+               "at most " + std::to_string(max_bytes) + "; use fewer fields or coarser meshes");
 }
 
-// The node nearest to `point` [m]. A point further away than the body is large has a wrong unit or a wrong body.
+// The node nearest to `point` [m]. A point farther away than the size of the body has a wrong unit or belongs to
+// another body.
 std::int32_t NearestNode(const std::vector<Vec3>& nodes, const Vec3& point, const std::string& path,
                          Problems& problems) {
   std::int32_t nearest = 0;
@@ -73,7 +74,7 @@ std::int32_t NearestNode(const std::vector<Vec3>& nodes, const Vec3& point, cons
   }
   const double distance = (nodes[static_cast<std::size_t>(nearest)] - point).norm();
   if (!(distance <= Diagonal(nodes))) {
-    problems.Add(path, "is " + Text(distance) + " m away from the body, further than the body is large",
+    problems.Add(path, "is " + Text(distance) + " m away from the body, farther than the size of the body",
                  "probe points are in the body's own unit");
   }
   return nearest;

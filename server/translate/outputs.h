@@ -12,7 +12,7 @@
 
 namespace fascicle::server {
 
-// What is kept. `bodies` are those of the scene; one without nodes is not known and not looked at.
+// The output settings. `bodies` are those of the scene; a body without nodes is unknown and ignored.
 Output TranslateOutput(const v1::Scene& scene, Method method, const std::vector<Body>& bodies, const Names& body_names,
                        std::int64_t max_frame_bytes, Problems& problems);
 

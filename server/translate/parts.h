@@ -13,15 +13,15 @@
 
 namespace fascicle::server {
 
-// What differs between the parts of a body: materials, activations, where it starts. Empty where something is wrong.
-//   elements, nodes  of the mesh; without one, only what does not depend on it is checked
+// Data of the parts of a body: materials, activations, initial displacements. Empty if something is wrong.
+//   elements, nodes  their number in the mesh; if absent, only what does not depend on the mesh is checked
 
-// region_materials and element_parameters. An element takes the material of the last region that holds it, else that
-// with its own parameters, else that of the body.
+// region_materials and element_parameters. An element has the material of the last region that contains it, otherwise
+// the one with its own parameters, otherwise that of the body.
 Parts<Material> TranslateMaterialParts(const BodySource& source, std::optional<std::size_t> elements,
                                        const NamedRegions& regions, Problems& problems);
 
-// activation or excitation of the whole body, until the scene's end.
+// activation or excitation of the whole body, until the end of the scene.
 Curve TranslateActivation(const BodySource& source, Problems& problems);
 
 // region_activations.
@@ -36,8 +36,8 @@ std::vector<double> TranslateActivationScale(const BodySource& source, std::opti
 std::vector<Vec3> TranslateInitialDisplacement(const BodySource& source, std::optional<std::size_t> nodes,
                                                Problems& problems);
 
-// Gives `value` to the elements of the region that is called `name`; a problem where there is no such region, or no
-// element in it. `parts` has one entry for each element.
+// Assigns `value` to the elements of region `name`; a problem if there is no such region or it contains no element.
+// `parts` has one entry for each element.
 void MarkRegion(const std::string& name, const std::string& path, const NamedRegions& regions, std::int32_t value,
                 std::vector<std::int32_t>& parts, Problems& problems);
 

@@ -16,13 +16,13 @@ std::optional<Selector> TranslateBox(const v1::BoxRegion& box, double metres, co
     if (!(box.min(i) > box.max(i))) continue;
     ordered = false;
     problems.Add(JoinPath(path, IndexPath("min", static_cast<std::size_t>(i))),
-                 "is " + Text(box.min(i)) + ", above the maximum " + Text(box.max(i)), "exchange min and max");
+                 "is " + Text(box.min(i)) + ", above the maximum " + Text(box.max(i)), "swap min and max");
   }
   if (!ordered) return std::nullopt;
   return BoxSelector{ToVec3(box.min()) * metres, ToVec3(box.max()) * metres};
 }
 
-// The selector in metres; nothing when it is missing or wrong.
+// The selector in metres; nothing if it is missing or invalid.
 std::optional<Selector> TranslateSelector(const v1::Region& region, double metres, const std::string& path,
                                           Problems& problems) {
   Problems own;
@@ -66,7 +66,7 @@ std::string Listed(const std::string& what, const std::set<std::int32_t>& tags) 
 
 const char kOtherSelectors[] = "; select by plane, box, sphere or side";
 
-// What the tags are that a mesh has.
+// The tags of a mesh, as a hint.
 std::string TagHint(const TetMesh& mesh, const v1::Mesh& wire) {
   if (!wire.has_file()) return std::string("built-in shapes have no tags") + kOtherSelectors;
   std::set<std::int32_t> tags(mesh.triangle_tags.begin(), mesh.triangle_tags.end());
@@ -85,7 +85,7 @@ std::string TagHint(const TriangleMesh&, const v1::Mesh&) {
   return std::string("surfaces have no tags") + kOtherSelectors;
 }
 
-// The body's extent in its own unit, for a selector that misses it.
+// The body's extent in its own unit, as a hint for selectors that select nothing.
 std::string ExtentHint(const std::vector<Vec3>& nodes, double metres) {
   const Bounds bounds = BoundsOf(nodes);
   const auto corner = [metres](const Vec3& x) {
@@ -93,7 +93,7 @@ std::string ExtentHint(const std::vector<Vec3>& nodes, double metres) {
     std::snprintf(text, sizeof(text), "[%.6g, %.6g, %.6g]", x[0] / metres, x[1] / metres, x[2] / metres);
     return std::string(text);
   };
-  return "in its own unit, the body reaches from " + corner(bounds.lowest) + " to " + corner(bounds.highest);
+  return "in its own unit, the body extends from " + corner(bounds.lowest) + " to " + corner(bounds.highest);
 }
 
 template <class Mesh>
@@ -102,10 +102,10 @@ void AddEmptyRegion(const v1::Body& body, const v1::Region& region, const Mesh& 
   const double metres = MetresIn(body.unit());
   if (region.has_physical_tag()) {
     problems.Add(JoinPath(path, "physical_tag"),
-                 "nothing in the mesh has the tag " + std::to_string(region.physical_tag()),
+                 "no element of the mesh has the tag " + std::to_string(region.physical_tag()),
                  TagHint(mesh, body.mesh()));
   } else if (region.within_size() > 0) {
-    problems.Add(JoinPath(path, "within"), "no node of the region lies in all of these regions too",
+    problems.Add(JoinPath(path, "within"), "no node of the region belongs to all of these regions",
                  ExtentHint(mesh.nodes, metres));
   } else {
     const char* kind = region.has_plane()    ? "plane"
@@ -116,15 +116,15 @@ void AddEmptyRegion(const v1::Body& body, const v1::Region& region, const Mesh& 
   }
 }
 
-// Whether what a region selects may have no node of the mesh all the same: it may lie within a surface. Whether what
-// the region is for finds any of the grid, or of the surface, is checked there.
+// Whether a region may be valid without nodes of the mesh because it is inside of a surface. Whether it contains grid
+// points is checked where it is used.
 bool MayBeInside(const v1::Region&, const TetMesh&) { return false; }
 bool MayBeInside(const v1::Region&, const BrickMesh&) { return false; }
 bool MayBeInside(const v1::Region& region, const TriangleMesh&) {
   return !region.has_physical_tag() && !region.has_side();
 }
 
-// The numbers of the regions that the last one is restricted to. False where one of them is wrong.
+// The indices of the regions to which this one is restricted. False if one of them is invalid.
 bool TranslateWithin(const v1::Region& region, const Names& names, std::size_t own, const std::string& path,
                      std::vector<std::size_t>& within, Problems& problems) {
   bool complete = true;
@@ -136,14 +136,14 @@ bool TranslateWithin(const v1::Region& region, const Names& names, std::size_t o
       continue;
     }
     complete = false;
-    if (other) problems.Add(at, "is the region itself", "name regions that stand before it");
+    if (other) problems.Add(at, "refers to the region itself", "refer to earlier regions");
   }
   return complete;
 }
 
 std::vector<Triangle> FacesOf(const TetMesh& mesh) { return BoundaryTriangles(mesh); }
 std::vector<Quad> FacesOf(const BrickMesh& mesh) { return BoundaryQuads(mesh); }
-// The surface as a mesh of nodes alone.
+// The surface as a mesh without elements.
 TetMesh FacesOf(const TriangleMesh& mesh) { return {mesh.nodes, {}, {}, {}, {}, {}, {}, {}}; }
 
 template <class Mesh, class Faces>

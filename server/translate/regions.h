@@ -14,35 +14,35 @@
 
 namespace fascicle::server {
 
-// How the regions of a body are selected, whatever mesh they are selected from.
+// How the regions of a body are selected, independently of the mesh.
 struct RegionSelectors {
   struct Entry {
     std::string name;
-    std::optional<Selector> selector;  // in metres; nothing when it is missing or wrong
-    std::vector<std::size_t> within;   // the regions before it that it is restricted to
-    bool complete = false;             // nothing of it is missing or wrong
+    std::optional<Selector> selector;  // in metres; nothing if it is missing or invalid
+    std::vector<std::size_t> within;   // earlier regions to which it is restricted
+    bool complete = false;             // whether nothing is missing or invalid
   };
   Names names{"region"};
-  std::vector<Entry> entries;  // as many as the body has
+  std::vector<Entry> entries;  // one for each region of the body
 };
 RegionSelectors TranslateRegions(const v1::Body& body, const std::string& body_path, Problems& problems);
 
-// The regions of a mesh (TetMesh, BrickMesh or TriangleMesh), as many as there are selectors; empty of nodes where one
-// was wrong.
+// The regions of a mesh (TetMesh, BrickMesh or TriangleMesh), one for each selector; without nodes where a selector is
+// invalid.
 template <class Mesh>
 std::vector<Region> SelectRegions(const RegionSelectors& selectors, const Mesh& mesh);
-// Those of a body without a mesh: they have names alone.
+// The regions of a body without a mesh: names only.
 std::vector<Region> EmptyRegions(const RegionSelectors& selectors);
 
-// Adds a problem for each region that SelectRegions found nothing for.
+// Adds a problem for each region for which SelectRegions found nothing.
 template <class Mesh>
 void CheckRegions(const v1::Body& body, const std::string& body_path, const RegionSelectors& selectors,
                   const std::vector<Region>& regions, const Mesh& mesh, Problems& problems);
 
-// Regions to be referred to by name.
+// Regions that can be referred to by name.
 struct NamedRegions {
   const Names& names;
-  const std::vector<Region>& regions;  // as many
+  const std::vector<Region>& regions;  // one for each name
 };
 
 }  // namespace fascicle::server

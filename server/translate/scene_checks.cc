@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kOnlyBody = "bodies[0]";
 
-// What holds for the scene of one body, said of body number `index`.
+// Adds a problem of a scene with one body as a problem of body number `index`.
 void AddRenumbered(const Problem& problem, std::size_t index, Problems& problems) {
   std::string path = problem.path;
   if (path.starts_with(kOnlyBody)) path.replace(0, kOnlyBody.size(), IndexPath("bodies", index));
@@ -24,7 +24,7 @@ void AddRenumbered(const Problem& problem, std::size_t index, Problems& problems
 
 void CheckEachBody(Scene scene, const std::vector<bool>& complete, Problems& problems) {
   std::vector<Body> bodies = std::exchange(scene.bodies, {});
-  // What is wrong with times and output has been said.
+  // Problems of times and output have been reported.
   scene.output = {};
   scene.duration = scene.output.frame_interval = 1;
   for (std::size_t i = 0; i < bodies.size(); ++i) {

@@ -8,8 +8,8 @@
 
 namespace fascicle::server {
 
-// CheckScene for each `complete` body as if it were alone, for a scene in which something is wrong already: a user
-// sees what is wrong with the second body though the first has no mesh. The scene is used up.
+// Runs CheckScene for each `complete` body by itself, for a scene that has problems already. So a user sees the
+// problems of the second body even if the first one has no mesh. Consumes the scene.
 void CheckEachBody(Scene scene, const std::vector<bool>& complete, Problems& problems);
 
 }  // namespace fascicle::server

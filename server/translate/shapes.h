@@ -8,10 +8,10 @@
 
 namespace fascicle::server {
 
-// The shapes of bodies, one function each. They fill in the body's shape, regions and notes, and refuse what the shape
-// has no use for. False where there is no mesh: then only what does not depend on it is checked.
-//   structure  takes problems of the mesh and its regions, which keep CheckScene from looking at the body
-//   others     takes all others; something neutral stands for what is wrong
+// The shapes of bodies, one function each. They fill in the body's shape, regions and notes, and refuse fields that the
+// shape does not support. False if there is no mesh; then only what does not depend on it is checked.
+//   structure  gets the problems of the mesh and its regions, which keep CheckScene from checking the body
+//   others     gets all other problems; neutral values replace invalid ones
 bool TranslateTetShape(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& structure,
                        Problems& others);
 bool TranslateVoxelShape(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& structure,

@@ -11,7 +11,7 @@
 
 namespace fascicle::server {
 
-// The constraints and loads of a body. Entries with a problem may be left out of the result.
+// The constraints and loads of a body. Entries with a problem may be missing from the result.
 std::vector<Constraint> TranslateConstraints(const v1::Body& body, const std::string& body_path, const Names& regions,
                                              Problems& problems);
 std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_path, double duration,

@@ -9,30 +9,30 @@
 namespace fascicle::server {
 namespace {
 
-// The boundary of tetrahedra, with the nodes that it has.
+// The boundary of tetrahedra, with its nodes.
 TriangleMesh BoundaryOf(const TetMesh& mesh) {
   TriangleMesh surface = {mesh.nodes, BoundaryTriangles(mesh)};
   DropUnusedNodes(surface.nodes, surface.triangles);
   return surface;
 }
 
-// A surface from a file has no tetrahedra that could have a fibre each: one direction holds in all of the body.
+// A surface from a file has no tetrahedra for individual fibres: one direction holds for the whole body.
 FibreField FibresWithoutFilling(const BodySource& source, Problems& problems) {
   const v1::Fibres& wire = source.wire.fibres();
   const std::string path = JoinPath(source.path, "fibres");
   if (wire.has_pennation()) {
-    problems.Add(JoinPath(path, "pennation"), "a surface without tetrahedra takes constant fibres without pennation",
-                 "turn the constant direction");
+    problems.Add(JoinPath(path, "pennation"), "a surface without tetrahedra allows constant fibres without pennation",
+                 "rotate the constant direction");
   }
   if (wire.has_constant()) {
     return {ToDirection(wire.constant().direction(), JoinPath(path, "constant.direction"), problems).normalized()};
   }
-  problems.Add(path, "a surface without tetrahedra takes constant fibres only",
-               "fill it by `fascicle mesh` and give the mesh as a file");
+  problems.Add(path, "a surface without tetrahedra allows constant fibres only",
+               "fill it by `fascicle mesh` and use the mesh as a file");
   return {Vec3::UnitX()};
 }
 
-// The surface of a file.
+// A surface from a file.
 bool TranslateFile(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& structure,
                    Problems& others) {
   SurfaceShape& shape = body.surface();
@@ -50,7 +50,7 @@ bool TranslateFile(const BodySource& source, const RegionSelectors& selectors, B
   return surface.has_value();
 }
 
-// The boundary of tetrahedra. Whether a region is empty is asked of these; all that acts on it acts on the surface.
+// The boundary of tetrahedra. These determine whether a region is empty; supports and loads act on the surface.
 bool TranslateBoundary(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& structure,
                        Problems& others) {
   SurfaceShape& shape = body.surface();
@@ -64,7 +64,7 @@ bool TranslateBoundary(const BodySource& source, const RegionSelectors& selector
       TranslateFibres(source, tetrahedra ? &*tetrahedra : nullptr, {selectors.names, of_filling}, body.notes, others);
   if (!tetrahedra) return false;
   if (!tetrahedra->mesh.curved_edges.empty()) {
-    body.notes.push_back(JoinPath(source.path, "mesh") + ": the surface leaves out that edges of the mesh are curved");
+    body.notes.push_back(JoinPath(source.path, "mesh") + ": the surface ignores that edges of the mesh are curved");
   }
   shape.mesh = BoundaryOf(tetrahedra->mesh);
   shape.filling = std::move(tetrahedra->mesh);
@@ -79,8 +79,7 @@ bool TranslateSurfaceShape(const BodySource& source, const RegionSelectors& sele
   RefuseFields(
       source,
       {"region_materials", "element_parameters", "region_activations", "activation_scale", "initial_displacement"},
-      "a body of the eulerian method has no elements to differ from each other", "leave it out, or use the tet method",
-      others);
+      "a body of the eulerian method has no elements", "omit it, or use the tet method", others);
   body.regions = EmptyRegions(selectors);
   body.shape = SurfaceShape();
   const v1::Body& wire = source.wire;

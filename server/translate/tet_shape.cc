@@ -9,8 +9,8 @@ namespace fascicle::server {
 
 bool TranslateTetShape(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& structure,
                        Problems& others) {
-  RefuseFields(source, {"plasticity"}, "only the eulerian method knows plastic flow",
-               "leave it out, or use the eulerian method", others);
+  RefuseFields(source, {"plasticity"}, "only the eulerian method supports plastic flow",
+               "omit it, or use the eulerian method", others);
   auto tetrahedra = TranslateTetrahedra(source, "tet", structure);
   std::optional<std::size_t> elements, nodes;
   if (tetrahedra) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kMaxSceneName = 200;  // characters
 
-// Characters of a UTF-8 text: bytes that don't continue one.
+// Number of characters in a UTF-8 text: bytes that are not continuation bytes.
 std::size_t Characters(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
@@ -37,7 +37,7 @@ void CheckHead(const v1::Scene& scene, Problems& problems) {
 void AddCurvedEdgesNote(const TetMethod& method, const std::string& path, Body& body) {
   const auto* tet = std::get_if<TetShape>(&body.shape);
   if (tet == nullptr || tet->mesh.curved_edges.empty() || method.element != ElementOrder::kLinear) return;
-  body.notes.push_back(JoinPath(path, "mesh") + ": linear elements leave out that edges of the mesh are curved");
+  body.notes.push_back(JoinPath(path, "mesh") + ": linear elements ignore that edges of the mesh are curved");
 }
 
 }  // namespace

@@ -21,32 +21,32 @@ namespace fascicle::server {
 
 struct RunProfile;
 
-// The one room that knows both the wire and the core. Stateless and thread-safe.
+// The only room that knows both the wire format and the core. Stateless and thread-safe.
 
-// Bytes of an asset by the 64 hexadecimal digits of its digest; nothing when it is not there.
+// The bytes of an asset by the 64 hexadecimal digits of its digest; nothing if it is missing.
 using AssetReader = std::function<std::optional<std::string>(const std::string& sha256_hex)>;
 
-// Digests of the assets that a scene names, each once.
+// Digests of the assets that a scene refers to, without duplicates.
 std::vector<std::string> AssetsOf(const v1::Scene& scene);
 
-// What a scene may cost. All bodies together.
+// Limits on the size of a scene, for all bodies together.
 struct TranslateLimits {
-  std::int64_t max_elements = 20'000'000;        // tetrahedra, voxels or grid cells; about 10 GB while it runs
-  std::int64_t max_frame_bytes = 1'000'000'000;  // a message of Protobuf must stay below 2 GiB
+  std::int64_t max_elements = 20'000'000;        // tetrahedra, voxels or grid cells; about 10 GB at run time
+  std::int64_t max_frame_bytes = 1'000'000'000;  // a Protobuf message must stay below 2 GiB
 };
 
-// Checks everything that can be checked without running (the proto's ranges, names, files, meshes, regions,
-// CheckScene) and adds every problem with its field path ("bodies[0].density"). nullptr when there was any.
+// Checks everything that can be checked without running (the proto's ranges, names, files, meshes, regions, CheckScene)
+// and adds every problem with its field path ("bodies[0].density"). Null if there is any.
 // Nothing large is built before its size is known to be within the limits.
-// Stages are timed in `profile` where there is one.
+// Stages are timed in `profile`, which may be null.
 std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetReader& assets, Problems& problems,
                                             const TranslateLimits& limits = {}, Profile* profile = nullptr);
 
-// To the wire. A frame's digest and numbers are copied bit by bit.
+// Conversion to the wire format. A frame's digest and numbers are copied bit by bit.
 v1::Geometry EncodeGeometry(const Scene& scene, const FrameLayout& layout);
 v1::Frame EncodeFrame(const Frame& frame);
 v1::Failure EncodeFailure(const Failure& failure);
-// A run's profile, added to that of the runs before it.
+// The profile of a run, added to those of earlier runs.
 v1::Profile EncodeProfile(const RunProfile& profile);
 
 }  // namespace fascicle::server

@@ -18,10 +18,10 @@ Vec3 ToVec3(const google::protobuf::RepeatedField<double>& values) {
 
 Vec3 ToDirection(const google::protobuf::RepeatedField<double>& values, const std::string& path, Problems& problems) {
   const Vec3 vector = ToVec3(values);
-  // Scaled first, so that very long vectors don't overflow on the way.
+  // Scaled first, so that very long vectors do not overflow.
   const double largest = vector.cwiseAbs().maxCoeff();
   if (values.size() == 3 && !(largest > 1e-150)) {
-    problems.Add(path, "is the zero vector", "a direction of any length but zero, such as [0, 0, 1]");
+    problems.Add(path, "is the zero vector", "a direction of any non-zero length, such as [0, 0, 1]");
   }
   return largest > 1e-150 ? Vec3((vector / largest).normalized()) : Vec3(Vec3::UnitZ());
 }

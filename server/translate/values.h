@@ -12,17 +12,17 @@
 
 namespace fascicle::server {
 
-// Whether CheckRules has nothing to say of `message`. TranslateScene reports what it says once, for the whole scene;
-// the parts ask again before they use values.
+// Whether CheckRules has no problem with `message`. TranslateScene reports its problems once, for the whole scene;
+// parts check again before they use values.
 bool ObeysRules(const google::protobuf::Message& message);
 
-// Three values; zero when there are not three.
+// Three values; zero if there are not three.
 Vec3 ToVec3(const google::protobuf::RepeatedField<double>& values);
 
-// As ToVec3; a zero vector, or one so short that its length can't be told from zero, is a problem.
+// Like ToVec3; a zero vector, or one too short to be distinguished from zero, is a problem.
 Vec3 ToDirection(const google::protobuf::RepeatedField<double>& values, const std::string& path, Problems& problems);
 
-// Metres in a unit; 1 for LENGTH_UNIT_UNSPECIFIED.
+// Metres per unit; 1 for LENGTH_UNIT_UNSPECIFIED.
 double MetresIn(v1::LengthUnit unit);
 
 // The shortest text that reads back as the same number.

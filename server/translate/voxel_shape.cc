@@ -8,13 +8,13 @@ namespace fascicle::server {
 
 bool TranslateVoxelShape(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& structure,
                          Problems& others) {
-  RefuseFields(source, {"fibres"}, "voxels have no fibres", "leave them out, or use the tet method", others);
+  RefuseFields(source, {"fibres"}, "voxels have no fibres", "omit them, or use the tet method", others);
   RefuseFields(source, {"region_activations", "activation_scale"}, "voxels don't contract",
-               "put the muscle's force on a region as a load, or use the tet method", others);
+               "apply the muscle's force as a load on a region, or use the tet method", others);
   RefuseFields(source, {"initial_displacement"}, "voxels start from rest",
-               "use start_loaded to begin in equilibrium with loads", others);
-  RefuseFields(source, {"plasticity"}, "only the eulerian method knows plastic flow",
-               "leave it out, or use the eulerian method", others);
+               "use start_loaded to start in equilibrium with loads", others);
+  RefuseFields(source, {"plasticity"}, "only the eulerian method supports plastic flow",
+               "omit it, or use the eulerian method", others);
   auto bricks = TranslateBricks(source, body.notes, structure);
   std::optional<std::size_t> elements;
   if (bricks) {

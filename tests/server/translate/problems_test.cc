@@ -90,7 +90,7 @@ TEST(Problems, ShapesThatContradictThemselves) {
   EXPECT_THAT(At(with_mesh("box { size: [1,1,1] divisions: [1000,1000,1000] }"), "bodies[0].mesh.box"),
               HasSubstr("6000000000 tetrahedra are too many"));
   EXPECT_THAT(At(with_mesh("box { size: [1,1,1] } elements { path: 'a.ele' }"), "bodies[0].mesh.elements"),
-              HasSubstr("leave it out"));
+              HasSubstr("omit it"));
   EXPECT_THAT(At(with_mesh(""), "bodies[0].mesh.source"), HasSubstr("box"));
   EXPECT_THAT(At(with_mesh("box { size: [1e5,1e5,1e5] }"), "bodies[0].mesh.box"), HasSubstr("unit"));
 }

@@ -134,7 +134,7 @@ TEST(VoxelScene, ThePhantomIsSegmented) {
   // The true body has 117,910 voxels of 0.5 mm: 230 of 4 mm by volume, plus half-full ones at the rim.
   EXPECT_NEAR(static_cast<double>(scene->bodies[0].voxel().mesh.bricks.size()), 251, 8);
   ASSERT_EQ(scene->bodies[0].notes.size(), 2u);
-  EXPECT_THAT(scene->bodies[0].notes[1], HasSubstr("parted at"));
+  EXPECT_THAT(scene->bodies[0].notes[1], HasSubstr("thresholds between classes"));
 }
 
 TEST(VoxelScene, WhatVoxelsCantBe) {
@@ -154,11 +154,12 @@ TEST(VoxelScene, WhatVoxelsCantBe) {
   EXPECT_THAT(At(problems, "output.settle_speed"), HasSubstr("no speed"));
   v1::Scene with_fibres = VoxelBoxScene();
   with_fibres.mutable_output()->add_fields(v1::FIELD_FIBRE_STRETCH);
-  EXPECT_THAT(At(ProblemsOf(with_fibres), "output.fields[0]"), HasSubstr("the voxel method has no fibre_stretch"));
+  EXPECT_THAT(At(ProblemsOf(with_fibres), "output.fields[0]"),
+              HasSubstr("the voxel method does not provide fibre_stretch"));
   v1::Scene dynamic = VoxelBoxScene();
   dynamic.mutable_voxel()->set_stepping(v1::VOXEL_STEPPING_DYNAMIC);
   dynamic.set_duration(0.95);
-  EXPECT_THAT(At(ProblemsOf(dynamic), "duration"), HasSubstr("whole number"));
+  EXPECT_THAT(At(ProblemsOf(dynamic), "duration"), HasSubstr("multiple of"));
   v1::Scene loose = VoxelBoxScene();
   loose.mutable_bodies(0)->mutable_constraints(0)->add_axes(v1::AXIS_Z);
   EXPECT_THAT(At(ProblemsOf(loose), "bodies[0].constraints"), HasSubstr("along x"));
