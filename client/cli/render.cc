@@ -268,8 +268,8 @@ void AddRender(CLI::App& app, Context& context) {
   command->add_flag("--no-surface", options->no_surface, "Do not draw the surface");
   command->add_flag("--no-rest", options->no_rest, "Do not draw the outline of the rest shape");
   command->add_flag("--fibres", options->fibres, "Draw the fibres, through a transparent surface");
-  command->add_flag("--no-rigid-bodies", options->no_rigid_bodies, "Leave rigid bodies out, such as floors");
-  command->add_flag("--no-lines", options->no_lines, "Leave lines out, such as the paths of muscles");
+  command->add_flag("--no-rigid-bodies", options->no_rigid_bodies, "Omit rigid bodies, such as floors");
+  command->add_flag("--no-lines", options->no_lines, "Omit lines, such as the paths of muscles");
   std::vector<std::string> views = {"auto"};
   for (const auto& [view, angles] : Views()) views.push_back(view);
   command->add_option("--view", options->view, "Viewpoint")->check(CLI::IsMember(views));

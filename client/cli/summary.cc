@@ -27,9 +27,9 @@ Extremes ExtremesOf(const std::vector<double>& values) {
   return extremes;
 }
 
-// What failed. Older servers named a body alone.
+// The object of a failure. Older servers sent a body's name only.
 struct FailedObject {
-  std::string kind;  // for people; empty when nothing in particular
+  std::string kind;  // for users; empty if it is not a particular one
   std::string name;
 };
 
@@ -76,7 +76,7 @@ std::vector<std::string> NamesOfLines(const v1::Geometry& geometry) {
   return names;
 }
 
-// Nothing when there are none.
+// Prints nothing if there are no names.
 void PrintNames(const char* what, const std::vector<std::string>& names) {
   if (names.empty()) return;
   std::printf("%s ", what);

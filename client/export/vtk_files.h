@@ -8,17 +8,17 @@
 
 namespace fascicle::client {
 
-// One object at one time as a VTK XML file (binary, appended, zlib), which appears whole or not at all. Functions throw
-// std::runtime_error with a message for people.
+// One object at one time as a VTK XML file (binary, appended, zlib), which is complete or absent. Functions throw
+// std::runtime_error with a message for users.
 
-// .vtu: nodes carry `displacement` [m], the frame's node fields and a flag for each region; elements carry the frame's
+// .vtu: nodes have `displacement` [m], the frame's node fields and a flag for each region; elements have the frame's
 // element fields and `rest_fibre`.
 void WriteBody(const BodyShape& shape, const v1::BodyFrame& frame, const std::filesystem::path& path);
 
-// .vtp: the triangles where the body is.
+// .vtp: the triangles in the body's pose.
 void WriteRigidBody(const RigidShape& body, const Pose& pose, const std::filesystem::path& path);
 
-// .vtp: one polyline, which carries the line's values; points alone where there are fewer than two.
+// .vtp: one polyline with the line's values; only points if there are fewer than two.
 void WriteLine(const LineInfo& line, const LinePath& state, const std::filesystem::path& path);
 
 }  // namespace fascicle::client

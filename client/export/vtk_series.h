@@ -32,7 +32,7 @@ class VtkSeriesWriter {
     std::string file;  // relative to the folder
   };
 
-  // Those that stay are written with the first frame.
+  // Rigid bodies that do not move are written with the first frame.
   void AddRigidBodies(const v1::Frame& frame, bool first);
   void AddLines(const v1::Frame& frame);
 

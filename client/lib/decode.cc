@@ -60,7 +60,7 @@ void CheckPose(const Pose& pose) {
   double square = 0;
   for (const double q : pose.quaternion) square += q * q;
   if (!pose.position.allFinite() || !(std::abs(square - 1) < 1e-6)) {
-    throw std::runtime_error("the server sent a pose that is no place and unit quaternion");
+    throw std::runtime_error("the server sent an invalid pose: it needs a finite position and a unit quaternion");
   }
 }
 
@@ -150,7 +150,7 @@ std::vector<LineInfo> DecodeLineInfos(const v1::Geometry& geometry) {
 
 std::vector<LinePath> DecodeLines(const v1::Frame& frame, const std::vector<LineInfo>& lines) {
   if (static_cast<std::size_t>(frame.lines_size()) != lines.size()) {
-    throw std::runtime_error("the server sent another number of lines than there are");
+    throw std::runtime_error("the server sent a wrong number of lines");
   }
   std::vector<LinePath> paths;
   for (const v1::LineFrame& line : frame.lines()) {
@@ -158,11 +158,11 @@ std::vector<LinePath> DecodeLines(const v1::Frame& frame, const std::vector<Line
     LinePath path{DecodeArray<Vec3>(line.points(), "the points of a line"),
                   {line.values().begin(), line.values().end()}};
     if (path.values.size() != info.values.size()) {
-      throw std::runtime_error("the server sent the line " + info.name + " with another number of values");
+      throw std::runtime_error("the server sent the line " + info.name + " with a wrong number of values");
     }
     for (const Vec3& x : path.points) {
       if (!x.allFinite())
-        throw std::runtime_error("the server sent a point of the line " + info.name + " without place");
+        throw std::runtime_error("the server sent the line " + info.name + " with a point that is not finite");
     }
     paths.push_back(std::move(path));
   }

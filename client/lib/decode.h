@@ -46,26 +46,26 @@ std::vector<Vec3> DecodePositions(const v1::BodyFrame& frame, std::size_t nodes)
 // Values of a field, component fastest: `components` for each node or element of `shape`.
 std::vector<double> DecodeField(const v1::FieldValues& field, const BodyShape& shape);
 
-// A rigid body: its shape, and where it is at time 0.
+// A rigid body: its shape, and its pose at time 0.
 struct RigidShape {
   std::string name;
-  std::vector<Vec3> positions;                          // along the body's own axes [m]
+  std::vector<Vec3> positions;                          // in the body's frame [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;  // node indices, all in range
-  Pose pose;                                            // finite, its quaternion a unit one
-  bool moves = false;                                   // frames have its pose
-  bool unbounded = false;                               // a piece of a plane without end, normal to the z axis
+  Pose pose;                                            // finite, with a unit quaternion
+  bool moves = false;                                   // whether frames have its pose
+  bool unbounded = false;                               // a part of an unbounded plane normal to the z axis
 };
 
 std::vector<RigidShape> DecodeRigidBodies(const v1::Geometry& geometry);
 
-// The poses that a frame has when `count` rigid bodies move: finite, with unit quaternions.
+// The poses of a frame with `count` moving rigid bodies: finite, with unit quaternions.
 std::vector<Pose> DecodePoses(const v1::Frame& frame, std::size_t count);
-// The pose of each rigid body in a frame, also of those that stay.
+// The pose of each rigid body in a frame, including those that do not move.
 std::vector<Pose> PosesOf(const v1::Frame& frame, const std::vector<RigidShape>& bodies);
-// The corners of a rigid body in the world [m].
+// The vertices of a rigid body in world coordinates [m].
 std::vector<Vec3> PositionsAt(const RigidShape& body, const Pose& pose);
 
-// A line, and what its values in every frame are.
+// A line and the meaning of its values.
 struct LineInfo {
   std::string name;
   std::vector<v1::SeriesInfo> values;
@@ -75,7 +75,7 @@ std::vector<LineInfo> DecodeLineInfos(const v1::Geometry& geometry);
 
 // A line in a frame.
 struct LinePath {
-  std::vector<Vec3> points;    // finite, of any number [m]
+  std::vector<Vec3> points;    // finite; their number may vary [m]
   std::vector<double> values;  // one for each of LineInfo::values
 };
 
@@ -84,7 +84,7 @@ std::vector<LinePath> DecodeLines(const v1::Frame& frame, const std::vector<Line
 // Throws unless `frame` has as many bodies, poses, lines and series as `geometry`.
 void CheckFits(const v1::Frame& frame, const v1::Geometry& geometry);
 
-// Throws unless the frame's digest is that of its numbers: what the simulation made is what has come.
+// Throws unless the frame's digest is that of its numbers, so that they arrived as the simulation computed them.
 void CheckDigest(const v1::Frame& frame);
 
 }  // namespace fascicle::client

@@ -21,7 +21,7 @@ class SeriesTable {
     std::string name;
     std::string unit;
     std::string description;
-    bool is_pose = false;        // seven a rigid body: too many to be shown unless they are asked for
+    bool is_pose = false;        // seven per rigid body, shown on request only
     std::vector<double> values;  // one for each frame
   };
 
@@ -42,7 +42,7 @@ class SeriesTable {
   std::vector<std::int64_t> steps_;
   std::vector<Column> columns_;
   std::size_t series_ = 0;
-  std::size_t moving_ = 0;  // rigid bodies
+  std::size_t moving_ = 0;  // number of rigid bodies
   std::vector<LineInfo> lines_;
 };
 

@@ -11,7 +11,7 @@
 
 namespace fascicle::client {
 
-// The elements at given positions, with one value (`colour`) for each node when `values` is not empty.
+// The elements at given positions, with one value (`colour`) for each node if `values` is not empty.
 vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std::vector<Vec3>& positions,
                                               const std::vector<double>& values);
 

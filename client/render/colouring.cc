@@ -11,7 +11,7 @@
 namespace fascicle::client {
 namespace {
 
-// What the values of all frames have in common.
+// Common properties of the values of all frames.
 struct Quantity {
   std::string title;
   std::string unit;
@@ -58,7 +58,7 @@ void ColourLines(const std::vector<LineInfo>& lines, const v1::Frame& frame, con
   }
 }
 
-// What the first body and the first line could be coloured by.
+// The quantities by which the first body and the first line can be coloured.
 std::string KnownNames(const std::vector<LineInfo>& lines, const v1::Frame& frame) {
   std::string known;
   if (frame.bodies_size() > 0) known = FieldNames(frame.bodies(0)) + " (the scene's output.fields says which are kept)";

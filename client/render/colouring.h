@@ -15,15 +15,15 @@ namespace fascicle::client {
 
 // The colours of one frame.
 struct Colouring {
-  std::vector<std::vector<double>> bodies;   // one value for each node; empty of a body that has no colours
-  std::vector<std::optional<double>> lines;  // nothing of a line that has no colour
-  std::string title;                         // with the unit of the scale
-  ColourScale scale;                         // without table when nothing is coloured
+  std::vector<std::vector<double>> bodies;   // one value for each node; empty if the body is not coloured
+  std::vector<std::optional<double>> lines;  // nothing if the line is not coloured
+  std::string title;                         // with its unit
+  ColourScale scale;                         // without a table if nothing is coloured
 };
 
-// Colours each frame by `name`, all on one scale: bodies that have such a field (see ValuesAtNodes), and lines that
-// have such a value. Empty: nothing. `range`: the ends of the scale, in the field's unit; those of the values when
-// absent. Throws std::runtime_error when no object has it, or when objects have it in different units.
+// Colours each frame by `name`, all on one scale: bodies with such a field (see ValuesAtNodes), and lines with such a
+// value. Nothing is coloured if it is empty. `range`: the ends of the scale, in the field's unit; those of the values
+// if absent. Throws std::runtime_error if no object has it, or if objects have it in different units.
 std::vector<Colouring> ColourFrames(const std::vector<BodyShape>& bodies, const std::vector<LineInfo>& lines,
                                     std::span<const v1::Frame> frames, const std::string& name,
                                     const std::optional<std::pair<double, double>>& range);

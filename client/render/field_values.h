@@ -21,9 +21,9 @@ struct NodeValues {
 // averaged to nodes by rest volume. Throws std::runtime_error that lists the existing fields.
 NodeValues ValuesAtNodes(const BodyShape& shape, const v1::BodyFrame& frame, const std::string& field);
 
-// Whether ValuesAtNodes finds such a field, whatever its component.
+// Whether ValuesAtNodes finds such a field, with any component.
 bool HasField(const v1::BodyFrame& frame, const std::string& field);
-// What there is, with commas between.
+// The existing fields, separated by commas.
 std::string FieldNames(const v1::BodyFrame& frame);
 
 // Unit fibre directions in the deformed body at the nodes, averaged as lines (a and -a are the same); zero where there

@@ -8,7 +8,7 @@
 namespace fascicle::client {
 
 vtkSmartPointer<vtkPolyData> MakeTube(const std::vector<Vec3>& points, double radius) {
-  // Points that coincide have no direction between them.
+  // Skips points that coincide, because they define no direction.
   vtkNew<vtkPoints> places;
   places->SetDataTypeToDouble();
   const Vec3* last = nullptr;

@@ -104,7 +104,7 @@ void AddBody(const BodyShape& shape, const v1::BodyFrame& frame, const Colouring
   }
 }
 
-// A plane is like glass from behind, so that a floor hides nothing from below.
+// A plane is transparent from behind, so that a floor hides nothing from below.
 void AddRigidBody(const RigidShape& body, const Pose& pose, vtkRenderer& renderer) {
   if (body.triangles.empty()) return;
   const auto surface = MakeSurface(*MakeGrid(body, pose));
@@ -203,8 +203,8 @@ struct Setting {
   std::vector<RigidShape> rigid_bodies;
   std::vector<LineInfo> lines;
   std::vector<Colouring> colourings;  // of each frame
-  std::array<double, 6> bounds;       // of all that is drawn in all frames but planes, as VTK has them [m]
-  Vec3 up = Vec3::UnitZ();            // out of the first plane where there is one
+  std::array<double, 6> bounds;       // of everything drawn in all frames except planes, in VTK's order [m]
+  Vec3 up = Vec3::UnitZ();            // outward normal of the first plane, if there is one
   double line_radius = 0;             // [m]
 };
 

@@ -16,7 +16,7 @@ namespace fascicle::client {
 // How to draw a frame.
 struct PictureOptions {
   PictureSize size;
-  // What bodies and lines are coloured by, see ColourFrames; empty: plain colours.
+  // The quantity by which bodies and lines are coloured, see ColourFrames; empty: plain colours.
   std::string colour = "displacement";
   // Range of the colour scale, in the field's unit; by default that of the frame.
   std::optional<std::pair<double, double>> range;
@@ -30,8 +30,8 @@ struct PictureOptions {
   bool fibres = false;       // as lines through a transparent surface
   bool rigid_bodies = true;
   bool lines = true;  // as tubes
-  // Where the eye stands [degree]: azimuth from +x to +y, elevation from the xy plane to +z. When both are absent, a
-  // body much longer than wide lies across the picture, others are seen from a corner; up is z, or out of the floor.
+  // The viewpoint [degree]: azimuth from +x to +y, elevation from the xy plane to +z. If both are absent, long bodies
+  // are seen from the side and others from a corner; up is z, or the floor's normal.
   std::optional<double> azimuth;
   std::optional<double> elevation;
   double zoom = 1;
@@ -39,7 +39,7 @@ struct PictureOptions {
   bool time = true;  // shown below the title
 };
 
-// Draws a frame of all objects and writes a PNG. Throws std::runtime_error with a message for people.
+// Draws a frame of all objects and writes a PNG. Throws std::runtime_error with a message for users.
 void DrawPicture(const v1::Geometry& geometry, const v1::Frame& frame, const PictureOptions& options,
                  const std::filesystem::path& path);
 

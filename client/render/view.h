@@ -8,10 +8,10 @@
 
 namespace fascicle::client {
 
-// Where the eye stands and what fits into the picture. Parallel projection, so that lengths can be measured.
+// The viewpoint and what fits into the picture. Parallel projection, so that lengths can be measured.
 
-// Points the camera of `renderer` at what lies in `bounds` [m] (as VTK has them: xmin, xmax, ...). `up`: what is above
-// (unit) when the options leave the view open. `aspect` is the width of its part of the picture over the height.
+// Points the camera of `renderer` at `bounds` [m] (in VTK's order: xmin, xmax, ...). `up`: the vertical (unit) if the
+// options do not define the view. `aspect` is the width of the panel over its height.
 void AimCamera(const PictureOptions& options, const double bounds[6], const Vec3& up, double aspect,
                vtkRenderer& renderer);
 

@@ -6,8 +6,8 @@
 
 namespace fascicle {
 
-// Fewest insertions, deletions and replacements of bytes that make one text of the other [Levenshtein 1966]. Takes
-// time in proportion to the product of their lengths.
+// The least number of insertions, deletions and replacements of bytes that turn one text into the other [Levenshtein
+// 1966]. The time is proportional to the product of the lengths.
 std::size_t EditDistance(std::string_view a, std::string_view b);
 
 }  // namespace fascicle

@@ -11,8 +11,8 @@
 
 namespace fascicle {
 
-// The numbers of a frame as little-endian bytes, in whichever form they are held: as arrays by the simulation, as a
-// message by clients. Both get the same digest.
+// The numbers of a frame as little-endian bytes, for the simulation's arrays and for clients' messages alike. Both have
+// the same digest.
 struct FrameBytes {
   using Bytes = std::span<const std::byte>;
   struct Field {
@@ -20,11 +20,11 @@ struct FrameBytes {
     Bytes values;  // doubles
   };
   struct Body {
-    Bytes positions;  // 3 doubles a node
+    Bytes positions;  // 3 doubles per node
     std::vector<Field> fields;
   };
   struct Line {
-    Bytes points;  // 3 doubles each
+    Bytes points;  // 3 doubles per point
     Bytes values;  // doubles
   };
 
@@ -33,13 +33,13 @@ struct FrameBytes {
   std::int64_t step = 0;
   std::vector<Body> bodies;
   Bytes series;  // doubles
-  Bytes poses;   // 7 doubles each
+  Bytes poses;   // 7 doubles per pose
   std::vector<Line> lines;
 };
 
-// SHA-256 over index, time, step, bodies (positions, fields with their names) and series, in this order; then over
-// poses and over lines, each only where there are any, so that a frame without them has the digest of the time before
-// frames could hold them. Every array is preceded by its number of items: different frames never give the same bytes.
+// SHA-256 over index, time, step, bodies (positions, fields with their names) and series, in this order, then over
+// poses and lines if there are any. Frames of bodies only therefore have the same digest as before poses and lines
+// existed. Every array is preceded by its number of items, so that different frames never have the same bytes.
 Digest DigestOf(const FrameBytes& frame);
 
 }  // namespace fascicle

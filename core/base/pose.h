@@ -7,9 +7,9 @@
 
 namespace fascicle {
 
-// Position and orientation of a rigid body: the point X of the body's own axes is at x = position + R X in the world.
+// Position and orientation of a rigid body: point X in the body's frame is at x = position + R X in the world.
 struct Pose {
-  Vec3 position = Vec3::Zero();  // of the origin of the body's axes, in the world [m]
+  Vec3 position = Vec3::Zero();  // of the origin of the body's frame, in the world [m]
   // Unit quaternion (w, x, y, z), Hamilton's convention: R X is the vector part of q X q*. q and -q are the same
   // orientation.
   std::array<double, 4> quaternion = {1, 0, 0, 0};

@@ -7,13 +7,13 @@
 namespace fascicle {
 namespace {
 
-// In the plane z = 0, seen from above.
+// In the plane z = 0, counter-clockwise from above.
 TriangleMesh Square(double side) {
   const double a = side / 2;
   return {{Vec3(-a, -a, 0), Vec3(a, -a, 0), Vec3(a, a, 0), Vec3(-a, a, 0)}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-// Turns z to the normal.
+// Rotates z to the normal.
 Pose PoseOf(const Floor& floor, const Vec3& middle) {
   const Eigen::Quaterniond q = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), floor.normal);
   return {middle - (middle - floor.point).dot(floor.normal) * floor.normal, {q.w(), q.x(), q.y(), q.z()}};

@@ -8,8 +8,8 @@
 
 namespace fascicle {
 
-// The scene's floors as rigid bodies that stay: of each half-space a square of its surface. Its middle is below that of
-// the box around all bodies at rest, and its side is twice the diagonal of that box.
+// The scene's floors as rigid bodies that do not move: a square of the surface of each half-space. Its centre is below
+// that of the bounding box of all bodies at rest, and its side is twice the diagonal of that box.
 std::vector<RigidBodyInfo> FloorBodies(const Scene& scene);
 
 }  // namespace fascicle

@@ -30,7 +30,7 @@ struct BodyFrame {
 };
 
 struct LineFrame {
-  std::vector<Vec3> points;    // in the world, from end to end [m]; how many may change from frame to frame
+  std::vector<Vec3> points;    // in the world, from end to end [m]; their number may vary
   std::vector<double> values;  // one for each of LineInfo::values
 };
 
@@ -46,7 +46,7 @@ struct Frame {
   Digest digest = {};
 };
 
-// Meaning of one number of every frame.
+// Meaning of one scalar of every frame.
 struct SeriesInfo {
   std::string name;  // `energy/elastic`, `muscle/volume_ratio`, `muscle/reaction/origin/z`, `probe/belly/x`
   std::string unit;
@@ -56,10 +56,10 @@ struct SeriesInfo {
 // A rigid body, such as a bone or a floor.
 struct RigidBodyInfo {
   std::string name;    // unique among the rigid bodies
-  TriangleMesh shape;  // along the body's own axes [m]; without triangles when there is nothing to show
+  TriangleMesh shape;  // in the body's frame [m]; without triangles if there is nothing to draw
   Pose pose;           // at time 0
-  bool moves = false;  // each frame has its pose; otherwise it stays where it is
-  // The shape is a piece of a plane without end, normal to the body's z axis, which points out of it.
+  bool moves = false;  // whether frames have its pose; otherwise it does not move
+  // Whether the shape is a part of an unbounded plane, normal to the body's z axis, which points outward.
   bool unbounded = false;
 };
 
@@ -69,7 +69,7 @@ struct LineInfo {
   std::vector<SeriesInfo> values;  // such as `activation`, `length`, `tension`
 };
 
-// What a simulation's frames hold beside bodies; the same for all frames.
+// The contents of a simulation's frames besides bodies; constant.
 struct FrameLayout {
   std::vector<RigidBodyInfo> rigid_bodies;
   std::vector<LineInfo> lines;

@@ -23,7 +23,7 @@ struct Progress {
   double time_step = 0;  // [s]
 };
 
-// What a failure can be about.
+// Kinds of objects that can fail.
 enum class ObjectKind { kNone, kBody, kRigidBody, kLine, kJoint };
 
 // Why a run could not go on. Reasons: INVERTED_ELEMENT STEP_TOO_SMALL NOT_CONVERGED NOT_FINITE

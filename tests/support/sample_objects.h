@@ -10,10 +10,10 @@
 #include "fascicle/v1/frame.pb.h"
 #include "tests/support/sample_job.h"
 
-// Rigid bodies and lines made by hand, as a job sends them; without bodies, which SampleJob has.
+// Handmade rigid bodies and lines as a job sends them; bodies come from SampleJob.
 namespace fascicle::testing {
 
-// A box around the origin, its corners at (+-x, +-y, +-z) / 2, as a closed surface.
+// A box around the origin with corners (+-x, +-y, +-z) / 2, as a closed surface.
 inline void SetBox(const Vec3& size, v1::RigidBodyGeometry& body) {
   std::vector<double> positions;
   for (int n = 0; n < 8; ++n) {
@@ -55,9 +55,9 @@ inline void AddLine(const std::vector<Vec3>& points, const std::vector<double>& 
 // A quarter turn about z.
 inline std::array<double, 4> QuarterTurn() { return {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}; }
 
-// A box of 40 x 20 x 20 mm, `bone`, that moves; one of 20 x 20 x 20 mm, `ground`, that stays at (0, 0, -0.1) m;
-// `joint`, that moves and has no shape; `flexor`, a line along two sides of a square of 200 mm; and `slack`, a line
-// that is not there at first.
+// A box of 40 x 20 x 20 mm, `bone`, that moves; one of 20 x 20 x 20 mm, `ground`, fixed at (0, 0, -0.1) m; `joint`,
+// which moves and has no shape; `flexor`, a line along two sides of a square of 200 mm; and `slack`, a line without
+// points at first.
 inline v1::Geometry SampleObjects() {
   v1::Geometry geometry;
   SetBox(Vec3(0.04, 0.02, 0.02), AddRigidBody("bone", {}, true, geometry));
@@ -68,8 +68,8 @@ inline v1::Geometry SampleObjects() {
   return geometry;
 }
 
-// Index 0: as the geometry has it. Later: the bone turned by a quarter about z and moved by (40, 20, 0) mm, activations
-// 0.1 index, one point more in `flexor`, and `slack` straight above the bone.
+// Index 0: as in the geometry. Later: the bone is rotated by 90 degrees about z and displaced by (40, 20, 0) mm,
+// activations are 0.1 index, `flexor` has one point more, and `slack` is straight above the bone.
 inline v1::Frame SampleObjectsFrame(int index) {
   v1::Frame frame;
   frame.set_index(index);

@@ -1,5 +1,5 @@
-// Rigid bodies that move and lines on their whole way: from the frames of a simulation through the store, a server and
-// the client library to every file that the program writes.
+// Moving rigid bodies and lines through the whole system: from the frames of a simulation through the store, a server
+// and the client library to every file that the program writes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ using ::testing::Not;
 
 constexpr int kFrames = 6;
 
-// A box, 10 x 10 x 100 mm, along z from the origin of its axes down.
+// A box of 10 x 10 x 100 mm that extends downwards along z from the origin of its frame.
 TriangleMesh BoneShape() {
   TriangleMesh box;
   for (int n = 0; n < 8; ++n) box.nodes.emplace_back(0.01 * (n & 1), 0.01 * (n >> 1 & 1), -0.1 * (1 - (n >> 2)));
@@ -47,7 +47,7 @@ void AddObjects(FrameLayout& layout) {
   layout.lines.push_back({"flexor", {{"activation", "1", "how active it is"}, {"length", "m", "of its path"}}});
 }
 
-// The bone swings about y, and a muscle winds about more and more points.
+// The bone swings about y, and a muscle wraps around an increasing number of points.
 void AddObjects(Frame& frame) {
   const double angle = 0.15 * static_cast<double>(frame.index);
   frame.poses = {{Vec3(-0.03, 0.02, 0.08), {std::cos(angle / 2), 0, std::sin(angle / 2), 0}}};
@@ -62,7 +62,7 @@ void AddObjects(Frame& frame) {
   frame.digest = DigestOf(frame);
 }
 
-// Adds objects to the frames of a simulation, and hands them on.
+// Adds objects to the frames of a simulation and forwards them.
 class WithObjects final : public FrameSink {
  public:
   explicit WithObjects(FrameSink& next) : next_(next) {}
@@ -107,7 +107,7 @@ void End(server::ActiveJob& job, server::JobState state, const std::string& fail
   });
 }
 
-// Runs the scene as a worker does, but for the objects; gives the frames that were put.
+// Runs the scene as a worker does, with added objects; returns its frames.
 std::vector<Frame> StoreRun(server::Store& store) {
   const server::JobRecord record = RecordOf(1, BoxOverGround());
   EXPECT_TRUE(store.CreateJob(record, nullptr));
@@ -136,7 +136,7 @@ void StoreFailure(int number, const std::string& failure, server::Store& store) 
   End(job, server::JobState::kFailed, failure);
 }
 
-// A server with one job that has everything, and two that have failed.
+// A server with one job that has all kinds of objects, and two failed jobs.
 class ObjectsTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -273,7 +273,7 @@ TEST_F(ObjectsTest, ExportsHaveThem) {
                                  "forearm/pose/z [m],forearm/pose/qw [1],forearm/pose/qx [1],forearm/pose/qy [1],"
                                  "forearm/pose/qz [1]"));
   while (std::getline(csv, row)) last = row;
-  // Numbers read back as the same ones.
+  // Numbers read back with the same bits.
   const std::string quaternion = last.substr(last.rfind(",0.02,0.08,") + 11);
   const Pose& pose = frames_->back().poses[0];
   EXPECT_EQ(std::stod(quaternion), pose.quaternion[0]);

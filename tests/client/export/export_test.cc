@@ -141,7 +141,7 @@ TEST(VtkSeriesWriter, WritesRigidBodiesWhereTheyAre) {
   }
   EXPECT_THAT(pvd, ::testing::Not(HasSubstr("joint"))) << "it has no shape";
   const std::vector<RigidShape> bodies = DecodeRigidBodies(geometry);
-  // Turned by a quarter about z: (x, y, z) goes to (-y, x, z).
+  // Rotated by 90 degrees about z: (x, y, z) goes to (-y, x, z).
   const auto at = [](const Vec3& X, const Vec3& place) { return Vec3(place + Vec3(-X.y(), X.x(), X.z())); };
   const auto bone = ReadPolyData(folder / "frames/rigid_bone_000001.vtp");
   const auto ground = ReadPolyData(folder / "frames/fixed_ground.vtp");
@@ -178,7 +178,7 @@ TEST(VtkSeriesWriter, WritesLinesAsPolylinesWithTheirValues) {
   EXPECT_EQ(flexor->GetCellData()->GetArray("activation")->GetTuple1(0), 0.1);
   EXPECT_EQ(flexor->GetCellData()->GetArray("length")->GetTuple1(0), 0.4);
   EXPECT_EQ(ReadPolyData(folder / "frames/line_flexor_000000.vtp")->GetNumberOfPoints(), 3);
-  // A line that is not there is an empty file, so that every frame has the same parts.
+  // A line without points has an empty file, so that every frame has the same parts.
   const auto slack = ReadPolyData(folder / "frames/line_slack_000000.vtp");
   EXPECT_EQ(slack->GetNumberOfPoints(), 0);
   EXPECT_EQ(slack->GetNumberOfLines(), 0);

@@ -51,7 +51,7 @@ TEST(DecodeLines, GivesPathsThatChangeTheirNumberOfPoints) {
   EXPECT_EQ(later[0].values, (std::vector<double>{0.2, 0.4}));
 }
 
-// What a malformed message does: nothing may come of it but an error for people.
+// Malformed messages must cause an error with a message for users and nothing else.
 template <class Message>
 void ExpectRefused(const std::function<void(Message&)>& damage, const std::function<void(const Message&)>& read,
                    Message message) {
@@ -115,7 +115,7 @@ TEST(DecodeFrames, RefusesPosesAndLinesThatDoNotFit) {
           DecodeLines(frame, lines);
         },
         SampleObjectsFrame(1));
-    // A table refuses the same.
+    // A table refuses the same frames.
     ExpectRefused<v1::Frame>(
         damage, [](const v1::Frame& frame) { SeriesTable(SampleObjects()).Add(frame); }, SampleObjectsFrame(1));
   }
@@ -135,7 +135,7 @@ TEST(CheckFits, CountsEveryKindOfObject) {
   EXPECT_THROW(CheckFits(frame, geometry), std::runtime_error);
 }
 
-// Bytes changed, added or taken away at random, from one seed.
+// Bytes changed, added or removed at random, with a fixed seed.
 TEST(DecodeFrames, GiveDamagedMessagesWholeOrNotAtAll) {
   std::mt19937 random(1);
   const auto damage = [&random](std::string bytes) {

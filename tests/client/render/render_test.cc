@@ -299,10 +299,10 @@ TEST_F(RenderTest, AnimationsAreGifsThatRepeat) {
   DGifCloseFile(gif, &error);
 }
 
-// The colour of bones: warm, where the background is cold.
+// The colour of bones is warm, the background cold.
 bool IsBone(const Pixel& p) { return p[0] > p[2] + 12 && p[0] < p[1] + 25 && p[0] > 90; }
 
-// Where pixels are that a condition holds for.
+// The extent of the pixels that meet a condition.
 struct Extent {
   int left = 1 << 20, right = -1, bottom = 1 << 20, top = -1;
   std::size_t count = 0;
@@ -342,14 +342,15 @@ class ObjectsTest : public RenderTest {
   }
 };
 
-// A box of 40 x 20 mm in a square of 200 mm, then turned by a quarter and moved by (40, 20) mm; the ground is below it.
+// A box of 40 x 20 mm in a square of 200 mm, then rotated by 90 degrees and displaced by (40, 20) mm; the ground is
+// below it.
 TEST_F(ObjectsTest, RigidBodiesAreDrawnWhereTheyAre) {
   const Extent at_rest(DrawObjects(FromAbove(), 0), IsBone), moved(DrawObjects(FromAbove(), 1), IsBone);
   const double pixel = at_rest.width() / 0.04;  // a metre
   EXPECT_GT(at_rest.count, 300u);
   EXPECT_NEAR(at_rest.height(), 0.02 * pixel, 2);
   EXPECT_NEAR(static_cast<double>(at_rest.count), at_rest.width() * at_rest.height(), 60) << "it is filled";
-  // The ground shows where the bone has left it: a square of 20 mm around the origin.
+  // The ground is visible where the bone was: a square of 20 mm around the origin.
   EXPECT_NEAR(moved.left, at_rest.x() - 0.01 * pixel, 2);
   EXPECT_NEAR(moved.right, at_rest.x() + 0.05 * pixel, 2);
   EXPECT_NEAR(moved.bottom, at_rest.y() - 0.01 * pixel, 2);
@@ -451,7 +452,7 @@ TEST_F(ObjectsTest, EveryPictureHasThem) {
   DGifCloseFile(gif, &error);
 }
 
-// A plane is not fitted into the picture: it fills it from above, and is like glass from below.
+// A plane does not determine the size of the picture: it fills it from above and is transparent from below.
 TEST_F(ObjectsTest, PlanesAreBehindEverything) {
   v1::Geometry geometry = SampleObjects();
   const Pose pose = {Vec3(0, -0.15, 0), {std::sqrt(0.5), -std::sqrt(0.5), 0, 0}};  // its z axis is y

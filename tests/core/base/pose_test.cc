@@ -7,7 +7,7 @@
 namespace fascicle {
 namespace {
 
-// R X against the vector part of q (0, X) q*, multiplied out by Hamilton's rules.
+// R X against the vector part of q (0, X) q*, multiplied out.
 TEST(Pose, RotationFollowsHamiltonsConvention) {
   const Eigen::Quaterniond q = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized();
   const Pose pose = {Vec3::Zero(), {q.w(), q.x(), q.y(), q.z()}};

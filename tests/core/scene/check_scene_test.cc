@@ -289,7 +289,7 @@ TEST(CheckSceneTest, BodiesHaveTheShapeOfTheMethod) {
   }
 }
 
-// A cube of the eulerian method, that flows and is pressed together.
+// A plastic cube of the eulerian method, compressed.
 Scene PlasticScene() {
   Scene scene = FullScene(Method::kEulerian, FullSurfaceShape());
   scene.floors.clear();

@@ -1,4 +1,4 @@
-// What loads are on nodes.
+// Nodal forces of loads.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -8,7 +8,7 @@
 namespace fascicle {
 namespace {
 
-// Two unit right triangles and a 2 x 3 quad beside each other in the plane z = 0.
+// Two unit right triangles and a 2 x 3 quad side by side in the plane z = 0.
 const std::vector<Vec3> kNodes = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0),
                                   Vec3(3, 0, 0), Vec3(3, 3, 0), Vec3(1, 3, 0)};
 

@@ -1,4 +1,4 @@
-// The table of output fields, and what they are at a point.
+// The table of output fields, and their values at a point.
 #include <gtest/gtest.h>
 
 #include <array>

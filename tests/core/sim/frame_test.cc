@@ -25,8 +25,8 @@ Frame WithObjects() {
   return frame;
 }
 
-// Of Python's hashlib over struct.pack('<qdqQQ6dQQ8sQdQ2d', 3, 0.25, 7, 1, 2, 1, 2, 3, 4, 5, 6, 1, 8, b'pressure', 1,
-// -1.5, 2, 10, 20): the digest that frames had before they could hold more than bodies.
+// From Python's hashlib over struct.pack('<qdqQQ6dQQ8sQdQ2d', 3, 0.25, 7, 1, 2, 1, 2, 3, 4, 5, 6, 1, 8, b'pressure', 1,
+// -1.5, 2, 10, 20): the digest of frames of bodies only.
 TEST(FrameDigest, IsThatOfOlderFramesWithoutRigidBodiesAndLines) {
   EXPECT_EQ(Hex(DigestOf(NodeCloud())), "d707bf4b30ece898beacef3b65a0932a94845a8fdbe1bba4cda984a2202cfbae");
 }
@@ -38,7 +38,7 @@ TEST(FrameDigest, ChangesWithEveryNumberOfPosesAndLines) {
       [](Frame& frame) { frame.lines.clear(); }, [](Frame& frame) { std::swap(frame.lines[0], frame.lines[1]); },
       [](Frame& frame) { frame.lines.emplace_back(); }, [](Frame& frame) { frame.lines[0].points.pop_back(); },
       [](Frame& frame) { frame.lines[0].values.pop_back(); },
-      // The same numbers in the same order, of other lines.
+      // The same numbers in the same order, divided differently among lines.
       [](Frame& frame) {
         frame.lines[1].values.insert(frame.lines[1].values.begin(), frame.lines[1].points[0].begin(),
                                      frame.lines[1].points[0].end());

@@ -143,7 +143,7 @@ TEST(Encode, FrameKeepsPosesAndLines) {
   EXPECT_TRUE(encoded.lines(1).points().empty());
 }
 
-// Not a byte more than before frames could hold more than bodies.
+// The same bytes as before frames could contain other objects than bodies.
 TEST(Encode, FrameWithoutPosesAndLinesHasNothingOfThem) {
   const v1::Frame encoded = EncodeFrame({});
   std::vector<const google::protobuf::FieldDescriptor*> fields;

@@ -1,5 +1,5 @@
-// Scenes of the eulerian method: surfaces, and the boundaries of tetrahedra, become solids on grids, and what is wrong
-// with them is named.
+// Scenes of the eulerian method: surfaces and boundaries of tetrahedra become solids on grids, and problems are
+// reported.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ v1::Scene BlockScene() {
     })");
 }
 
-// A cube of 60 mm as an OBJ file, its triangles outwards.
+// A cube of 60 mm as an OBJ file with outward triangles.
 const std::vector<std::string> kFaces = {"1 3 2", "1 4 3", "5 6 7", "5 7 8", "1 2 6", "1 6 5",
                                          "2 3 7", "2 7 6", "3 4 8", "3 8 7", "4 1 5", "4 5 8"};
 std::string Cube(const std::vector<std::string>& faces = kFaces) {
@@ -69,7 +69,7 @@ TEST(EulerianScene, ABoxBecomesItsSurface) {
   const Body& body = scene->bodies[0];
   EXPECT_NEAR(EnclosedVolume(body.surface().mesh), 0.08 * 0.06 * 0.06, 1e-15);
   EXPECT_EQ(body.surface().mesh.triangles.size(), 2u * 2u * (4 * 3 + 4 * 3 + 3 * 3));
-  // A closed surface of genus 0 has so many nodes; those inside are left out.
+  // The number of nodes of a closed surface of genus 0; interior nodes are removed.
   EXPECT_EQ(body.nodes().size(), body.surface().mesh.triangles.size() / 2 + 2);
   EXPECT_EQ(body.regions[1].nodes.size(), 16u);
   EXPECT_EQ(body.regions[1].triangles.size(), 18u);
@@ -90,7 +90,7 @@ TEST(EulerianScene, SettingsOfTheMethod) {
                     scale { times: [0, 1] values: [1, 0] } }
          bodies { plasticity { yield_stress: 500 } })",
       &wire));
-  // The body of plasticity is the second of the merged text: put it where it belongs.
+  // The merged text defines plasticity for the second body; moves it to the first.
   *wire.mutable_bodies(0)->mutable_plasticity() = wire.bodies(1).plasticity();
   wire.mutable_bodies()->RemoveLast();
   const auto scene = Translate(wire);

@@ -61,7 +61,7 @@ TEST(TranslateScene, TakesDefaultsFromTheRules) {
   EXPECT_EQ(scene->bodies[0].constraints[0].axes, (std::array<bool, 3>{true, true, true}));
 }
 
-// Each field of the wire is one that is computed, and the other way round.
+// Fields of the wire format and computed fields correspond one to one.
 TEST(TranslateScene, KnowsAllOutputFields) {
   const auto& fields = *v1::Field_descriptor();
   ASSERT_EQ(static_cast<std::size_t>(fields.value_count()), OutputFields().size() + 1);
