@@ -83,10 +83,10 @@ void SetSqueezes(const Scene& scene, EulerianBody& body) {
   if (scene.squeezes.empty()) return;
   body.force = [&scene](const Vec3& x, double time) {
     Vec3 sum = Vec3::Zero();
-    for (const Squeeze& squeeze : scene.squeezes) {
-      const double away = (x - squeeze.point).dot(squeeze.normal);
-      const double part = squeeze.width > 0 ? std::clamp(away / squeeze.width, -1.0, 1.0) : away < 0 ? -1 : 1;
-      sum -= squeeze.scale.At(time) * squeeze.force_density * part * squeeze.normal;
+    for (const PlaneForceField& field : scene.squeezes) {
+      const double away = (x - field.point).dot(field.normal);
+      const double part = field.width > 0 ? std::clamp(away / field.width, -1.0, 1.0) : away < 0 ? -1 : 1;
+      sum -= field.scale.At(time) * field.force_density * part * field.normal;
     }
     return sum;
   };

@@ -79,7 +79,7 @@ template <>
 inline constexpr auto kFieldNames<Floor> = FieldNames("name", "point", "normal");
 
 // A plane force field: a force per deformed volume towards a plane.
-struct Squeeze {
+struct PlaneForceField {
   Vec3 point = Vec3::Zero();    // [m]
   Vec3 normal = Vec3::UnitX();  // unit
   double force_density = 0;     // [N/m^3]
@@ -87,7 +87,7 @@ struct Squeeze {
   Curve scale = Curve::Constant(1);
 };
 template <>
-inline constexpr auto kFieldNames<Squeeze> = FieldNames("point", "normal", "force_density", "width", "scale");
+inline constexpr auto kFieldNames<PlaneForceField> = FieldNames("point", "normal", "force_density", "width", "scale");
 
 }  // namespace fascicle
 

@@ -20,12 +20,12 @@ void CheckPlasticity(const Plasticity& plasticity, const std::string& path, Prob
   }
 }
 
-void CheckSqueeze(const Squeeze& squeeze, const std::string& path, Problems& problems) {
-  if (!(std::abs(squeeze.normal.norm() - 1) < 1e-9) || !squeeze.point.allFinite()) {
+void CheckForceField(const PlaneForceField& field, const std::string& path, Problems& problems) {
+  if (!(std::abs(field.normal.norm() - 1) < 1e-9) || !field.point.allFinite()) {
     problems.Add(path, "has no finite point and unit normal");
   }
-  if (!std::isfinite(squeeze.force_density)) problems.Add(JoinPath(path, "force_density"), "must be finite");
-  if (!(squeeze.width >= 0 && std::isfinite(squeeze.width))) {
+  if (!std::isfinite(field.force_density)) problems.Add(JoinPath(path, "force_density"), "must be finite");
+  if (!(field.width >= 0 && std::isfinite(field.width))) {
     problems.Add(JoinPath(path, "width"), "must be a finite length of at least 0 m");
   }
 }
@@ -84,7 +84,7 @@ void CheckEulerian(const Scene& scene, Problems& problems) {
     problems.Add("floors", "the eulerian method does not support floors", "omit them, or use the tet method");
   }
   for (std::size_t k = 0; k < scene.squeezes.size(); ++k) {
-    CheckSqueeze(scene.squeezes[k], IndexPath("squeezes", k), problems);
+    CheckForceField(scene.squeezes[k], IndexPath("squeezes", k), problems);
   }
 }
 

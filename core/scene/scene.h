@@ -25,8 +25,8 @@ struct Scene {
   TetMethod tet;
   VoxelMethod voxel;
   EulerianMethod eulerian;
-  std::vector<Squeeze> squeezes;  // plane force fields, for the eulerian method
-  double duration = 0;            // [s]
+  std::vector<PlaneForceField> squeezes;  // for the eulerian method
+  double duration = 0;                    // [s]
   Output output;
 };
 template <>

@@ -8,8 +8,13 @@ namespace fascicle::server {
 namespace {
 
 // A unit force, whose scale is the muscle's force [N].
-void TranslateStern(const v1::SternForce& wire, double duration, const std::string& path, Load& load,
+void TranslateStern(const v1::Load& wire_load, double duration, const std::string& load_path, Load& load,
                     Problems& problems) {
+  const v1::SternForce& wire = wire_load.stern();
+  const std::string path = JoinPath(load_path, "stern");
+  if (wire_load.has_scale()) {
+    problems.Add(JoinPath(load_path, "scale"), "is given beside a muscle's force", "change its activation instead");
+  }
   Problems own;
   const Vec3 direction = ToDirection(wire.direction(), JoinPath(path, "direction"), own);
   Curve angle = Curve::Constant(0), activation = Curve::Constant(1);
@@ -44,19 +49,22 @@ std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_p
     const std::string path = JoinPath(body_path, IndexPath("loads", static_cast<std::size_t>(i)));
     Load translated;
     const auto region = regions.Find(load.region(), JoinPath(path, "region"), problems);
-    if (load.has_stern()) {
-      const std::string stern = JoinPath(path, "stern");
-      TranslateStern(load.stern(), duration, stern, translated, problems);
-      if (load.has_scale()) {
-        problems.Add(JoinPath(path, "scale"), "is given beside a muscle's force", "change its activation instead");
-      }
-    } else if (load.has_traction()) {
-      translated.kind = Traction{ToVec3(load.traction().vector())};
-    } else {
-      translated.kind = NodalForce{ToVec3(load.nodal_force().total())};
-    }
-    if (load.has_scale() && !load.has_stern())
+    if (load.has_scale()) {
       translated.scale = TranslateCurve(load.scale(), kFactorCurve, JoinPath(path, "scale"), problems);
+    }
+    switch (load.kind_case()) {
+      case v1::Load::kTraction:
+        translated.kind = Traction{ToVec3(load.traction().vector())};
+        break;
+      case v1::Load::kNodalForce:
+        translated.kind = NodalForce{ToVec3(load.nodal_force().total())};
+        break;
+      case v1::Load::kStern:
+        TranslateStern(load, duration, path, translated, problems);
+        break;
+      case v1::Load::KIND_NOT_SET:
+        break;  // reported by the rules
+    }
     if (!region) continue;
     translated.region = static_cast<std::int32_t>(*region);
     result.push_back(std::move(translated));

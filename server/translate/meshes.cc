@@ -91,16 +91,17 @@ void CheckUnit(const BodySource& source, const char* kind, Problems& problems) {
 }
 
 // Whether the mesh consists of tetrahedra; other sources are problems.
-bool IsOfTetrahedra(const BodySource& source, const char* method, Problems& problems) {
+bool IsOfTetrahedra(const BodySource& source, Method method, Problems& problems) {
+  const std::string the_method = std::string("the ") + kMethodNames[static_cast<std::size_t>(method)] + " method";
   const std::string path = JoinPath(source.path, "mesh");
   if (source.wire.mesh().has_image()) {
-    problems.Add(JoinPath(path, "image"), std::string("the ") + method + " method does not support images",
+    problems.Add(JoinPath(path, "image"), the_method + " does not support images",
                  "`fascicle mesh` fills the labels of an image with tetrahedra, `fascicle segment` makes labels; or "
                  "use the voxel method");
     return false;
   }
   if (source.wire.mesh().has_surface()) {
-    problems.Add(JoinPath(path, "surface"), std::string("the ") + method + " method needs tetrahedra",
+    problems.Add(JoinPath(path, "surface"), the_method + " needs tetrahedra",
                  "`fascicle mesh` fills a closed surface with them; or use the eulerian method");
     return false;
   }
@@ -161,8 +162,7 @@ std::string SourcePath(const v1::Mesh& mesh, const std::string& body_path) {
   return field == nullptr ? path : JoinPath(path, field->name());
 }
 
-std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source, const char* method,
-                                                        Problems& problems) {
+std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source, Method method, Problems& problems) {
   const StageTimer timer(source.profile, "meshes");
   const std::string path = JoinPath(source.path, "mesh");
   if (!NamesSource(source, "file, box, fusiform, torus, sphere", problems) ||

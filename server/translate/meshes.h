@@ -9,6 +9,7 @@
 #include "core/geometry/brick_mesh.h"
 #include "core/geometry/tet_mesh.h"
 #include "core/geometry/triangle_mesh.h"
+#include "core/scene/method.h"
 #include "fascicle/v1/scene.pb.h"
 #include "server/translate/body_source.h"
 
@@ -25,9 +26,8 @@ struct TranslatedTetrahedra {
   bool sound = true;  // whether CheckMesh found no problem
 };
 
-// From a mesh file or a built-in shape. `method` is the method's name for messages.
-std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source, const char* method,
-                                                        Problems& problems);
+// From a mesh file or a built-in shape. `method` is for messages.
+std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source, Method method, Problems& problems);
 
 // The voxels of an image or a box. Adds results of the image's stages to `notes`.
 std::optional<BrickMesh> TranslateBricks(const BodySource& source, std::vector<std::string>& notes, Problems& problems);

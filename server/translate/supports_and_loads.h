@@ -18,7 +18,7 @@ std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_p
                                  const Names& regions, Problems& problems);
 Gravity TranslateGravity(const v1::Scene& scene, Problems& problems);
 std::vector<Floor> TranslateFloors(const v1::Scene& scene, Problems& problems);
-std::vector<Squeeze> TranslateSqueezes(const v1::Scene& scene, Problems& problems);
+std::vector<PlaneForceField> TranslatePlaneForceFields(const v1::Scene& scene, Problems& problems);
 
 }  // namespace fascicle::server
 

@@ -54,7 +54,7 @@ bool TranslateFile(const BodySource& source, const RegionSelectors& selectors, B
 bool TranslateBoundary(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& structure,
                        Problems& others) {
   SurfaceShape& shape = body.surface();
-  auto tetrahedra = TranslateTetrahedra(source, "eulerian", structure);
+  auto tetrahedra = TranslateTetrahedra(source, Method::kEulerian, structure);
   std::vector<Region> of_filling = EmptyRegions(selectors);
   if (tetrahedra) {
     of_filling = SelectRegions(selectors, tetrahedra->mesh);

@@ -69,7 +69,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   result->eulerian = TranslateEulerianMethod(filled, found);
   result->gravity = TranslateGravity(filled, found);
   result->floors = TranslateFloors(filled, found);
-  result->squeezes = TranslateSqueezes(filled, found);
+  result->squeezes = TranslatePlaneForceFields(filled, found);
 
   Names names("body");
   std::vector<bool> complete;
