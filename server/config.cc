@@ -54,6 +54,13 @@ std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std:
   app.add_option("--threads", config.server.default_threads, "Threads of a job that does not ask for a number")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
+  app.add_option("--cache", config.server.cache_size,
+                 "Disk space for results that take long, such as segmented images and fibres, and that later jobs can "
+                 "use again; 0 for none")
+      ->type_name("SIZE")
+      ->transform(CLI::AsSizeValue(false))
+      ->check(CLI::NonNegativeNumber)
+      ->default_str("2GiB");
   app.add_option("--checkpoint", checkpoint, "Most work of a job that a crash can lose")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.01, 3600.0))

@@ -10,8 +10,10 @@
 
 #include "server/jobs/job_manager.h"
 #include "server/rpc/rpc_server.h"
+#include "server/store/result_store.h"
 #include "server/store/store.h"
 #include "server/translate/job_codec.h"
+#include "server/translate/result_cache.h"
 
 namespace fascicle::server {
 namespace {
@@ -47,15 +49,22 @@ std::unique_ptr<Store> OpenStore(const std::string& data_directory) {
   }
 }
 
+std::unique_ptr<ResultStore> OpenResults(const ServerOptions& options) {
+  if (options.data_directory.empty()) return MakeMemoryResults(options.cache_size);
+  return OpenResultDirectory(options.data_directory + "/results", options.cache_size);
+}
+
 class Server : public EmbeddedServer {
  public:
   explicit Server(const ServerOptions& options)
       : host_(HostOf(options.listen)),
         log_(options.log ? options.log : DefaultLog()),
         store_(OpenStore(options.data_directory)),
-        jobs_(*store_, MakeJobCodec(),
+        result_store_(OpenResults(options)),
+        results_(*result_store_),
+        jobs_(*store_, MakeJobCodec(&results_),
               JobManagerOptions{options.workers, options.default_threads, options.checkpoint_interval}),
-        rpc_(options.listen, *store_, jobs_, log_, SettingsOf(options)) {
+        rpc_(options.listen, *store_, jobs_, results_, log_, SettingsOf(options)) {
     log_->info("listening on {}, data in {}", address(),
                options.data_directory.empty() ? "memory" : options.data_directory);
   }
@@ -83,6 +92,8 @@ class Server : public EmbeddedServer {
   const std::string host_;
   const std::shared_ptr<spdlog::logger> log_;
   const std::unique_ptr<Store> store_;
+  const std::unique_ptr<ResultStore> result_store_;
+  ResultCache results_;
   JobManager jobs_;
   RpcServer rpc_;
   std::mutex stop_mutex_;

@@ -20,6 +20,7 @@ struct ServerOptions {
   bool allow_remote = false;  // whether addresses other than loopback are allowed
 
   std::int64_t max_asset_size = std::int64_t{4} << 30;                             // [byte]
+  std::int64_t cache_size = std::int64_t{2} << 30;                                 // of results kept for reuse [byte]
   std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2);         // of running jobs
   std::chrono::milliseconds heartbeat_interval = std::chrono::seconds(10);         // of frame streams, at most
   std::chrono::milliseconds progress_interval = std::chrono::milliseconds(1'000);  // the same while a job progresses

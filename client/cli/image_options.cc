@@ -258,10 +258,11 @@ void AddImageOptions(CLI::App& command, ImageOptions& options) {
   command.add_option("--picture", options.picture, "Draw slices with the body's outline")->type_name("FILE.png");
 }
 
-GivenImage ReadGivenImage(const ImageOptions& options, Problems problems) {
+GivenImage ReadGivenImage(const ImageOptions& options, const std::stop_token& stop, Problems problems) {
   GivenImage given;
   ImageStage& stage = given.stage;
-  const VolumeReaderOptions reading = ReadRawOptions(options, problems);
+  VolumeReaderOptions reading = ReadRawOptions(options, problems);
+  reading.stop = stop;
   if (!options.region.empty()) stage.region = ParseRegion(options.region, problems);
   if (options.resample > 0) stage.resample = options.resample * kMillimetre;
   for (const std::string& text : options.filters) {
@@ -302,8 +303,8 @@ GivenImage ReadGivenImage(const ImageOptions& options, Problems problems) {
   return given;
 }
 
-StagedImage RunStage(const ImageOptions& options, const GivenImage& given) {
-  ThreadTeam team(options.threads);
+StagedImage RunStage(const ImageOptions& options, const GivenImage& given, const std::stop_token& stop) {
+  ThreadTeam team(options.threads, stop);
   Problems found, problems;
   std::optional<StagedImage> staged;
   {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -49,11 +50,12 @@ struct GivenImage {
   ImageStage stage;
 };
 // Reads the image and evaluates the options. CommandError with all problems (the path is the option or file), including
-// the given ones, if there are any.
-GivenImage ReadGivenImage(const ImageOptions& options, Problems problems);
+// the given ones, if there are any. Stopped after a stop request.
+GivenImage ReadGivenImage(const ImageOptions& options, const std::stop_token& stop, Problems problems);
 
-// Runs the stage with progress on stderr. CommandError with all problems, whose paths are options.
-StagedImage RunStage(const ImageOptions& options, const GivenImage& given);
+// Runs the stage with progress on stderr. CommandError with all problems, whose paths are options; Stopped after a stop
+// request.
+StagedImage RunStage(const ImageOptions& options, const GivenImage& given, const std::stop_token& stop);
 
 // Draws the body's outline on slices of the image.
 void DrawBody(const StagedImage& staged, const ImageOptions& options, const std::string& title);

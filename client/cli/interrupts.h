@@ -2,6 +2,7 @@
 #define FASCICLE_CLIENT_CLI_INTERRUPTS_H_
 
 #include <functional>
+#include <stop_token>
 #include <thread>
 
 namespace fascicle::client {
@@ -17,6 +18,16 @@ class Interrupts {
 
  private:
   std::jthread thread_;
+};
+
+// The same for work that heeds a stop token.
+class StopOnInterrupt {
+ public:
+  std::stop_token token() const { return source_.get_token(); }
+
+ private:
+  std::stop_source source_;
+  Interrupts interrupts_ = Interrupts([this] { source_.request_stop(); });
 };
 
 }  // namespace fascicle::client

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "client/cli/command.h"
+#include "core/base/stop.h"
 
 namespace fascicle::client {
 namespace {
@@ -65,6 +66,9 @@ int Main(int argc, char** argv) {
   } catch (const CommandError& error) {
     PrintError(error.error(), context.json);
     return ExitCodeOf(error.error().kind);
+  } catch (const Stopped&) {
+    PrintError({Error::Kind::kStopped, "interrupted", "", {}}, context.json);
+    return kCancelled;
   } catch (const std::exception& error) {
     PrintError({Error::Kind::kInternal, error.what(), "", {}}, context.json);
     return kJobFailed;

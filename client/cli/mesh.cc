@@ -10,11 +10,13 @@
 
 #include "client/cli/command.h"
 #include "client/cli/input_file.h"
+#include "client/cli/interrupts.h"
 #include "client/cli/mesh_picture.h"
 #include "client/cli/mesh_regions.h"
 #include "client/cli/stage_progress.h"
 #include "client/image/label_surface.h"
 #include "client/lib/replace_file.h"
+#include "core/base/stop.h"
 #include "core/geometry/mesh_writer.h"
 #include "core/geometry/tetrahedralize.h"
 
@@ -34,7 +36,8 @@ constexpr const char* kExamples =
   fascicle mesh labels.mha --label 2 --out triceps.msh        the voxels with label 2 of a segmentation
 
 Reads .stl, .obj, .ply and .vtp. Small holes are closed; larger holes, self-intersections and surfaces around
-several bodies are refused with their location. Regions become physical tags, to which scenes refer.
+several bodies are refused with their location. Regions become physical tags, to which scenes refer. Ctrl-C stops the
+command (exit code 4); files are written completely or not at all.
 )";
 
 struct Options {
@@ -180,7 +183,7 @@ struct Input {
   std::optional<double> voxel_volume;  // of a label image
 };
 
-Input ReadInput(const Options& options, Problems& problems) {
+Input ReadInput(const Options& options, const std::stop_token& stop, Problems& problems) {
   Input input;
   const bool is_image = IsImageName(options.surface);
   if (is_image && !options.label) {
@@ -192,9 +195,9 @@ Input ReadInput(const Options& options, Problems& problems) {
   const std::optional<std::string> bytes = ReadInputFile(options.surface, problems);
   if (!bytes) return input;
   if (!is_image) {
-    if (auto surface = ReadSurface(options.surface, *bytes, problems)) input.surface = std::move(*surface);
+    if (auto surface = ReadSurface(options.surface, *bytes, problems, stop)) input.surface = std::move(*surface);
   } else if (options.label) {
-    auto label = ReadLabelSurface(options.surface, *options.label, options.smoothing, problems);
+    auto label = ReadLabelSurface(options.surface, *options.label, options.smoothing, stop, problems);
     if (!label) return input;
     input.surface = std::move(label->surface);
     input.voxel_volume = label->voxel_volume;
@@ -203,9 +206,11 @@ Input ReadInput(const Options& options, Problems& problems) {
 }
 
 int MakeMesh(const Options& options, const Context& context) {
+  const StopOnInterrupt interrupts;
+  const std::stop_token stop = interrupts.token();
   Problems problems;
-  Input input = ReadInput(options, problems);
-  const std::vector<RegionRequest> requests = ReadRegionRequests(options.regions, problems);
+  Input input = ReadInput(options, stop, problems);
+  const std::vector<RegionRequest> requests = ReadRegionRequests(options.regions, stop, problems);
   if (fs::path(options.out).extension() != ".msh") {
     problems.Add("--out", "expects a file that ends in .msh", "the mesh is written in Gmsh's format");
   }
@@ -214,7 +219,7 @@ int MakeMesh(const Options& options, const Context& context) {
   }
   FailOn(problems, options.surface);
 
-  ThreadTeam team(options.threads);
+  ThreadTeam team(options.threads, stop);
   MeshingOptions meshing;
   meshing.size = options.size;
   meshing.tetrahedra = options.tetrahedra;
@@ -227,15 +232,16 @@ int MakeMesh(const Options& options, const Context& context) {
                             [&](double part, const char* stage) { bar.Show(part, stage); });
   }
   FailOn(problems, options.surface);
-  const std::vector<Region> regions = MarkRegions(requests, result->mesh, problems);
+  const std::vector<Region> regions = MarkRegions(requests, stop, result->mesh, problems);
   if (!options.scene.empty() && problems.empty()) CheckEnds(regions[0], regions[1], problems);
   FailOn(problems, options.surface);
 
   std::vector<TagName> names;
   for (const Region& region : regions) names.push_back({2, static_cast<std::int32_t>(names.size() + 1), region.name});
   names.push_back({3, static_cast<std::int32_t>(names.size() + 1), "body"});
-  ReplaceFile(options.out, GmshText(result->mesh, names));
+  ReplaceFile(options.out, GmshText(result->mesh, names, stop));
   if (!options.scene.empty()) ReplaceFile(options.scene, SceneJson(options, regions).dump(2) + "\n");
+  ThrowIfStopped(stop);
   if (!options.picture.empty()) {
     DrawMesh(result->mesh, regions, MetresIn(options.unit), fs::path(options.out).stem().string(), options.picture);
   }

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "client/cli/input_file.h"
+#include "core/base/stop.h"
 #include "core/geometry/triangle_tree.h"
 
 namespace fascicle::client {
@@ -73,10 +74,10 @@ std::optional<RegionRequest::Near> ParseNear(std::string_view text) {
   return near;
 }
 
-void ReadOther(RegionRequest::Near& near, const std::string& path, Problems& problems) {
+void ReadOther(RegionRequest::Near& near, const std::string& path, const std::stop_token& stop, Problems& problems) {
   Problems in_file;
   std::optional<TriangleMesh> surface;
-  if (const auto bytes = ReadInputFile(near.file, in_file)) surface = ReadSurface(near.file, *bytes, in_file);
+  if (const auto bytes = ReadInputFile(near.file, in_file)) surface = ReadSurface(near.file, *bytes, in_file, stop);
   if (surface) near.surface = std::move(*surface);
   for (const Problem& problem : in_file.kept()) problems.Add(path, near.file + ": " + problem.message, problem.hint);
 }
@@ -109,7 +110,8 @@ std::string EmptyHint(const RegionRequest& request, const TetMesh& mesh, const s
 
 }  // namespace
 
-std::vector<RegionRequest> ReadRegionRequests(const std::vector<std::string>& options, Problems& problems) {
+std::vector<RegionRequest> ReadRegionRequests(const std::vector<std::string>& options, const std::stop_token& stop,
+                                              Problems& problems) {
   std::vector<RegionRequest> requests;
   std::set<std::string> names;
   for (const std::string& option : options) {
@@ -138,7 +140,7 @@ std::vector<RegionRequest> ReadRegionRequests(const std::vector<std::string>& op
       }
     } else if (value.starts_with("near:")) {
       if (auto near = ParseNear(value.substr(5))) {
-        ReadOther(*near, path, problems);
+        ReadOther(*near, path, stop, problems);
         request.selector = std::move(*near);
       } else {
         problems.Add(path, "expects a surface and a distance of 0 or more", "such as near:fibula.stl:3");
@@ -161,10 +163,12 @@ void CheckEnds(const Region& origin, const Region& insertion, Problems& problems
                "the ends of a muscle must be separate: use smaller regions, or end:X,Y,Z:LENGTH");
 }
 
-std::vector<Region> MarkRegions(const std::vector<RegionRequest>& requests, TetMesh& mesh, Problems& problems) {
-  const std::vector<Triangle> surface = BoundaryTriangles(mesh);
+std::vector<Region> MarkRegions(const std::vector<RegionRequest>& requests, const std::stop_token& stop, TetMesh& mesh,
+                                Problems& problems) {
+  const std::vector<Triangle> surface = BoundaryTriangles(mesh, stop);
   std::vector<Region> regions;
   for (std::size_t i = 0; i < requests.size(); ++i) {
+    ThrowIfStopped(stop);
     const RegionRequest& request = requests[i];
     if (const auto* side = std::get_if<SideSelector>(&request.selector)) {
       regions.push_back(SelectRegion(mesh, surface, request.name, *side));
@@ -172,7 +176,7 @@ std::vector<Region> MarkRegions(const std::vector<RegionRequest>& requests, TetM
       regions.push_back(SelectRegion(mesh, surface, request.name, BelowFurthest(mesh, *end)));
     } else {
       const auto& near = std::get<RegionRequest::Near>(request.selector);
-      regions.push_back(SelectNear(mesh, surface, request.name, TriangleTree(near.surface), near.distance));
+      regions.push_back(SelectNear(mesh, surface, request.name, TriangleTree(near.surface), near.distance, stop));
     }
     if (regions.back().triangles.empty()) {
       problems.Add("--region " + request.name, "selects no triangle of the mesh", EmptyHint(request, mesh, surface));

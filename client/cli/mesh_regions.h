@@ -2,6 +2,7 @@
 #define FASCICLE_CLIENT_CLI_MESH_REGIONS_H_
 
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <variant>
 #include <vector>
@@ -29,15 +30,19 @@ struct RegionRequest {
   std::variant<SideSelector, Near, End> selector;
 };
 
+// Both ReadRegionRequests and MarkRegions throw Stopped after a stop request.
+
 // Reads `--region` options and the surfaces that they refer to; adds every mistake to `problems`.
-std::vector<RegionRequest> ReadRegionRequests(const std::vector<std::string>& options, Problems& problems);
+std::vector<RegionRequest> ReadRegionRequests(const std::vector<std::string>& options, const std::stop_token& stop,
+                                              Problems& problems);
 
 // Checks two regions that are the ends of a muscle: they must not share a node.
 void CheckEnds(const Region& origin, const Region& insertion, Problems& problems);
 
 // Tags the triangles of each region, the first region by 1 and so on, and all tetrahedra by the next number. A region
 // without triangles is a problem.
-std::vector<Region> MarkRegions(const std::vector<RegionRequest>& requests, TetMesh& mesh, Problems& problems);
+std::vector<Region> MarkRegions(const std::vector<RegionRequest>& requests, const std::stop_token& stop, TetMesh& mesh,
+                                Problems& problems);
 
 }  // namespace fascicle::client
 

@@ -76,9 +76,8 @@ void WriteResults(const Followed& followed, const fs::path& folder) {
 
 int Run(const Options& options, const Context& context) {
   const ScenePackage package = LoadSceneOrFail(options.scene);
-  std::stop_source interrupted;
   // Created before the server, whose threads must not receive the signals.
-  const Interrupts interrupts([&] { interrupted.request_stop(); });
+  const StopOnInterrupt interrupts;
   std::unique_ptr<TemporaryFolder> temporary;
   if (options.data.empty()) temporary = std::make_unique<TemporaryFolder>();
   server::ServerOptions server_options;
@@ -87,8 +86,8 @@ int Run(const Options& options, const Context& context) {
   server_options.default_threads = options.threads;
   const auto server = server::EmbeddedServer::Start(server_options);
   Client client(server->address());
-  const v1::Job job = Take(client.Submit(package, options.threads));
-  const std::stop_callback cancel(interrupted.get_token(), [&] { (void)client.CancelJob(job.name()); });
+  const v1::Job job = Take(client.Submit(package, options.threads, interrupts.token()));
+  const std::stop_callback cancel(interrupts.token(), [&] { (void)client.CancelJob(job.name()); });
   std::optional<VtkSeriesWriter> frames;
   const auto on_frame = [&](const v1::Geometry& geometry, const v1::Frame& frame) {
     if (options.digests) PrintDigest(frame, context.json);

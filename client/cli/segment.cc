@@ -10,6 +10,8 @@
 
 #include "client/cli/command.h"
 #include "client/cli/image_options.h"
+#include "client/cli/interrupts.h"
+#include "core/base/stop.h"
 #include "core/imaging/masks.h"
 #include "core/imaging/volume_reader.h"
 
@@ -26,7 +28,8 @@ constexpr const char* kExamples =
   fascicle segment labels.mha --label 1 --label 2 --picture both.png      an existing segmentation
 
 Steps in order: region, resampling, filters, classes, opening, islands, holes. Check the picture before
-you trust the result. The label image has 1 where the body is, or 1, 2, ... for the labels in their order.
+you trust the result. The label image has 1 where the body is, or 1, 2, ... for the labels in their order. Ctrl-C
+stops the command (exit code 4); files are written completely or not at all.
 )";
 
 struct Options : ImageOptions {
@@ -108,14 +111,18 @@ Json ReportJson(const Options& options, const StagedImage& staged, const std::op
 }
 
 int Segment(const Options& options, const Context& context) {
+  const StopOnInterrupt interrupts;
+  const std::stop_token stop = interrupts.token();
   Problems problems;
-  const GivenImage given = ReadGivenImage(options, problems);
-  const StagedImage staged = RunStage(options, given);
+  const GivenImage given = ReadGivenImage(options, stop, problems);
+  const StagedImage staged = RunStage(options, given, stop);
   const std::optional<double> overlap = OverlapWithTruth(options, staged, given, problems);
   if (!problems.empty()) {
     throw CommandError({Error::Kind::kInvalid, "the truth can't be compared", "INVALID_IMAGE", problems});
   }
+  ThrowIfStopped(stop);
   if (!options.out.empty()) WriteLabels(MakeLabelImage(staged.body), options.out);
+  ThrowIfStopped(stop);
   if (!options.picture.empty()) DrawBody(staged, options, TitleOf(options));
   if (context.json) {
     PrintJson(ReportJson(options, staged, overlap));

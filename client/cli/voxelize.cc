@@ -7,6 +7,8 @@
 
 #include "client/cli/command.h"
 #include "client/cli/image_options.h"
+#include "client/cli/interrupts.h"
+#include "core/base/stop.h"
 #include "core/geometry/voxel_grid.h"
 
 namespace fascicle::client {
@@ -19,7 +21,8 @@ constexpr const char* kExamples =
   fascicle voxelize labels.mha --label 1 --level 1 --picture coarse.png
 
 The body is selected as for `fascicle segment`. A voxel of the next level joins 2 x 2 x 2 and is solid if the given
-fraction of them is solid. --out and --picture show the level given by --level.
+fraction of them is solid. --out and --picture show the level given by --level. Ctrl-C stops the command
+(exit code 4); files are written completely or not at all.
 )";
 
 struct Options : ImageOptions {
@@ -76,18 +79,22 @@ void ShowLevel(const VoxelGrid& level, StagedImage& staged) {
 }
 
 int Voxelize(const Options& options, const Context& context) {
+  const StopOnInterrupt interrupts;
+  const std::stop_token stop = interrupts.token();
   Problems problems;
   if (options.level >= options.levels) problems.Add("--level", "is not below --levels", "levels count from 0");
-  const GivenImage given = ReadGivenImage(options, problems);
-  StagedImage staged = RunStage(options, given);
-  const std::vector<VoxelLevel> hierarchy = MakeHierarchy(staged.grid, options.fraction, options.levels);
+  const GivenImage given = ReadGivenImage(options, stop, problems);
+  StagedImage staged = RunStage(options, given, stop);
+  const std::vector<VoxelLevel> hierarchy = MakeHierarchy(staged.grid, options.fraction, options.levels, stop);
   if (options.level >= static_cast<int>(hierarchy.size())) {
     problems.Add("--level", "has no voxels: existing levels are 0 to " + std::to_string(hierarchy.size() - 1),
                  "use a lower level, or a smaller --fraction");
     throw CommandError({Error::Kind::kInvalid, "there is no such level", "INVALID_IMAGE", problems});
   }
   const VoxelGrid& level = hierarchy[options.level].grid;
+  ThrowIfStopped(stop);
   if (!options.out.empty()) WriteLabels(MakeLabelImage(level), options.out);
+  ThrowIfStopped(stop);
   if (!options.picture.empty()) {
     ShowLevel(level, staged);
     DrawBody(staged, options,

@@ -1,5 +1,6 @@
 #include "client/image/label_surface.h"
 
+#include <vtkAlgorithm.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkDataArray.h>
@@ -23,6 +24,8 @@
 #include <sstream>
 #include <string_view>
 #include <utility>
+
+#include "core/base/stop.h"
 
 namespace fascicle::client {
 namespace {
@@ -124,6 +127,19 @@ std::optional<Image> ReadImage(const std::filesystem::path& path, Problems& prob
   return image;
 }
 
+// Runs a filter, which ends at its next report of progress after a stop request.
+void UpdateUnlessStopped(vtkAlgorithm& filter, std::stop_token stop) {
+  vtkNew<vtkCallbackCommand> on_progress;
+  on_progress->SetClientData(&stop);
+  on_progress->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    if (static_cast<std::stop_token*>(data)->stop_requested()) vtkAlgorithm::SafeDownCast(caller)->AbortExecuteOn();
+  });
+  filter.AddObserver(vtkCommand::ProgressEvent, on_progress);
+  filter.Update();
+  filter.RemoveObserver(on_progress);
+  ThrowIfStopped(stop);
+}
+
 // The voxels of a label: 1 in a box with a margin, everything else 0.
 struct Mask {
   vtkNew<vtkImageData> data;  // float, in index space
@@ -202,10 +218,11 @@ TriangleMesh SurfaceAt(vtkImageData& blurred, double level) {
 }
 
 // The surface in index space that encloses the given volume; the volume decreases with the level.
-TriangleMesh SurfaceOfVolume(vtkImageData& blurred, double volume) {
+TriangleMesh SurfaceOfVolume(vtkImageData& blurred, double volume, const std::stop_token& stop) {
   double low = 0.02, high = 0.98, level = 0.5;
   TriangleMesh surface;
   for (int round = 0; round < kLevelRounds; ++round) {
+    ThrowIfStopped(stop);
     surface = SurfaceAt(blurred, level);
     const double error = std::abs(EnclosedVolume(surface)) / volume - 1;
     if (std::abs(error) < kVolumeTolerance) break;
@@ -223,18 +240,20 @@ bool IsImageName(const std::string& name) {
 }
 
 std::optional<LabelSurface> ReadLabelSurface(const std::filesystem::path& path, int label, double smoothing,
-                                             Problems& problems) {
+                                             const std::stop_token& stop, Problems& problems) {
   const std::optional<Image> image = ReadImage(path, problems);
+  ThrowIfStopped(stop);
   Mask mask;
   if (!image || !MakeMask(*image, label, smoothing, mask, problems)) return std::nullopt;
+  ThrowIfStopped(stop);
   vtkNew<vtkImageGaussianSmooth> blur;
   blur->SetInputData(mask.data);
   blur->SetStandardDeviation(smoothing);
   blur->SetRadiusFactor(4);
-  blur->Update();
+  UpdateUnlessStopped(*blur, stop);
   const auto voxels = static_cast<double>(mask.voxels);
   LabelSurface result;
-  result.surface = SurfaceOfVolume(*blur->GetOutput(), voxels);
+  result.surface = SurfaceOfVolume(*blur->GetOutput(), voxels, stop);
   if (result.surface.triangles.empty()) {
     problems.Add("", "the label has " + std::to_string(mask.voxels) + " voxels, all of which disappear by smoothing",
                  "smooth less");

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include "core/base/problems.h"
@@ -22,9 +23,10 @@ bool IsImageName(const std::string& name);
 
 // Reads an image with one component per voxel and makes a surface of the voxels whose value is `label`, smoothed by a
 // Gaussian of `smoothing` voxels (standard deviation, 0.3 to 10) with the volume preserved. Adds to `problems` (with
-// empty paths) what is wrong with the file, or the existing labels if this one does not exist.
+// empty paths) what is wrong with the file, or the existing labels if this one does not exist. Throws Stopped after a
+// stop request, which VTK's filters are asked for between their pieces of work.
 std::optional<LabelSurface> ReadLabelSurface(const std::filesystem::path& path, int label, double smoothing,
-                                             Problems& problems);
+                                             const std::stop_token& stop, Problems& problems);
 
 }  // namespace fascicle::client
 

@@ -37,24 +37,29 @@ struct Client::Impl {
 
   // A unary call; returns its response or error.
   template <class Response, class Call>
-  Result<Response> Ask(std::chrono::seconds timeout, const Call& call) {
+  Result<Response> Ask(std::chrono::seconds timeout, const Call& call, const std::stop_token& stop = {}) {
     Response response;
-    const grpc::Status status =
-        connection.Repeat(timeout, [&](grpc::ClientContext& context) { return call(context, response); });
+    const grpc::Status status = connection.Repeat(
+        timeout, [&](grpc::ClientContext& context) { return call(context, response); }, stop);
     if (!status.ok()) return ErrorOf(status, connection.address());
     return response;
   }
 
   // Uploads missing files, then creates the job; repeats both if an asset disappeared in between.
-  Result<v1::Job> Create(const ScenePackage& package, const v1::CreateJobRequest& request) {
+  Result<v1::Job> Create(const ScenePackage& package, const v1::CreateJobRequest& request,
+                         const std::stop_token& stop) {
+    const auto create = [&](grpc::ClientContext& context, v1::Job& response) {
+      return connection.jobs().CreateJob(&context, request, &response);
+    };
     constexpr int kAttempts = 3;
     for (int attempt = 1;; ++attempt) {
-      if (grpc::Status status = UploadMissing(connection, package.assets); !status.ok()) {
+      if (grpc::Status status = UploadMissing(connection, package.assets, stop); !status.ok()) {
         return ErrorOf(status, connection.address());
       }
-      Result<v1::Job> job = Ask<v1::Job>(kCreateTimeout, [&](grpc::ClientContext& context, v1::Job& response) {
-        return connection.jobs().CreateJob(&context, request, &response);
-      });
+      Result<v1::Job> job = Ask<v1::Job>(kCreateTimeout, create, stop);
+      if (!job.ok() && stop.stop_requested()) {
+        return Error{Error::Kind::kStopped, "stopped before the job was created", "", {}};
+      }
       if (job.ok() || job.error().reason != "MISSING_ASSET" || attempt == kAttempts) return job;
     }
   }
@@ -72,12 +77,12 @@ Result<v1::ServerInfo> Client::GetServerInfo() {
   });
 }
 
-Result<v1::Job> Client::Submit(const ScenePackage& package, int threads) {
+Result<v1::Job> Client::Submit(const ScenePackage& package, int threads, const std::stop_token& stop) {
   v1::CreateJobRequest request;
   *request.mutable_job()->mutable_scene() = package.scene;
   request.mutable_job()->set_threads(threads);
   request.set_request_id(RandomRequestId());
-  return impl_->Create(package, request);
+  return impl_->Create(package, request, stop);
 }
 
 std::optional<Error> Client::Validate(const ScenePackage& package, int threads) {
@@ -85,7 +90,7 @@ std::optional<Error> Client::Validate(const ScenePackage& package, int threads) 
   *request.mutable_job()->mutable_scene() = package.scene;
   request.mutable_job()->set_threads(threads);
   request.set_validate_only(true);
-  const Result<v1::Job> job = impl_->Create(package, request);
+  const Result<v1::Job> job = impl_->Create(package, request, {});
   if (job.ok()) return std::nullopt;
   return job.error();
 }

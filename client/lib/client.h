@@ -80,8 +80,9 @@ class Client {
   ~Client();
 
   Result<v1::ServerInfo> GetServerInfo();
-  // Uploads the files that the server lacks and creates the job.
-  Result<v1::Job> Submit(const ScenePackage& package, int threads);
+  // Uploads the files that the server lacks and creates the job. A stop request ends it with kStopped, and the server's
+  // work on the scene with it.
+  Result<v1::Job> Submit(const ScenePackage& package, int threads, const std::stop_token& stop = {});
   // Checks a scene without creating a job.
   std::optional<Error> Validate(const ScenePackage& package, int threads);
   Result<v1::Job> GetJob(const std::string& name);

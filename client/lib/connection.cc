@@ -67,7 +67,8 @@ grpc::Status Connection::Connect() {
 }
 
 grpc::Status Connection::Repeat(std::chrono::seconds timeout,
-                                const std::function<grpc::Status(grpc::ClientContext&)>& call) {
+                                const std::function<grpc::Status(grpc::ClientContext&)>& call,
+                                const std::stop_token& stop) {
   constexpr std::chrono::seconds kPatience(15);
   if (grpc::Status status = Connect(); !status.ok()) return status;
   const Clock::time_point give_up = Clock::now() + kPatience;
@@ -76,9 +77,10 @@ grpc::Status Connection::Repeat(std::chrono::seconds timeout,
     grpc::ClientContext context;
     PrepareCall(context);
     context.set_deadline(Clock::now() + timeout);
+    const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
     const grpc::Status status = call(context);
     if (!IsTransient(status) || Clock::now() >= give_up) return status;
-    backoff.Wait(RetryDelayOf(status));
+    backoff.Wait(RetryDelayOf(status), stop);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <stop_token>
 #include <string>
 
 #include <grpcpp/channel.h>
@@ -25,8 +26,10 @@ class Connection {
   // five seconds without a response. Later calls return at once, because each call detects a lost connection itself.
   grpc::Status Connect();
 
-  // Makes `call` with a deadline, and repeats it with backoff on UNAVAILABLE for up to 15 s.
-  grpc::Status Repeat(std::chrono::seconds timeout, const std::function<grpc::Status(grpc::ClientContext&)>& call);
+  // Makes `call` with a deadline, and repeats it with backoff on UNAVAILABLE for up to 15 s. A stop request cancels it:
+  // CANCELLED.
+  grpc::Status Repeat(std::chrono::seconds timeout, const std::function<grpc::Status(grpc::ClientContext&)>& call,
+                      const std::stop_token& stop = {});
 
   v1::JobService::Stub& jobs() { return *jobs_; }
   v1::AssetService::Stub& assets() { return *assets_; }

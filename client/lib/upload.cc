@@ -15,15 +15,17 @@ constexpr std::chrono::seconds kUploadTimeout(3600);
 
 std::string NameOf(const AssetFile& asset) { return "assets/" + asset.sha256_hex; }
 
-grpc::Status FindMissing(Connection& connection, const std::vector<AssetFile>& assets, std::set<std::string>& missing) {
+grpc::Status FindMissing(Connection& connection, const std::vector<AssetFile>& assets, const std::stop_token& stop,
+                         std::set<std::string>& missing) {
   for (std::size_t begin = 0; begin < assets.size(); begin += kNamesPerCall) {
     v1::FindMissingAssetsRequest request;
     const std::size_t end = std::min(assets.size(), begin + kNamesPerCall);
     for (std::size_t i = begin; i < end; ++i) request.add_names(NameOf(assets[i]));
     v1::FindMissingAssetsResponse response;
-    const grpc::Status status = connection.Repeat(kFindTimeout, [&](grpc::ClientContext& context) {
+    const auto find = [&](grpc::ClientContext& context) {
       return connection.assets().FindMissingAssets(&context, request, &response);
-    });
+    };
+    const grpc::Status status = connection.Repeat(kFindTimeout, find, stop);
     if (!status.ok()) return status;
     missing.insert(response.missing().begin(), response.missing().end());
   }
@@ -54,14 +56,14 @@ grpc::Status UploadOnce(Connection& connection, const AssetFile& asset, grpc::Cl
 
 }  // namespace
 
-grpc::Status UploadMissing(Connection& connection, const std::vector<AssetFile>& assets) {
+grpc::Status UploadMissing(Connection& connection, const std::vector<AssetFile>& assets, const std::stop_token& stop) {
   if (assets.empty()) return grpc::Status::OK;
   std::set<std::string> missing;
-  if (grpc::Status status = FindMissing(connection, assets, missing); !status.ok()) return status;
+  if (grpc::Status status = FindMissing(connection, assets, stop, missing); !status.ok()) return status;
   for (const AssetFile& asset : assets) {
     if (missing.erase(NameOf(asset)) == 0) continue;
-    const grpc::Status status = connection.Repeat(
-        kUploadTimeout, [&](grpc::ClientContext& context) { return UploadOnce(connection, asset, context); });
+    const auto upload = [&](grpc::ClientContext& context) { return UploadOnce(connection, asset, context); };
+    const grpc::Status status = connection.Repeat(kUploadTimeout, upload, stop);
     if (!status.ok()) return status;
   }
   return grpc::Status::OK;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "core/geometry/voxel_grid.h"
@@ -24,11 +25,11 @@ struct BrickMesh {
   std::vector<std::int32_t> labels;  // material of each brick in the grid
 };
 
-// `grid` has at most 2^31 - 1 solid voxels.
-BrickMesh MakeBrickMesh(VoxelGrid grid);
+// `grid` has at most 2^31 - 1 solid voxels. Throws Stopped after a stop request.
+BrickMesh MakeBrickMesh(VoxelGrid grid, const std::stop_token& stop = {});
 
-// Sides that belong to one brick only, ordered by brick, then by side.
-std::vector<Quad> BoundaryQuads(const BrickMesh& mesh);
+// Sides that belong to one brick only, ordered by brick, then by side. Throws Stopped after a stop request.
+std::vector<Quad> BoundaryQuads(const BrickMesh& mesh, const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

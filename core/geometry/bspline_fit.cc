@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/stop.h"
+
 namespace fascicle {
 namespace {
 
@@ -87,9 +89,11 @@ SparseMatrix DifferenceMatrix(const BsplineSolid::Bases& bases) {
 }  // namespace
 
 std::optional<SolidFit> FitBsplineSolid(BsplineSolid::Bases bases, std::span<const SolidSample> samples,
-                                        double smoothing) {
+                                        double smoothing, const std::stop_token& stop) {
   if (samples.empty()) return std::nullopt;
+  ThrowIfStopped(stop);
   const SparseMatrix functions = SampleMatrix(bases, samples), differences = DifferenceMatrix(bases);
+  ThrowIfStopped(stop);
   const double per_sample = 1 / static_cast<double>(samples.size());
   const double per_control = smoothing / static_cast<double>(ControlCount(bases));
   const SparseMatrix normal = per_sample * SparseMatrix(functions.transpose() * functions) +
@@ -100,7 +104,9 @@ std::optional<SolidFit> FitBsplineSolid(BsplineSolid::Bases bases, std::span<con
   const Eigen::RowVector3d mean = positions.colwise().mean();
   positions.rowwise() -= mean;
 
+  ThrowIfStopped(stop);
   const Eigen::SimplicialLDLT<SparseMatrix> solver(normal);
+  ThrowIfStopped(stop);
   if (solver.info() != Eigen::Success) return std::nullopt;
   Eigen::MatrixX3d net = solver.solve(per_sample * (functions.transpose() * positions));
   if (!net.allFinite()) return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <stop_token>
 
 #include "core/geometry/bspline_solid.h"
 
@@ -24,11 +25,11 @@ struct SolidFit {
 //   difference|^2.
 // Second differences are those of the control net along each direction, divided by the distances of the Greville points
 // and multiplied by the mean distance squared, so that they vanish for every trilinear map [after Eilers and Marx
-// 1996].
-// Smoothing also determines control points that no sample reaches. Sparse Cholesky factorization on one thread: the
-// same bits on every run. Returns nothing when the samples don't determine a solid.
+// 1996]. Smoothing also determines control points that no sample reaches. Sparse Cholesky factorization on one thread:
+// the same bits on every run. Returns nothing when the samples don't determine a solid. Throws Stopped after a stop
+// request; the Cholesky factorization comes to its end before.
 std::optional<SolidFit> FitBsplineSolid(BsplineSolid::Bases bases, std::span<const SolidSample> samples,
-                                        double smoothing);
+                                        double smoothing, const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

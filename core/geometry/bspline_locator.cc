@@ -179,9 +179,7 @@ BsplineLocation BsplineLocator::Locate(const Vec3& point) const {
 std::vector<BsplineLocation> BsplineLocator::Locate(std::span<const Vec3> points, ThreadTeam& team) const {
   constexpr std::size_t kGrain = 64;
   std::vector<BsplineLocation> locations(points.size());
-  team.For(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) locations[i] = Locate(points[i]);
-  });
+  ForEach(team, points.size(), kGrain, [&](std::size_t i) { locations[i] = Locate(points[i]); });
   return locations;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "core/base/stop.h"
+
 namespace fascicle {
 
 Triangle Ascending(Triangle triangle) {
@@ -16,7 +18,7 @@ Triangle OutwardTriangle(const Tetrahedron& tetrahedron, int local_side) {
   return {tetrahedron[side[0]], tetrahedron[side[1]], tetrahedron[side[2]]};
 }
 
-std::vector<Face> SortedFaces(const std::vector<Tetrahedron>& tetrahedra) {
+std::vector<Face> SortedFaces(const std::vector<Tetrahedron>& tetrahedra, const std::stop_token& stop) {
   std::vector<Face> faces;
   faces.reserve(4 * tetrahedra.size());
   for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
@@ -24,8 +26,8 @@ std::vector<Face> SortedFaces(const std::vector<Tetrahedron>& tetrahedra) {
       faces.push_back({Ascending(OutwardTriangle(tetrahedra[t], side)), static_cast<std::int64_t>(4 * t + side)});
     }
   }
-  std::sort(faces.begin(), faces.end(),
-            [](const Face& a, const Face& b) { return std::tie(a.nodes, a.side) < std::tie(b.nodes, b.side); });
+  SortUnlessStopped(faces, stop,
+                    [](const Face& a, const Face& b) { return std::tie(a.nodes, a.side) < std::tie(b.nodes, b.side); });
   return faces;
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "core/geometry/tet_mesh.h"
@@ -21,8 +22,9 @@ Triangle Ascending(Triangle triangle);
 // Local side 0 to 3, counter-clockwise seen from outside of a tetrahedron of positive volume.
 Triangle OutwardTriangle(const Tetrahedron& tetrahedron, int local_side);
 
-// All faces of all tetrahedra, ordered by nodes, then by side: equal faces are adjacent. O(n log n).
-std::vector<Face> SortedFaces(const std::vector<Tetrahedron>& tetrahedra);
+// All faces of all tetrahedra, ordered by nodes, then by side: equal faces are adjacent. O(n log n). Throws Stopped
+// after a stop request.
+std::vector<Face> SortedFaces(const std::vector<Tetrahedron>& tetrahedra, const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

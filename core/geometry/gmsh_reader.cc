@@ -161,12 +161,12 @@ void SkipSection(TextScanner& in, std::string_view name) {
 
 }  // namespace
 
-RawMesh ReadGmsh(std::string_view bytes, Problems& problems) {
+RawMesh ReadGmsh(std::string_view bytes, const std::stop_token& stop, Problems& problems) {
   RawMesh raw;
   EntityTags tags;
   double version = 0;
   bool has_nodes = false, has_elements = false;
-  TextScanner in(bytes, problems);
+  TextScanner in(bytes, problems, '\0', stop);
   while (!in.failed() && !in.AtEnd()) {
     const std::string_view section = in.Token();
     if (version == 0 && section != "$MeshFormat" && section != "$Comments") {

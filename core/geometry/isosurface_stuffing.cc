@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/check.h"
+#include "core/base/stop.h"
 #include "core/geometry/unused_nodes.h"
 
 namespace fascicle {
@@ -36,7 +37,10 @@ class Stuffing {
     FindEdges();
     FindCuts();
     Warp();
-    for (const Tetrahedron& tetrahedron : kept_) Fill(tetrahedron);
+    for (const Tetrahedron& tetrahedron : kept_) {
+      team_.ThrowIfStopped();
+      Fill(tetrahedron);
+    }
     DropUnusedNodes(mesh_.nodes, mesh_.tetrahedra);
     return std::move(mesh_);
   }
@@ -46,11 +50,9 @@ class Stuffing {
     const std::size_t count = lattice_.positions.size();
     values_.resize(count);
     mesh_.nodes.resize(count);
-    team_.For(count, 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) {
-        mesh_.nodes[n] = lattice_.Position(n);
-        values_[n] = tree_.SignedDistance(mesh_.nodes[n]);
-      }
+    ForEach(team_, count, 64, [&](std::size_t n) {
+      mesh_.nodes[n] = lattice_.Position(n);
+      values_[n] = tree_.SignedDistance(mesh_.nodes[n]);
     });
     for (const Tetrahedron& t : lattice_.tetrahedra) {
       if (std::any_of(t.begin(), t.end(), [&](std::int32_t n) { return values_[n] < 0; })) kept_.push_back(t);
@@ -65,7 +67,7 @@ class Stuffing {
         if (values_[t[j]] < 0 && values_[t[i]] > 0) edges_.push_back({t[j], t[i]});
       }
     }
-    std::sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) { return a.Key() < b.Key(); });
+    SortUnlessStopped(edges_, team_.stop(), [](const Edge& a, const Edge& b) { return a.Key() < b.Key(); });
     edges_.erase(
         std::unique(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) { return a.Key() == b.Key(); }),
         edges_.end());
@@ -100,11 +102,9 @@ class Stuffing {
   void FindCuts() {
     const std::size_t first = mesh_.nodes.size();
     mesh_.nodes.resize(first + edges_.size());
-    team_.For(edges_.size(), 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t e = begin; e < end; ++e) {
-        edges_[e].cut = static_cast<std::int32_t>(first + e);
-        mesh_.nodes[first + e] = CutOf(edges_[e]);
-      }
+    ForEach(team_, edges_.size(), 16, [&](std::size_t e) {
+      edges_[e].cut = static_cast<std::int32_t>(first + e);
+      mesh_.nodes[first + e] = CutOf(edges_[e]);
     });
   }
 
@@ -124,6 +124,7 @@ class Stuffing {
       edges_of[edges_[e].outside].push_back(static_cast<std::int32_t>(e));
     }
     for (std::size_t n = 0; n < edges_of.size(); ++n) {
+      team_.ThrowIfStopped();
       double nearest = 0;
       std::int32_t target = -1;
       for (const std::int32_t e : edges_of[n]) {

@@ -41,10 +41,10 @@ void SkipNumbers(TextScanner& in) {
 
 }  // namespace
 
-RawMesh ReadMedit(std::string_view bytes, Problems& problems) {
+RawMesh ReadMedit(std::string_view bytes, const std::stop_token& stop, Problems& problems) {
   RawMesh raw;
   raw.first_node = 1;
-  TextScanner in(bytes, problems, '#');
+  TextScanner in(bytes, problems, '#', stop);
   in.Expect("MeshVersionFormatted");
   in.Int("the format's version");
   bool has_vertices = false, has_tetrahedra = false, has_triangles = false, ended = false;

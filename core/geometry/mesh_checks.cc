@@ -15,6 +15,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/stop.h"
 #include "core/geometry/faces.h"
 #include "core/geometry/quadratic_tetrahedron.h"
 
@@ -105,9 +106,10 @@ bool IsDegenerate(const TetMesh& mesh, std::size_t t, double volume) {
   return !(3 * std::abs(volume) > kFlat * longest * largest_side);
 }
 
-void CheckVolumes(const TetMesh& mesh, Problems& problems) {
+void CheckVolumes(const TetMesh& mesh, const std::stop_token& stop, Problems& problems) {
   Findings inverted, degenerate;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    ThrowIfStopped(stop);
     const double volume = SignedVolume(mesh, t);
     if (!std::isfinite(volume)) continue;  // reported by CheckCoordinates
     if (IsDegenerate(mesh, t, volume)) {
@@ -122,13 +124,13 @@ void CheckVolumes(const TetMesh& mesh, Problems& problems) {
                     "mesh the body again, with optimization switched on", problems);
 }
 
-void CheckDuplicates(const TetMesh& mesh, Problems& problems) {
+void CheckDuplicates(const TetMesh& mesh, const std::stop_token& stop, Problems& problems) {
   std::vector<std::pair<Tetrahedron, std::size_t>> sorted(mesh.tetrahedra.size());
   for (std::size_t t = 0; t < sorted.size(); ++t) {
     sorted[t] = {mesh.tetrahedra[t], t};
     std::sort(sorted[t].first.begin(), sorted[t].first.end());
   }
-  std::sort(sorted.begin(), sorted.end());
+  SortUnlessStopped(sorted, stop);
   std::set<std::size_t> duplicates;
   for (std::size_t i = 1; i < sorted.size(); ++i) {
     if (sorted[i].first == sorted[i - 1].first) duplicates.insert(sorted[i].second);
@@ -139,9 +141,10 @@ void CheckDuplicates(const TetMesh& mesh, Problems& problems) {
                   "remove the duplicates", problems);
 }
 
-void CheckUnusedNodes(const TetMesh& mesh, Problems& problems) {
+void CheckUnusedNodes(const TetMesh& mesh, const std::stop_token& stop, Problems& problems) {
   std::vector<char> used(mesh.nodes.size());
   for (const Tetrahedron& tetrahedron : mesh.tetrahedra) {
+    ThrowIfStopped(stop);
     for (const std::int32_t n : tetrahedron) used[n] = 1;
   }
   Findings findings;
@@ -157,7 +160,8 @@ using Cell = std::array<std::int64_t, 3>;
 // Nodes in the same cell of a fine grid coincide. So do nodes in neighbouring cells when one of them is within a tenth
 // of a cell of the other's cell; every pair that close is found. A node is compared only with the lowest node of each
 // cell, not with all nodes in it: O(n log n) for any mesh.
-void CheckCoincidentNodes(const TetMesh& mesh, const MeshReport& report, Problems& problems) {
+void CheckCoincidentNodes(const TetMesh& mesh, const MeshReport& report, const std::stop_token& stop,
+                          Problems& problems) {
   const double width = kCoincident * (report.highest - report.lowest).norm();
   if (!(width > 0) || !std::isfinite(width)) return;
   const auto cell_of = [&](const Vec3& x) {
@@ -169,7 +173,7 @@ void CheckCoincidentNodes(const TetMesh& mesh, const MeshReport& report, Problem
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
     if (mesh.nodes[n].allFinite()) cells.push_back({cell_of(mesh.nodes[n]), n});
   }
-  std::sort(cells.begin(), cells.end());
+  SortUnlessStopped(cells, stop);
   // The lowest node of a cell; none if it is empty.
   const auto first_in = [&](const Cell& cell) {
     const auto found = std::lower_bound(cells.begin(), cells.end(), std::pair(cell, std::size_t{0}));
@@ -177,6 +181,7 @@ void CheckCoincidentNodes(const TetMesh& mesh, const MeshReport& report, Problem
   };
   std::vector<std::pair<std::size_t, std::size_t>> twins;
   for (std::size_t i = 0; i < cells.size(); ++i) {
+    ThrowIfStopped(stop);
     const auto& [cell, n] = cells[i];
     std::size_t twin = i > 0 && cells[i - 1].first == cell ? first_in(cell) : std::numeric_limits<std::size_t>::max();
     for (int corner = 0; corner < 8; ++corner) {
@@ -195,7 +200,7 @@ void CheckCoincidentNodes(const TetMesh& mesh, const MeshReport& report, Problem
 }
 
 // Counts the face-connected parts by union-find; also finds faces with more than two sides.
-int CheckComponents(const TetMesh& mesh, Problems& problems) {
+int CheckComponents(const TetMesh& mesh, const std::stop_token& stop, Problems& problems) {
   std::vector<std::int64_t> parent(mesh.tetrahedra.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](std::int64_t t) {
@@ -203,8 +208,9 @@ int CheckComponents(const TetMesh& mesh, Problems& problems) {
     return t;
   };
   Findings crowded;
-  const std::vector<Face> faces = SortedFaces(mesh.tetrahedra);
+  const std::vector<Face> faces = SortedFaces(mesh.tetrahedra, stop);
   for (std::size_t i = 1; i < faces.size(); ++i) {
+    ThrowIfStopped(stop);
     if (faces[i].nodes != faces[i - 1].nodes) continue;
     const std::int64_t a = root(faces[i].side / 4), b = root(faces[i - 1].side / 4);
     parent[std::max(a, b)] = std::min(a, b);
@@ -255,9 +261,10 @@ void MeasureBox(const TetMesh& mesh, MeshReport& report) {
 }
 
 // The smallest dihedral angle of all tetrahedra [rad].
-double SmallestDihedralAngle(const TetMesh& mesh) {
+double SmallestDihedralAngle(const TetMesh& mesh, const std::stop_token& stop) {
   double smallest = mesh.tetrahedra.empty() ? 0 : std::numbers::pi;
   for (const Tetrahedron& tetrahedron : mesh.tetrahedra) {
+    ThrowIfStopped(stop);
     std::array<Vec3, 4> normals;
     for (int side = 0; side < 4; ++side) {
       const auto& [a, b, c] = OutwardTriangle(tetrahedron, side);
@@ -287,7 +294,7 @@ bool IsUpright(const std::array<Vec3, 10>& x) {
 }
 
 // Checks that every curved edge is an edge of the mesh, occurs once, has a finite midpoint and folds no tetrahedron.
-void CheckCurvedEdges(const TetMesh& mesh, Problems& problems) {
+void CheckCurvedEdges(const TetMesh& mesh, const std::stop_token& stop, Problems& problems) {
   if (mesh.curved_edges.empty()) return;
   std::map<std::array<std::int32_t, 2>, Vec3> middles;
   Findings wrong, folded;
@@ -298,6 +305,7 @@ void CheckCurvedEdges(const TetMesh& mesh, Problems& problems) {
   }
   std::set<std::array<std::int32_t, 2>> met;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    ThrowIfStopped(stop);
     std::array<Vec3, 10> x;
     bool is_curved = false;
     for (int c = 0; c < 4; ++c) x[c] = mesh.nodes[mesh.tetrahedra[t][c]];
@@ -324,23 +332,23 @@ void CheckCurvedEdges(const TetMesh& mesh, Problems& problems) {
 
 }  // namespace
 
-MeshReport CheckMesh(const TetMesh& mesh, Problems& problems) {
+MeshReport CheckMesh(const TetMesh& mesh, Problems& problems, const std::stop_token& stop) {
   MeshReport report;
   MeasureBox(mesh, report);
   CheckNotEmpty(mesh, problems);
   CheckCoordinates(mesh, problems);
   CheckSize(report, problems);
-  CheckCoincidentNodes(mesh, report, problems);
+  CheckCoincidentNodes(mesh, report, stop, problems);
   const std::size_t before = problems.count();
   CheckIndices(mesh, problems);
   if (problems.count() > before) return report;  // the checks below use the indices
-  CheckVolumes(mesh, problems);
-  CheckDuplicates(mesh, problems);
-  CheckUnusedNodes(mesh, problems);
-  CheckCurvedEdges(mesh, problems);
-  report.components = CheckComponents(mesh, problems);
+  CheckVolumes(mesh, stop, problems);
+  CheckDuplicates(mesh, stop, problems);
+  CheckUnusedNodes(mesh, stop, problems);
+  CheckCurvedEdges(mesh, stop, problems);
+  report.components = CheckComponents(mesh, stop, problems);
   report.volume = TotalVolume(mesh);
-  report.smallest_dihedral_angle = SmallestDihedralAngle(mesh);
+  report.smallest_dihedral_angle = SmallestDihedralAngle(mesh, stop);
   return report;
 }
 

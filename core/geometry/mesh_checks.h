@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_GEOMETRY_MESH_CHECKS_H_
 #define FASCICLE_CORE_GEOMETRY_MESH_CHECKS_H_
 
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,9 @@ struct MeshReport {
 // coincident nodes (closer than 1e-10 of the diagonal; nodes at least 2e-9 apart are distinct), more than one
 // component, and sizes that no muscle has (over 10 m or under 0.1 mm; the message names the likely unit). Adds one line
 // for each kind of problem, with the count and the first examples, counted from 0. Paths are left empty. When an index
-// is out of range, only the bounding box is measured.
-// O(n log n) time and O(n) memory for any mesh.
-MeshReport CheckMesh(const TetMesh& mesh, Problems& problems);
+// is out of range, only the bounding box is measured. O(n log n) time and O(n) memory for any mesh. Throws Stopped
+// after a stop request.
+MeshReport CheckMesh(const TetMesh& mesh, Problems& problems, const std::stop_token& stop = {});
 
 // Reorients all tetrahedra if every one has a negative volume (a file with the other convention); a mixture is left for
 // CheckMesh to report. Returns whether it did so.

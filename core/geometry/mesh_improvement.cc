@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/stop.h"
 #include "core/geometry/mesh_quality.h"
 
 namespace fascicle {
@@ -43,11 +44,13 @@ class CellsOfNodes {
 
 // Colours the nodes so that nodes of one colour share no tetrahedron and may move at the same time: each node gets the
 // lowest colour that no neighbour has.
-std::vector<std::vector<std::int32_t>> Colours(const TetMesh& mesh, const CellsOfNodes& tetrahedra) {
+std::vector<std::vector<std::int32_t>> Colours(const TetMesh& mesh, const CellsOfNodes& tetrahedra,
+                                               const std::stop_token& stop) {
   std::vector<std::int32_t> colour(mesh.nodes.size(), -1);
   std::vector<std::vector<std::int32_t>> nodes_of;
   std::vector<char> taken;
   for (std::size_t n = 0; n < colour.size(); ++n) {
+    ThrowIfStopped(stop);
     taken.assign(nodes_of.size() + 1, 0);
     for (const std::int32_t* t = tetrahedra.begin(n); t != tetrahedra.end(n); ++t) {
       for (const std::int32_t m : mesh.tetrahedra[*t]) {
@@ -67,10 +70,10 @@ class Improvement {
       : mesh_(mesh),
         tree_(tree),
         team_(team),
-        surface_(BoundaryTriangles(mesh)),
+        surface_(BoundaryTriangles(mesh, team.stop())),
         tetrahedra_of_(mesh.nodes.size(), mesh.tetrahedra),
         triangles_of_(mesh.nodes.size(), surface_),
-        colours_(Colours(mesh, tetrahedra_of_)) {}
+        colours_(Colours(mesh, tetrahedra_of_, team.stop())) {}
 
   void ImproveAngles(int sweeps) {
     for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -96,9 +99,7 @@ class Improvement {
   template <class Visit>
   void ForEachNode(const Visit& visit) {
     for (const std::vector<std::int32_t>& nodes : colours_) {
-      team_.For(nodes.size(), 32, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) visit(static_cast<std::size_t>(nodes[i]));
-      });
+      ForEach(team_, nodes.size(), 32, [&](std::size_t i) { visit(static_cast<std::size_t>(nodes[i])); });
     }
   }
 
@@ -180,13 +181,11 @@ class Improvement {
   // each node the mean over its triangles.
   std::vector<double> MeanOffsets() const {
     std::vector<double> offset(surface_.size());
-    team_.For(surface_.size(), 32, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto& [a, b, c] = surface_[i];
-        const Vec3 sum = mesh_.nodes[a] + mesh_.nodes[b] + mesh_.nodes[c];
-        for (const std::int32_t corner : surface_[i]) {
-          offset[i] -= tree_.SignedDistance(sum / 6 + mesh_.nodes[corner] / 2) / 3;
-        }
+    ForEach(team_, surface_.size(), 32, [&](std::size_t i) {
+      const auto& [a, b, c] = surface_[i];
+      const Vec3 sum = mesh_.nodes[a] + mesh_.nodes[b] + mesh_.nodes[c];
+      for (const std::int32_t corner : surface_[i]) {
+        offset[i] -= tree_.SignedDistance(sum / 6 + mesh_.nodes[corner] / 2) / 3;
       }
     });
     std::vector<double> mean(mesh_.nodes.size());

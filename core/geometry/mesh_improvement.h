@@ -8,6 +8,8 @@
 
 namespace fascicle {
 
+// Both functions heed the team's stop requests, and then leave the mesh somewhere on its way.
+
 // Moves nodes to improve the worst dihedral angle around each: towards the mean of their neighbours, or to a better
 // place found by local search [Freitag and Ollivier-Gooch 1997]. Boundary nodes move along the surface. The worst angle
 // around a node never gets worse. The same bits for any number of threads.

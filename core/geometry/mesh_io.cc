@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/stop.h"
 #include "core/geometry/mesh_readers.h"
 #include "core/geometry/text_scanner.h"
 
@@ -23,16 +24,16 @@ std::string Extension(std::string_view name) {
 }
 
 // Orders the nodes by number. False when a number occurs twice.
-bool SortNodes(RawMesh& raw, Problems& problems) {
+bool SortNodes(RawMesh& raw, const std::stop_token& stop, Problems& problems) {
   std::vector<std::int64_t>& numbers = raw.node_numbers;
   if (!std::is_sorted(numbers.begin(), numbers.end())) {
     std::vector<std::size_t> order(numbers.size());
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return numbers[a] < numbers[b]; });
+    SortUnlessStopped(order, stop, [&](std::size_t a, std::size_t b) { return numbers[a] < numbers[b]; });
     std::vector<Vec3> nodes(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) nodes[i] = raw.nodes[order[i]];
     raw.nodes = std::move(nodes);
-    std::sort(numbers.begin(), numbers.end());
+    SortUnlessStopped(numbers, stop);
   }
   const auto twin = std::adjacent_find(numbers.begin(), numbers.end());
   if (twin == numbers.end()) return true;
@@ -72,11 +73,13 @@ class NodeFinder {
 // Looks up the nodes of cells. Reports the first node that does not exist and how many cells refer to such a node.
 template <std::size_t N>
 void FindNodes(const NodeFinder& finder, const std::vector<std::array<std::int64_t, N>>& cells,
-               std::vector<std::array<std::int32_t, N>>& found, const char* kind, Problems& problems) {
+               std::vector<std::array<std::int32_t, N>>& found, const char* kind, const std::stop_token& stop,
+               Problems& problems) {
   std::size_t bad = 0, first_bad = 0;
   std::int64_t missing = 0;
   found.resize(cells.size());
   for (std::size_t c = 0; c < cells.size(); ++c) {
+    ThrowIfStopped(stop);
     bool complete = true;
     for (std::size_t i = 0; i < N; ++i) {
       found[c][i] = finder.Find(cells[c][i]);
@@ -118,12 +121,14 @@ void ReportNothingToRead(const RawMesh& raw, Problems& problems) {
 
 // Turns mid-edge nodes into curved edges, or drops them where the edge is straight up to round-off, and renumbers the
 // remaining nodes.
-void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, TetMesh& mesh, Problems& problems) {
+void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, const std::stop_token& stop, TetMesh& mesh,
+                 Problems& problems) {
   constexpr double kStraight = 1e-9;
   std::vector<char> is_middle(mesh.nodes.size());
   std::map<std::array<std::int32_t, 2>, std::int32_t> edges;
   std::size_t torn = 0;
   for (std::size_t t = 0; t < middles.size(); ++t) {
+    ThrowIfStopped(stop);
     for (int k = 0; k < 6; ++k) {
       const auto [i, j] = std::minmax(mesh.tetrahedra[t][kTetEdges[k][0]], mesh.tetrahedra[t][kTetEdges[k][1]]);
       is_middle[middles[t][k]] = 1;
@@ -186,7 +191,7 @@ void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, TetMes
   mesh.node_tags.resize(kept);
 }
 
-std::optional<TetMesh> Finish(RawMesh raw, Problems& problems) {
+std::optional<TetMesh> Finish(RawMesh raw, const std::stop_token& stop, Problems& problems) {
   if (raw.tetrahedra.empty()) {
     ReportNothingToRead(raw, problems);
     return std::nullopt;
@@ -197,15 +202,15 @@ std::optional<TetMesh> Finish(RawMesh raw, Problems& problems) {
   }
   const std::size_t before = problems.count();
   TetMesh mesh;
-  if (!SortNodes(raw, problems)) return std::nullopt;
+  if (!SortNodes(raw, stop, problems)) return std::nullopt;
   const NodeFinder finder(raw);
-  FindNodes(finder, raw.tetrahedra, mesh.tetrahedra, "tetrahedra", problems);
-  FindNodes(finder, raw.triangles, mesh.tagged_triangles, "triangles", problems);
+  FindNodes(finder, raw.tetrahedra, mesh.tetrahedra, "tetrahedra", stop, problems);
+  FindNodes(finder, raw.triangles, mesh.tagged_triangles, "triangles", stop, problems);
   mesh.tetrahedron_tags = NarrowTags(raw.tetrahedron_tags, problems);
   mesh.triangle_tags = NarrowTags(raw.triangle_tags, problems);
   if (mesh.triangle_tags.empty()) mesh.tagged_triangles.clear();
   std::vector<std::array<std::int32_t, 1>> points;
-  FindNodes(finder, raw.points, points, "points", problems);
+  FindNodes(finder, raw.points, points, "points", stop, problems);
   mesh.node_tags = NarrowTags(raw.point_tags, problems);
   if (!mesh.node_tags.empty()) {
     for (const auto& [node] : points) mesh.tagged_nodes.push_back(node);
@@ -214,11 +219,11 @@ std::optional<TetMesh> Finish(RawMesh raw, Problems& problems) {
   if (!raw.middles.empty() && raw.middles.size() != raw.tetrahedra.size()) {
     problems.Add("", "the file mixes tetrahedra of four and of ten nodes", "write the mesh with one element order");
   } else {
-    FindNodes(finder, raw.middles, middles, "tetrahedra", problems);
+    FindNodes(finder, raw.middles, middles, "tetrahedra", stop, problems);
   }
   if (problems.count() > before) return std::nullopt;
   mesh.nodes = std::move(raw.nodes);
-  if (!middles.empty()) TakeMiddles(middles, mesh, problems);
+  if (!middles.empty()) TakeMiddles(middles, stop, mesh, problems);
   if (problems.count() > before) return std::nullopt;
   return mesh;
 }
@@ -227,20 +232,20 @@ std::optional<TetMesh> Finish(RawMesh raw, Problems& problems) {
 
 std::string KnownMeshExtensions() { return ".msh, .vtu, .vtk, .mesh, .node"; }
 
-std::optional<TetMesh> ReadMesh(const MeshFile& file, Problems& problems) {
+std::optional<TetMesh> ReadMesh(const MeshFile& file, Problems& problems, const std::stop_token& stop) {
   const std::string extension = Extension(file.name);
   const std::size_t before = problems.count();
   RawMesh raw;
   if (extension == ".msh") {
-    raw = ReadGmsh(file.bytes, problems);
+    raw = ReadGmsh(file.bytes, stop, problems);
   } else if (extension == ".vtu") {
-    raw = ReadVtu(file.bytes, problems);
+    raw = ReadVtu(file.bytes, stop, problems);
   } else if (extension == ".vtk") {
-    raw = ReadVtkLegacy(file.bytes, problems);
+    raw = ReadVtkLegacy(file.bytes, stop, problems);
   } else if (extension == ".mesh") {
-    raw = ReadMedit(file.bytes, problems);
+    raw = ReadMedit(file.bytes, stop, problems);
   } else if (extension == ".node") {
-    raw = ReadTetgen(file.bytes, file.element_bytes, problems);
+    raw = ReadTetgen(file.bytes, file.element_bytes, stop, problems);
   } else {
     const bool surface = extension == ".stl" || extension == ".obj" || extension == ".ply" || extension == ".off";
     problems.Add("", "the file extension " + Quoted(extension) + " is not that of a mesh that can be read",
@@ -249,7 +254,7 @@ std::optional<TetMesh> ReadMesh(const MeshFile& file, Problems& problems) {
                            : "known are " + KnownMeshExtensions());
   }
   if (problems.count() > before) return std::nullopt;
-  return Finish(std::move(raw), problems);
+  return Finish(std::move(raw), stop, problems);
 }
 
 }  // namespace fascicle

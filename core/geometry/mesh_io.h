@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_GEOMETRY_MESH_IO_H_
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -18,12 +19,12 @@ struct MeshFile {
 };
 
 // Reads tetrahedra (and tagged triangles) from Gmsh 2.2/4.1 ASCII, VTK XML (.vtu: ascii, inline and appended, raw or
-// base64, zlib-compressed or not), VTK legacy (ascii and binary), MEDIT ASCII, and TetGen. Other cells are skipped.
-// The file's node numbers are kept where they are contiguous; TetGen files may count from 0 or 1.
-// Coordinates stay in the file's unit; tetrahedra keep the file's orientation.
-// Malformed input never crashes, hangs or allocates more than a small multiple of the file's size. It adds to
-// `problems` (with empty paths and line numbers in the message) and returns nothing.
-std::optional<TetMesh> ReadMesh(const MeshFile& file, Problems& problems);
+// base64, zlib-compressed or not), VTK legacy (ascii and binary), MEDIT ASCII, and TetGen. Other cells are skipped. The
+// file's node numbers are kept where they are contiguous; TetGen files may count from 0 or 1. Coordinates stay in the
+// file's unit; tetrahedra keep the file's orientation. Malformed input never crashes, hangs or allocates more than a
+// small multiple of the file's size. It adds to `problems` (with empty paths and line numbers in the message) and
+// returns nothing. Throws Stopped after a stop request.
+std::optional<TetMesh> ReadMesh(const MeshFile& file, Problems& problems, const std::stop_token& stop = {});
 
 // The extensions that ReadMesh accepts, for messages: ".msh, .vtu, ...".
 std::string KnownMeshExtensions();

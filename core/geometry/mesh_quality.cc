@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/base/stop.h"
 #include "core/geometry/faces.h"
 
 namespace fascicle {
@@ -29,12 +30,13 @@ Cosines DihedralCosines(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
   return cosines;
 }
 
-AngleFigures MeasureAngles(const TetMesh& mesh) {
+AngleFigures MeasureAngles(const TetMesh& mesh, const std::stop_token& stop) {
   AngleFigures figures;
   if (mesh.tetrahedra.empty()) return figures;
   std::vector<double> smallest(mesh.tetrahedra.size());
   double lowest = 1;
   for (std::size_t t = 0; t < smallest.size(); ++t) {
+    ThrowIfStopped(stop);
     const auto& [a, b, c, d] = mesh.tetrahedra[t];
     const Cosines cosines = DihedralCosines(mesh.nodes[a], mesh.nodes[b], mesh.nodes[c], mesh.nodes[d]);
     smallest[t] = std::acos(std::clamp(cosines.highest, -1.0, 1.0));
@@ -48,14 +50,14 @@ AngleFigures MeasureAngles(const TetMesh& mesh) {
   return figures;
 }
 
-std::vector<std::int32_t> FaceConnectedParts(const TetMesh& mesh) {
+std::vector<std::int32_t> FaceConnectedParts(const TetMesh& mesh, const std::stop_token& stop) {
   std::vector<std::int32_t> parent(mesh.tetrahedra.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](std::int32_t t) {
     while (parent[t] != t) t = parent[t] = parent[parent[t]];
     return t;
   };
-  const std::vector<Face> faces = SortedFaces(mesh.tetrahedra);
+  const std::vector<Face> faces = SortedFaces(mesh.tetrahedra, stop);
   for (std::size_t i = 1; i < faces.size(); ++i) {
     if (faces[i].nodes != faces[i - 1].nodes) continue;
     const auto a = root(static_cast<std::int32_t>(faces[i].side / 4));

@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_GEOMETRY_MESH_QUALITY_H_
 #define FASCICLE_CORE_GEOMETRY_MESH_QUALITY_H_
 
+#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -21,11 +22,12 @@ struct AngleFigures {
   double largest = 0;
   double median = 0;  // of the smallest angle of each tetrahedron
 };
-AngleFigures MeasureAngles(const TetMesh& mesh);
+// Throws Stopped after a stop request.
+AngleFigures MeasureAngles(const TetMesh& mesh, const std::stop_token& stop = {});
 
 // The face-connected part to which each tetrahedron belongs. Parts are counted from 0 in the order of their lowest
-// tetrahedra.
-std::vector<std::int32_t> FaceConnectedParts(const TetMesh& mesh);
+// tetrahedra. Throws Stopped after a stop request.
+std::vector<std::int32_t> FaceConnectedParts(const TetMesh& mesh, const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <stop_token>
 #include <string_view>
 #include <vector>
 
@@ -30,12 +31,13 @@ struct RawMesh {
   std::size_t others = 0;                // cells of other kinds, skipped
 };
 
-// Each adds malformed input to `problems`; its result must then be discarded.
-RawMesh ReadGmsh(std::string_view bytes, Problems& problems);
-RawMesh ReadVtu(std::string_view bytes, Problems& problems);
-RawMesh ReadVtkLegacy(std::string_view bytes, Problems& problems);
-RawMesh ReadMedit(std::string_view bytes, Problems& problems);
-RawMesh ReadTetgen(std::string_view node_bytes, std::string_view element_bytes, Problems& problems);
+// Each adds malformed input to `problems`; its result must then be discarded. Each throws Stopped after a stop request.
+RawMesh ReadGmsh(std::string_view bytes, const std::stop_token& stop, Problems& problems);
+RawMesh ReadVtu(std::string_view bytes, const std::stop_token& stop, Problems& problems);
+RawMesh ReadVtkLegacy(std::string_view bytes, const std::stop_token& stop, Problems& problems);
+RawMesh ReadMedit(std::string_view bytes, const std::stop_token& stop, Problems& problems);
+RawMesh ReadTetgen(std::string_view node_bytes, std::string_view element_bytes, const std::stop_token& stop,
+                   Problems& problems);
 
 }  // namespace fascicle
 

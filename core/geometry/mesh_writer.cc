@@ -5,6 +5,8 @@
 #include <charconv>
 #include <concepts>
 
+#include "core/base/stop.h"
+
 namespace fascicle {
 namespace {
 
@@ -24,7 +26,7 @@ void AppendLine(std::string& text, Numbers... numbers) {
 
 }  // namespace
 
-std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names) {
+std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names, const std::stop_token& stop) {
   std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
   if (!names.empty()) {
     text += "$PhysicalNames\n" + std::to_string(names.size()) + "\n";
@@ -35,6 +37,7 @@ std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names) {
   }
   text += "$Nodes\n" + std::to_string(mesh.nodes.size()) + "\n";
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+    ThrowIfStopped(stop);
     Append(n + 1, text);
     for (const double x : mesh.nodes[n]) {
       text += ' ';
@@ -51,6 +54,7 @@ std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names) {
     AppendLine(text, ++number, 2, 2, tag, tag, a + 1, b + 1, c + 1);
   }
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    ThrowIfStopped(stop);
     const std::int32_t tag = mesh.tetrahedron_tags.empty() ? 0 : mesh.tetrahedron_tags[t];
     const auto& [a, b, c, d] = mesh.tetrahedra[t];
     AppendLine(text, ++number, 4, 2, tag, tag, a + 1, b + 1, c + 1, d + 1);

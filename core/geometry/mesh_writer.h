@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_GEOMETRY_MESH_WRITER_H_
 
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,8 @@ struct TagName {
 
 // The mesh as a Gmsh file, version 2.2, ASCII. ReadMesh restores the same nodes (to the last bit), tetrahedra, tagged
 // triangles and tags. A triangle that belongs to several regions is written once for each. Curved edges are not
-// written.
-std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names);
+// written. Throws Stopped after a stop request.
+std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names, const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

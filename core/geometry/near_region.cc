@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/stop.h"
+
 namespace fascicle {
 
 Region SelectNear(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name,
-                  const TriangleTree& other, double distance) {
+                  const TriangleTree& other, double distance, const std::stop_token& stop) {
   Region region;
   region.name = std::move(name);
   enum : char { kUnknown, kNear, kFar };
@@ -16,6 +18,7 @@ Region SelectNear(const TetMesh& mesh, const std::vector<Triangle>& surface, std
     return found[n] == kNear;
   };
   for (const Triangle& triangle : surface) {
+    ThrowIfStopped(stop);
     if (!std::all_of(triangle.begin(), triangle.end(), is_near)) continue;
     region.triangles.push_back(triangle);
     region.nodes.insert(region.nodes.end(), triangle.begin(), triangle.end());

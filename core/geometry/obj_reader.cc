@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/stop.h"
 #include "core/geometry/surface_readers.h"
 #include "core/geometry/text_scanner.h"
 
@@ -20,10 +21,11 @@ std::string_view Word(std::string_view& line) {
 
 class ObjReader {
  public:
-  explicit ObjReader(Problems& problems) : problems_(problems) {}
+  ObjReader(const std::stop_token& stop, Problems& problems) : stop_(stop), problems_(problems) {}
 
   RawSurface Read(std::string_view bytes) {
     while (!bytes.empty() && !failed_) {
+      ThrowIfStopped(stop_);
       ++line_;
       const std::size_t end = std::min(bytes.find('\n'), bytes.size());
       ReadLine(bytes.substr(0, std::min(end, bytes.find('#'))));
@@ -67,6 +69,7 @@ class ObjReader {
     raw_.polygons.push_back(std::move(polygon));
   }
 
+  const std::stop_token& stop_;
   Problems& problems_;
   int line_ = 0;
   bool failed_ = false;
@@ -75,6 +78,8 @@ class ObjReader {
 
 }  // namespace
 
-RawSurface ReadObj(std::string_view bytes, Problems& problems) { return ObjReader(problems).Read(bytes); }
+RawSurface ReadObj(std::string_view bytes, const std::stop_token& stop, Problems& problems) {
+  return ObjReader(stop, problems).Read(bytes);
+}
 
 }  // namespace fascicle

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/base/check.h"
+#include "core/base/stop.h"
 
 namespace fascicle {
 namespace {
@@ -52,6 +53,7 @@ class Octree {
 
   Lattice Take() {
     for (std::size_t i = 0; i < cells_.size(); ++i) {
+      team_.ThrowIfStopped();
       if (cells_[i].is_leaf() && !cells_[i].outside) AddTetrahedra(cells_[i]);
     }
     NumberNodes();
@@ -89,9 +91,7 @@ class Octree {
     for (std::size_t first = 0; first < cells_.size();) {
       const std::size_t count = cells_.size() - first;
       decisions.resize(count);
-      team_.For(count, 16, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) decisions[i] = Decide(cells_[first + i]);
-      });
+      ForEach(team_, count, 16, [&](std::size_t i) { decisions[i] = Decide(cells_[first + i]); });
       for (std::size_t i = 0; i < count; ++i) {
         if (decisions[i] == Decision::kSplit) Split(first + i);
         cells_[first + i].outside = decisions[i] == Decision::kOutside;
@@ -123,6 +123,7 @@ class Octree {
       const std::size_t count = cells_.size();
       for (std::size_t i = 0; i < count; ++i) {
         if (!cells_[i].is_leaf() || cells_[i].outside) continue;
+        team_.ThrowIfStopped();
         for (int direction = 0; direction < 27; ++direction) {
           const Position step = {direction % 3 - 1, direction / 3 % 3 - 1, direction / 9 - 1};
           const int moved = std::abs(step[0]) + std::abs(step[1]) + std::abs(step[2]);
@@ -235,7 +236,7 @@ class Octree {
     std::vector<std::int64_t> sorted;
     sorted.reserve(4 * keys_.size());
     for (const auto& keys : keys_) sorted.insert(sorted.end(), keys.begin(), keys.end());
-    std::sort(sorted.begin(), sorted.end());
+    SortUnlessStopped(sorted, team_.stop());
     sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
     constexpr std::int64_t kMask = (1 << 21) - 1;
     for (const std::int64_t key : sorted) {
@@ -243,12 +244,10 @@ class Octree {
                                     static_cast<std::int32_t>(key & kMask)});
     }
     lattice_.tetrahedra.resize(keys_.size());
-    team_.For(keys_.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) {
-        for (int i = 0; i < 4; ++i) {
-          const auto at = std::lower_bound(sorted.begin(), sorted.end(), keys_[t][i]);
-          lattice_.tetrahedra[t][i] = static_cast<std::int32_t>(at - sorted.begin());
-        }
+    ForEach(team_, keys_.size(), 256, [&](std::size_t t) {
+      for (int i = 0; i < 4; ++i) {
+        const auto at = std::lower_bound(sorted.begin(), sorted.end(), keys_[t][i]);
+        lattice_.tetrahedra[t][i] = static_cast<std::int32_t>(at - sorted.begin());
       }
     });
   }

@@ -37,7 +37,8 @@ struct Element {
 
 class PlyReader {
  public:
-  PlyReader(std::string_view bytes, Problems& problems) : in_(bytes, problems) {}
+  PlyReader(std::string_view bytes, const std::stop_token& stop, Problems& problems)
+      : in_(bytes, problems, '\0', stop) {}
 
   RawSurface Read() {
     ReadHeader();
@@ -141,6 +142,8 @@ class PlyReader {
 
 }  // namespace
 
-RawSurface ReadPly(std::string_view bytes, Problems& problems) { return PlyReader(bytes, problems).Read(); }
+RawSurface ReadPly(std::string_view bytes, const std::stop_token& stop, Problems& problems) {
+  return PlyReader(bytes, stop, problems).Read();
+}
 
 }  // namespace fascicle

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/stop.h"
 #include "core/geometry/byte_array.h"
 #include "core/geometry/surface_readers.h"
 #include "core/geometry/text_scanner.h"
@@ -15,7 +16,7 @@ namespace {
 constexpr std::size_t kHeader = 80, kFacet = 50;
 
 // Makes a triangle of every three corners. Corners at the same position become one node, numbered by first appearance.
-RawSurface Join(const std::vector<Vec3>& corners) {
+RawSurface Join(const std::vector<Vec3>& corners, const std::stop_token& stop) {
   std::vector<std::size_t> order(corners.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   const auto less = [&](std::size_t a, std::size_t b) {
@@ -25,7 +26,7 @@ RawSurface Join(const std::vector<Vec3>& corners) {
     }
     return a < b;
   };
-  std::sort(order.begin(), order.end(), less);
+  SortUnlessStopped(order, stop, less);
   std::vector<std::size_t> first(corners.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     const bool same = i > 0 && corners[order[i]] == corners[order[i - 1]];
@@ -43,10 +44,11 @@ RawSurface Join(const std::vector<Vec3>& corners) {
   return raw;
 }
 
-std::vector<Vec3> ReadBinary(std::string_view bytes, std::size_t count) {
+std::vector<Vec3> ReadBinary(std::string_view bytes, std::size_t count, const std::stop_token& stop) {
   std::vector<Vec3> corners;
   corners.reserve(3 * count);
   for (std::size_t i = 0; i < count; ++i) {
+    ThrowIfStopped(stop);
     // A normal, which is not used, and three corners.
     const std::string_view numbers = bytes.substr(kHeader + 4 + kFacet * i + 12, 36);
     const std::vector<double> values = ToDoubles(numbers, NumberType::kFloat32, false);
@@ -55,9 +57,9 @@ std::vector<Vec3> ReadBinary(std::string_view bytes, std::size_t count) {
   return corners;
 }
 
-std::vector<Vec3> ReadAscii(std::string_view bytes, Problems& problems) {
+std::vector<Vec3> ReadAscii(std::string_view bytes, const std::stop_token& stop, Problems& problems) {
   std::vector<Vec3> corners;
-  TextScanner in(bytes, problems);
+  TextScanner in(bytes, problems, '\0', stop);
   while (!in.failed() && !in.AtEnd()) {
     in.Expect("solid");
     in.Line();
@@ -84,14 +86,14 @@ std::vector<Vec3> ReadAscii(std::string_view bytes, Problems& problems) {
 
 }  // namespace
 
-RawSurface ReadStl(std::string_view bytes, Problems& problems) {
+RawSurface ReadStl(std::string_view bytes, const std::stop_token& stop, Problems& problems) {
   // Binary files may begin with `solid`, too; their size identifies them.
   std::uint32_t count = 0;
   if (bytes.size() >= kHeader + 4) std::memcpy(&count, bytes.data() + kHeader, 4);
   const bool binary = bytes.size() >= kHeader + 4 && bytes.size() == kHeader + 4 + kFacet * std::size_t{count};
-  if (binary) return Join(ReadBinary(bytes, count));
+  if (binary) return Join(ReadBinary(bytes, count, stop), stop);
   TextScanner start(bytes, problems);
-  if (start.Peek() == "solid") return Join(ReadAscii(bytes, problems));
+  if (start.Peek() == "solid") return Join(ReadAscii(bytes, stop, problems), stop);
   if (bytes.size() < kHeader + 4) {
     problems.Add("", "the file is too short for STL", "is the file complete?");
   } else {

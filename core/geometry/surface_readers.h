@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_GEOMETRY_SURFACE_READERS_H_
 
 #include <cstdint>
+#include <stop_token>
 #include <string_view>
 #include <vector>
 
@@ -16,11 +17,11 @@ struct RawSurface {
   std::vector<std::vector<std::int64_t>> polygons;  // node indices from 0, three or more; anything else is malformed
 };
 
-// Each adds malformed input to `problems`; its result must then be discarded.
-RawSurface ReadStl(std::string_view bytes, Problems& problems);
-RawSurface ReadObj(std::string_view bytes, Problems& problems);
-RawSurface ReadPly(std::string_view bytes, Problems& problems);
-RawSurface ReadVtp(std::string_view bytes, Problems& problems);
+// Each adds malformed input to `problems`; its result must then be discarded. Each throws Stopped after a stop request.
+RawSurface ReadStl(std::string_view bytes, const std::stop_token& stop, Problems& problems);
+RawSurface ReadObj(std::string_view bytes, const std::stop_token& stop, Problems& problems);
+RawSurface ReadPly(std::string_view bytes, const std::stop_token& stop, Problems& problems);
+RawSurface ReadVtp(std::string_view bytes, const std::stop_token& stop, Problems& problems);
 
 }  // namespace fascicle
 

@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/stop.h"
 #include "core/geometry/faces.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/geometry/unused_nodes.h"
@@ -285,9 +286,11 @@ void FillWithFan(const Loop& loop, TriangleMesh& surface) {
   }
 }
 
-void FillHoles(TriangleMesh& surface, double largest_hole, SurfaceReport& report, Problems& problems) {
+void FillHoles(TriangleMesh& surface, double largest_hole, const std::stop_token& stop, SurfaceReport& report,
+               Problems& problems) {
   std::vector<SurfacePlace> too_large;
   for (const Loop& loop : Boundaries(surface, problems)) {
+    ThrowIfStopped(stop);
     SurfacePlace place = PlaceOf(surface.nodes, loop);
     place.count = static_cast<std::int64_t>(loop.size());
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -338,7 +341,7 @@ TriangleMesh PartOf(const TriangleMesh& surface, const std::vector<std::int32_t>
 }
 
 // A part with inward normals is a cavity if it lies inside another part; otherwise it is reoriented.
-void OrientParts(TriangleMesh& surface, SurfaceReport& report) {
+void OrientParts(TriangleMesh& surface, const std::stop_token& stop, SurfaceReport& report) {
   const std::vector<std::vector<std::int32_t>> parts = Parts(surface);
   report.parts = static_cast<std::int64_t>(parts.size());
   const auto turn = [&](const std::vector<std::int32_t>& triangles) {
@@ -355,6 +358,7 @@ void OrientParts(TriangleMesh& surface, SurfaceReport& report) {
     bool is_cavity = false;
     for (std::size_t j = 0; j < parts.size() && !is_cavity; ++j) {
       if (j == i) continue;
+      ThrowIfStopped(stop);
       const TriangleMesh other = PartOf(surface, parts[j]);
       is_cavity = TriangleTree(other).IsInside(point);
     }
@@ -363,8 +367,8 @@ void OrientParts(TriangleMesh& surface, SurfaceReport& report) {
 }
 
 // Finds pairs of triangles that intersect and groups connected ones into places.
-void FindCuts(const TriangleMesh& surface, SurfaceReport& report) {
-  const auto pairs = TriangleTree(surface).CuttingPairs();
+void FindCuts(const TriangleMesh& surface, const std::stop_token& stop, SurfaceReport& report) {
+  const auto pairs = TriangleTree(surface).CuttingPairs(stop);
   UnionFind joined(surface.nodes.size());
   const auto node = [&](std::int32_t t) { return surface.triangles[t][0]; };
   for (const auto& [s, t] : pairs) {
@@ -394,21 +398,24 @@ std::string PlaceText(const SurfacePlace& place) {
   return text;
 }
 
-SurfaceReport RepairSurface(TriangleMesh& surface, double largest_hole, Problems& problems) {
+SurfaceReport RepairSurface(TriangleMesh& surface, double largest_hole, Problems& problems,
+                            const std::stop_token& stop) {
   SurfaceReport report;
   const std::size_t before = problems.count();
   JoinNodes(surface);
+  ThrowIfStopped(stop);
   RemoveTriangles(surface, report);
   DropUnusedNodes(surface.nodes, surface.triangles);
   if (surface.triangles.empty()) {
     problems.Add("", "the surface has no triangles with an area", "is it flat, or scaled to nothing?");
     return report;
   }
+  ThrowIfStopped(stop);
   OrientNeighbours(surface, report, problems);
-  FillHoles(surface, largest_hole, report, problems);
+  FillHoles(surface, largest_hole, stop, report, problems);
   if (problems.count() > before) return report;
-  OrientParts(surface, report);
-  FindCuts(surface, report);
+  OrientParts(surface, stop, report);
+  FindCuts(surface, stop, report);
   return report;
 }
 

@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_GEOMETRY_SURFACE_REPAIR_H_
 
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,9 @@ struct SurfaceReport {
 // orients neighbours consistently, fills holes of at most `largest_hole` across with triangles of least area [Barequet
 // and Sharir 1995], reorients inverted parts that are not cavities of others, and reports self-intersections. A larger
 // hole, edges of three or more triangles that do not bound a volume, and a one-sided surface are problems, each with
-// its place.
-SurfaceReport RepairSurface(TriangleMesh& surface, double largest_hole, Problems& problems);
+// its place. Throws Stopped after a stop request, and leaves the surface half repaired.
+SurfaceReport RepairSurface(TriangleMesh& surface, double largest_hole, Problems& problems,
+                            const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

@@ -25,8 +25,8 @@ double TotalVolume(const TetMesh& mesh) {
   return volume;
 }
 
-std::vector<Triangle> BoundaryTriangles(const TetMesh& mesh) {
-  const std::vector<Face> faces = SortedFaces(mesh.tetrahedra);
+std::vector<Triangle> BoundaryTriangles(const TetMesh& mesh, const std::stop_token& stop) {
+  const std::vector<Face> faces = SortedFaces(mesh.tetrahedra, stop);
   std::vector<std::int64_t> boundary;  // Face::side
   for (std::size_t i = 0; i < faces.size();) {
     std::size_t end = i + 1;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "core/base/types.h"
@@ -39,8 +40,8 @@ double SignedVolume(const TetMesh& mesh, std::size_t tetrahedron);
 Vec3 Centroid(const TetMesh& mesh, std::size_t tetrahedron);
 // Sum of the signed volumes [m^3].
 double TotalVolume(const TetMesh& mesh);
-// Faces that belong to one tetrahedron only, oriented outward, in a fixed order.
-std::vector<Triangle> BoundaryTriangles(const TetMesh& mesh);
+// Faces that belong to one tetrahedron only, oriented outward, in a fixed order. Throws Stopped after a stop request.
+std::vector<Triangle> BoundaryTriangles(const TetMesh& mesh, const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

@@ -67,9 +67,10 @@ void ExpectEnd(TextScanner& in) {
 
 }  // namespace
 
-RawMesh ReadTetgen(std::string_view node_bytes, std::string_view element_bytes, Problems& problems) {
+RawMesh ReadTetgen(std::string_view node_bytes, std::string_view element_bytes, const std::stop_token& stop,
+                   Problems& problems) {
   RawMesh raw;
-  TextScanner nodes(node_bytes, problems, '#');
+  TextScanner nodes(node_bytes, problems, '#', stop);
   ReadNodes(nodes, raw);
   ExpectEnd(nodes);
   if (nodes.failed()) return raw;
@@ -79,7 +80,7 @@ RawMesh ReadTetgen(std::string_view node_bytes, std::string_view element_bytes, 
     return raw;
   }
   Problems in_elements;
-  TextScanner elements(element_bytes, in_elements, '#');
+  TextScanner elements(element_bytes, in_elements, '#', stop);
   ReadElements(elements, raw);
   if (raw.higher_order == 0) ExpectEnd(elements);
   for (const Problem& problem : in_elements.kept()) problems.Add("", ".ele file, " + problem.message, problem.hint);

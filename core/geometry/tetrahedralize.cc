@@ -39,7 +39,7 @@ class Meshing {
     const double diagonal = Diagonal(surface_.nodes);
     const double hole = options_.largest_hole < 0 ? kLargestHole * diagonal : options_.largest_hole;
     const std::size_t before = problems_.count();
-    report_.surface = RepairSurface(surface_, hole, problems_);
+    report_.surface = RepairSurface(surface_, hole, problems_, team_.stop());
     if (problems_.count() > before) return std::nullopt;
     report_.surface_volume = EnclosedVolume(surface_);
     if (!(report_.surface_volume > 1e-9 * diagonal * diagonal * diagonal)) {
@@ -61,6 +61,7 @@ class Meshing {
  private:
   void Tell(double part, const char* what) const {
     if (progress_) progress_(part, what);
+    team_.ThrowIfStopped();
   }
 
   double CountAt(double size) const { return 12 * report_.surface_volume / (size * size * size); }
@@ -99,7 +100,7 @@ class Meshing {
 
   // Drops negligible parts; refuses several bodies.
   bool KeepLargestPart() {
-    const std::vector<std::int32_t> part = FaceConnectedParts(mesh_);
+    const std::vector<std::int32_t> part = FaceConnectedParts(mesh_, team_.stop());
     const std::int32_t parts = *std::max_element(part.begin(), part.end()) + 1;
     if (parts == 1) return true;
     std::vector<double> volume(parts);
@@ -150,11 +151,11 @@ class Meshing {
   }
 
   void Measure(const TriangleTree& tree) {
-    report_.angles = MeasureAngles(mesh_);
+    report_.angles = MeasureAngles(mesh_, team_.stop());
     report_.volume = TotalVolume(mesh_);
     TriangleMesh outside;
     outside.nodes = mesh_.nodes;
-    outside.triangles = BoundaryTriangles(mesh_);
+    outside.triangles = BoundaryTriangles(mesh_, team_.stop());
     std::vector<Vec3> points;
     for (const Triangle& t : outside.triangles) {
       points.push_back((mesh_.nodes[t[0]] + mesh_.nodes[t[1]] + mesh_.nodes[t[2]]) / 3);
@@ -166,9 +167,7 @@ class Meshing {
 
   void KeepFurthest(const std::vector<Vec3>& points, const TriangleTree& tree) {
     std::vector<double> distance(points.size());
-    team_.For(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) distance[i] = tree.Distance(points[i]);
-    });
+    ForEach(team_, points.size(), 64, [&](std::size_t i) { distance[i] = tree.Distance(points[i]); });
     const auto furthest = std::max_element(distance.begin(), distance.end());
     if (*furthest < report_.surface_distance) return;
     report_.surface_distance = *furthest;

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <utility>
 
+#include "core/base/stop.h"
+
 namespace fascicle {
 namespace {
 
@@ -31,6 +33,7 @@ std::string Quoted(std::string_view token) {
 }
 
 void TextScanner::SkipSpace() {
+  ThrowIfStopped(stop_);
   std::size_t i = 0;
   for (bool in_comment = false; i < rest_.size(); ++i) {
     const char c = rest_[i];
@@ -60,6 +63,7 @@ std::string_view TextScanner::Token() {
 }
 
 std::string_view TextScanner::Line() {
+  ThrowIfStopped(stop_);
   const std::size_t end = std::min(rest_.find('\n'), rest_.size());
   const std::string_view text = rest_.substr(0, end);
   if (end < rest_.size()) ++line_;
@@ -68,6 +72,7 @@ std::string_view TextScanner::Line() {
 }
 
 std::string_view TextScanner::Bytes(std::size_t size, std::string_view what) {
+  ThrowIfStopped(stop_);
   if (size > rest_.size()) {
     Fail(std::to_string(size) + " " + std::string(what) + " are announced, but the file ends after " +
              std::to_string(rest_.size()) + " more",

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/base/problems.h"
 
@@ -14,9 +16,10 @@ namespace fascicle {
 // ends the input: from then on numbers are 0, tokens and lines are empty, and failed() is true.
 class TextScanner {
  public:
-  // Both must outlive the scanner. A `comment` character starts a comment that extends to the end of its line.
-  TextScanner(std::string_view text, Problems& problems, char comment = '\0')
-      : rest_(text), problems_(problems), comment_(comment) {}
+  // Text and problems must outlive the scanner. A `comment` character starts a comment that extends to the end of its
+  // line. Whatever takes something throws Stopped after a stop request.
+  TextScanner(std::string_view text, Problems& problems, char comment = '\0', std::stop_token stop = {})
+      : rest_(text), problems_(problems), comment_(comment), stop_(std::move(stop)) {}
 
   bool failed() const { return failed_; }
   int line() const { return line_; }
@@ -53,6 +56,7 @@ class TextScanner {
   std::string_view rest_;
   Problems& problems_;
   char comment_;
+  std::stop_token stop_;
   int line_ = 1;
   bool failed_ = false;
 };

@@ -88,18 +88,19 @@ double Diagonal(const std::vector<Vec3>& nodes) { return BoundsOf(nodes).extent(
 
 std::string KnownSurfaceExtensions() { return ".stl, .obj, .ply, .vtp"; }
 
-std::optional<TriangleMesh> ReadSurface(std::string_view name, std::string_view bytes, Problems& problems) {
+std::optional<TriangleMesh> ReadSurface(std::string_view name, std::string_view bytes, Problems& problems,
+                                        const std::stop_token& stop) {
   const std::string extension = Extension(name);
   const std::size_t before = problems.count();
   RawSurface raw;
   if (extension == ".stl") {
-    raw = ReadStl(bytes, problems);
+    raw = ReadStl(bytes, stop, problems);
   } else if (extension == ".obj") {
-    raw = ReadObj(bytes, problems);
+    raw = ReadObj(bytes, stop, problems);
   } else if (extension == ".ply") {
-    raw = ReadPly(bytes, problems);
+    raw = ReadPly(bytes, stop, problems);
   } else if (extension == ".vtp") {
-    raw = ReadVtp(bytes, problems);
+    raw = ReadVtp(bytes, stop, problems);
   } else {
     problems.Add("", "the file extension " + Quoted(extension) + " is not that of a surface that can be read",
                  "known are " + KnownSurfaceExtensions());

@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_GEOMETRY_TRIANGLE_MESH_H_
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,10 +26,11 @@ double Diagonal(const std::vector<Vec3>& nodes);
 
 // Reads a surface from the bytes of an STL (ASCII and binary), OBJ, PLY (ASCII and binary) or VTK XML (.vtp) file; the
 // extension of `name` selects the format. Polygons are split into triangles. STL corners at the same position become
-// one node.
-// Malformed input never crashes, hangs or allocates more than a small multiple of the file's size. It adds to
-// `problems` (with empty paths and line numbers in the message) and returns nothing.
-std::optional<TriangleMesh> ReadSurface(std::string_view name, std::string_view bytes, Problems& problems);
+// one node. Malformed input never crashes, hangs or allocates more than a small multiple of the file's size. It adds to
+// `problems` (with empty paths and line numbers in the message) and returns nothing. Throws Stopped after a stop
+// request.
+std::optional<TriangleMesh> ReadSurface(std::string_view name, std::string_view bytes, Problems& problems,
+                                        const std::stop_token& stop = {});
 
 // The extensions that ReadSurface accepts, for messages: ".stl, .obj, ...".
 std::string KnownSurfaceExtensions();

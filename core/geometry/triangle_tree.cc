@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "core/base/check.h"
+#include "core/base/stop.h"
 
 namespace fascicle {
 namespace {
@@ -213,9 +214,12 @@ void TriangleTree::FindCuts(std::int32_t triangle, std::vector<std::pair<std::in
   }
 }
 
-std::vector<std::pair<std::int32_t, std::int32_t>> TriangleTree::CuttingPairs() const {
+std::vector<std::pair<std::int32_t, std::int32_t>> TriangleTree::CuttingPairs(const std::stop_token& stop) const {
   std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
-  for (std::size_t t = 0; t < surface_.triangles.size(); ++t) FindCuts(static_cast<std::int32_t>(t), pairs);
+  for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+    ThrowIfStopped(stop);
+    FindCuts(static_cast<std::int32_t>(t), pairs);
+  }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

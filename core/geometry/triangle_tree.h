@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_GEOMETRY_TRIANGLE_TREE_H_
 
 #include <cstdint>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -34,8 +35,8 @@ class TriangleTree {
   double SignedDistance(const Vec3& point) const;
 
   // Pairs of triangles that intersect, ascending. Pairs with common nodes count only if they intersect elsewhere.
-  // Coplanar triangles are not detected.
-  std::vector<std::pair<std::int32_t, std::int32_t>> CuttingPairs() const;
+  // Coplanar triangles are not detected. Throws Stopped after a stop request.
+  std::vector<std::pair<std::int32_t, std::int32_t>> CuttingPairs(const std::stop_token& stop = {}) const;
 
  private:
   struct Box {

@@ -55,54 +55,58 @@ VoxelGrid MakeVoxelGrid(const GridIndex& size, const Vec3& spacing) {
   return grid;
 }
 
-VoxelGrid Coarsen(const VoxelGrid& grid, double fraction) {
+VoxelGrid Coarsen(const VoxelGrid& grid, double fraction, const std::stop_token& stop) {
   VoxelGrid coarse =
       MakeVoxelGrid({(grid.size[0] + 1) / 2, (grid.size[1] + 1) / 2, (grid.size[2] + 1) / 2}, 2 * grid.spacing);
   coarse.origin = grid.origin;
   coarse.direction = grid.direction;
   if (!grid.stiffness.empty()) coarse.stiffness.assign(coarse.voxels(), 0);
-  ForVoxels(coarse, [&](std::size_t v, const GridIndex& at) {
+  const auto join = [&](std::size_t v, const GridIndex& at) {
     const Joined joined = Join(grid, at);
     if (joined.solid == 0 || joined.solid < 8 * fraction) return;
     coarse.material[v] = joined.material;
     if (!coarse.stiffness.empty()) coarse.stiffness[v] = joined.stiffness;
-  });
+  };
+  ForVoxels(coarse, join, stop);
   return coarse;
 }
 
-VoxelGrid CropToSolid(const VoxelGrid& grid) {
+VoxelGrid CropToSolid(const VoxelGrid& grid, const std::stop_token& stop) {
   GridIndex low = grid.size, high = {0, 0, 0};
-  ForVoxels(grid, [&](std::size_t v, const GridIndex& at) {
+  const auto include = [&](std::size_t v, const GridIndex& at) {
     if (grid.material[v] == 0) return;
     for (int axis = 0; axis < 3; ++axis) {
       low[axis] = std::min(low[axis], at[axis]);
       high[axis] = std::max(high[axis], at[axis] + 1);
     }
-  });
+  };
+  ForVoxels(grid, include, stop);
   if (high[0] == 0) low = {0, 0, 0};
   VoxelGrid cropped = MakeVoxelGrid({high[0] - low[0], high[1] - low[1], high[2] - low[2]}, grid.spacing);
   cropped.origin = grid.CornerAt(low);
   cropped.direction = grid.direction;
   if (!grid.stiffness.empty()) cropped.stiffness.assign(cropped.voxels(), 0);
-  ForVoxels(cropped, [&](std::size_t v, const GridIndex& at) {
+  const auto copy = [&](std::size_t v, const GridIndex& at) {
     const std::size_t from = grid.IndexOf({at[0] + low[0], at[1] + low[1], at[2] + low[2]});
     cropped.material[v] = grid.material[from];
     if (!cropped.stiffness.empty()) cropped.stiffness[v] = grid.stiffness[from];
-  });
+  };
+  ForVoxels(cropped, copy, stop);
   return cropped;
 }
 
-Islands FindIslands(const VoxelGrid& grid) {
+Islands FindIslands(const VoxelGrid& grid, const std::stop_token& stop) {
   Islands islands;
   islands.island.assign(grid.voxels(), -1);
   std::vector<GridIndex> front;
-  ForVoxels(grid, [&](std::size_t seed, const GridIndex& at) {
+  const auto fill = [&](std::size_t seed, const GridIndex& at) {
     if (grid.material[seed] == 0 || islands.island[seed] >= 0) return;
     const auto number = static_cast<std::int32_t>(islands.voxels.size());
     std::int64_t count = 0;
     islands.island[seed] = number;
     front.assign(1, at);
     while (!front.empty()) {
+      ThrowIfStopped(stop);
       const GridIndex here = front.back();
       front.pop_back();
       ++count;
@@ -117,24 +121,25 @@ Islands FindIslands(const VoxelGrid& grid) {
       }
     }
     islands.voxels.push_back(count);
-  });
+  };
+  ForVoxels(grid, fill, stop);
   return islands;
 }
 
-void KeepLargestIsland(VoxelGrid& grid) {
-  const Islands islands = FindIslands(grid);
+void KeepLargestIsland(VoxelGrid& grid, const std::stop_token& stop) {
+  const Islands islands = FindIslands(grid, stop);
   const auto largest = std::max_element(islands.voxels.begin(), islands.voxels.end()) - islands.voxels.begin();
   for (std::size_t v = 0; v < grid.voxels(); ++v) {
     if (islands.island[v] != largest) grid.material[v] = 0;
   }
 }
 
-std::vector<VoxelLevel> MakeHierarchy(const VoxelGrid& grid, double fraction, int levels) {
+std::vector<VoxelLevel> MakeHierarchy(const VoxelGrid& grid, double fraction, int levels, const std::stop_token& stop) {
   std::vector<VoxelLevel> hierarchy;
   for (int l = 0; l < levels; ++l) {
     VoxelLevel level;
     level.voxel_size = std::int32_t{1} << l;
-    level.grid = l == 0 ? grid : Coarsen(hierarchy.back().grid, fraction);
+    level.grid = l == 0 ? grid : Coarsen(hierarchy.back().grid, fraction, stop);
     const VoxelMesh mesh(level.grid);
     if (mesh.voxels() == 0) break;
     level.voxels = mesh.voxels();

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
+#include "core/base/stop.h"
 #include "core/base/types.h"
 
 namespace fascicle {
@@ -43,12 +45,15 @@ struct VoxelGrid {
 // An empty grid of the given size (>= 0, at most 2^31 - 1 voxels).
 VoxelGrid MakeVoxelGrid(const GridIndex& size, const Vec3& spacing);
 
+// Functions that take a stop token throw Stopped after a stop request.
+
 // Calls body(voxel index, grid index) for all voxels, i fastest.
 template <class Body>
-void ForVoxels(const VoxelGrid& grid, const Body& body) {
+void ForVoxels(const VoxelGrid& grid, const Body& body, const std::stop_token& stop = {}) {
   std::size_t v = 0;
   for (std::int32_t k = 0; k < grid.size[2]; ++k) {
     for (std::int32_t j = 0; j < grid.size[1]; ++j) {
+      ThrowIfStopped(stop);
       for (std::int32_t i = 0; i < grid.size[0]; ++i) body(v++, GridIndex{i, j, k});
     }
   }
@@ -57,20 +62,20 @@ void ForVoxels(const VoxelGrid& grid, const Body& body) {
 // Joins 2x2x2 voxels [Zhu, Chen & Kaufman 1998, 4]. A coarse voxel is solid if at least `fraction`, in (0, 1], of its
 // eight fine voxels are. It has the most frequent material of its solid voxels (the lowest number on a tie) and their
 // mean stiffness. A grid of odd size is padded with empty voxels. Origin and direction are unchanged.
-VoxelGrid Coarsen(const VoxelGrid& grid, double fraction);
+VoxelGrid Coarsen(const VoxelGrid& grid, double fraction, const std::stop_token& stop = {});
 
 // Crops to the bounding box of the solid voxels and moves the origin accordingly. An empty grid becomes one of size 0.
-VoxelGrid CropToSolid(const VoxelGrid& grid);
+VoxelGrid CropToSolid(const VoxelGrid& grid, const std::stop_token& stop = {});
 
 // Islands: face-connected components of the solid voxels.
 struct Islands {
   std::vector<std::int32_t> island;  // of each voxel; -1 if it is empty; numbered in the order of their first voxels
   std::vector<std::int64_t> voxels;  // number of voxels of each island
 };
-Islands FindIslands(const VoxelGrid& grid);
+Islands FindIslands(const VoxelGrid& grid, const std::stop_token& stop = {});
 
 // Empties all voxels outside of the largest island (the first of equally large ones).
-void KeepLargestIsland(VoxelGrid& grid);
+void KeepLargestIsland(VoxelGrid& grid, const std::stop_token& stop = {});
 
 // A row of the table of a hierarchy [Zhu et al. 1998, Table 1].
 struct VoxelLevel {
@@ -81,7 +86,8 @@ struct VoxelLevel {
 
 // The grid followed by its coarser levels, each coarsened from the one before: at most `levels` in all, as long as they
 // have solid voxels.
-std::vector<VoxelLevel> MakeHierarchy(const VoxelGrid& grid, double fraction, int levels);
+std::vector<VoxelLevel> MakeHierarchy(const VoxelGrid& grid, double fraction, int levels,
+                                      const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

@@ -39,7 +39,8 @@ std::optional<NumberType> TypeNamed(std::string_view token) {
 
 class LegacyReader {
  public:
-  LegacyReader(std::string_view bytes, Problems& problems) : in_(bytes, problems) {}
+  LegacyReader(std::string_view bytes, const std::stop_token& stop, Problems& problems)
+      : in_(bytes, problems, '\0', stop) {}
 
   RawMesh Read() {
     ReadHeader();
@@ -263,6 +264,8 @@ class LegacyReader {
 
 }  // namespace
 
-RawMesh ReadVtkLegacy(std::string_view bytes, Problems& problems) { return LegacyReader(bytes, problems).Read(); }
+RawMesh ReadVtkLegacy(std::string_view bytes, const std::stop_token& stop, Problems& problems) {
+  return LegacyReader(bytes, stop, problems).Read();
+}
 
 }  // namespace fascicle

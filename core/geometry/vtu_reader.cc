@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/stop.h"
 #include "core/geometry/byte_array.h"
 #include "core/geometry/mesh_readers.h"
 #include "core/geometry/surface_readers.h"
@@ -64,8 +65,8 @@ Parts Split(std::string_view bytes) {
 
 class VtuReader {
  public:
-  VtuReader(std::string_view bytes, Problems& problems)
-      : problems_(problems), size_(bytes.size()), parts_(Split(bytes)) {}
+  VtuReader(std::string_view bytes, const std::stop_token& stop, Problems& problems)
+      : problems_(problems), stop_(stop), size_(bytes.size()), parts_(Split(bytes)) {}
 
   // `type` is UnstructuredGrid or PolyData.
   RawMesh Read(const std::string& type) {
@@ -213,6 +214,7 @@ class VtuReader {
   // The bytes of a binary array, exactly `count` numbers. For an ascii array only its attributes are read.
   bool ReadData(pugi::xml_node array, const std::string& name, std::int64_t count, NumberType& type, std::string& bytes,
                 bool& ascii) {
+    ThrowIfStopped(stop_);
     if (!array) return Fail("the array " + Quoted(name) + " is missing", "is the file complete?");
     const std::string_view type_name = array.attribute("type").value();
     const std::string_view format = array.attribute("format").as_string("ascii");
@@ -246,7 +248,7 @@ class VtuReader {
   template <class Number>
   bool ReadAscii(pugi::xml_node array, const std::string& name, std::int64_t count, std::vector<Number>& values) {
     Problems in_array;
-    TextScanner in(array.child_value(), in_array);
+    TextScanner in(array.child_value(), in_array, '\0', stop_);
     if (in.Holds(count, "numbers", 2)) {
       values.reserve(std::size_t(count));
       for (std::int64_t i = 0; i < count && !in.failed(); ++i) {
@@ -264,6 +266,7 @@ class VtuReader {
   }
 
   Problems& problems_;
+  const std::stop_token& stop_;
   std::size_t size_;
   Parts parts_;
   std::optional<VtuDecoder> decoder_;
@@ -274,12 +277,12 @@ class VtuReader {
 
 }  // namespace
 
-RawMesh ReadVtu(std::string_view bytes, Problems& problems) {
-  return VtuReader(bytes, problems).Read("UnstructuredGrid");
+RawMesh ReadVtu(std::string_view bytes, const std::stop_token& stop, Problems& problems) {
+  return VtuReader(bytes, stop, problems).Read("UnstructuredGrid");
 }
 
-RawSurface ReadVtp(std::string_view bytes, Problems& problems) {
-  VtuReader reader(bytes, problems);
+RawSurface ReadVtp(std::string_view bytes, const std::stop_token& stop, Problems& problems) {
+  VtuReader reader(bytes, stop, problems);
   RawSurface raw;
   raw.nodes = reader.Read("PolyData").nodes;
   raw.polygons = reader.TakePolygons();

@@ -10,6 +10,7 @@
 
 #include "core/imaging/classes.h"
 #include "core/imaging/itk_import.h"
+#include "core/imaging/itk_stop.h"
 
 namespace fascicle {
 namespace {
@@ -33,7 +34,7 @@ void FixDefaultThreads() {
   std::call_once(once, [] { itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(4); });
 }
 
-FloatImage::Pointer Blocks(const VolumeImage& image, FloatImage* whole) {
+FloatImage::Pointer Blocks(const VolumeImage& image, FloatImage* whole, const std::stop_token& stop) {
   auto shrink = itk::BinShrinkImageFilter<FloatImage, FloatImage>::New();
   shrink->SetInput(whole);
   for (unsigned axis = 0; axis < 3; ++axis) {
@@ -41,7 +42,7 @@ FloatImage::Pointer Blocks(const VolumeImage& image, FloatImage* whole) {
     const int most = std::max(1, image.size[axis] / kLeastBlocks);
     shrink->SetShrinkFactor(axis, static_cast<unsigned>(std::clamp(wanted, 1.0, static_cast<double>(most))));
   }
-  shrink->Update();
+  UpdateUnlessStopped(*shrink, stop);
   return shrink->GetOutput();
 }
 
@@ -65,7 +66,8 @@ MaskImage::Pointer Foreground(FloatImage& image) {
   return mask;
 }
 
-Lattice::Pointer FieldOf(FloatImage* blocks, MaskImage* mask, const BiasFieldFilter& settings) {
+Lattice::Pointer FieldOf(FloatImage* blocks, MaskImage* mask, const BiasFieldFilter& settings,
+                         const std::stop_token& stop) {
   const unsigned levels = static_cast<unsigned>(settings.refinements) + 1;
   auto n4 = N4::New();
   n4->SetInput(blocks);
@@ -76,12 +78,12 @@ Lattice::Pointer FieldOf(FloatImage* blocks, MaskImage* mask, const BiasFieldFil
   N4::VariableSizeArrayType iterations(levels);
   iterations.Fill(static_cast<unsigned>(settings.iterations));
   n4->SetMaximumNumberOfIterations(iterations);
-  n4->Update();
+  UpdateUnlessStopped(*n4, stop);
   return const_cast<Lattice*>(n4->GetLogBiasFieldControlPointLattice());
 }
 
 // The logarithm of the field at the voxels of `image`.
-FloatImage::Pointer Reconstruct(Lattice* lattice, const FloatImage& image) {
+FloatImage::Pointer Reconstruct(Lattice* lattice, const FloatImage& image, const std::stop_token& stop) {
   using Spline = itk::BSplineControlPointImageFilter<Lattice, N4::ScalarImageType>;
   auto spline = Spline::New();
   spline->SetInput(lattice);
@@ -90,7 +92,7 @@ FloatImage::Pointer Reconstruct(Lattice* lattice, const FloatImage& image) {
   spline->SetDirection(image.GetDirection());
   spline->SetSize(image.GetLargestPossibleRegion().GetSize());
   spline->SetSplineOrder(kSplineOrder);
-  spline->Update();
+  UpdateUnlessStopped(*spline, stop);
   auto field = FloatImage::New();
   field->SetRegions(image.GetLargestPossibleRegion());
   field->Allocate();
@@ -128,22 +130,25 @@ VolumeImage WithSize(const VolumeImage& image, const GridIndex& size) {
 
 }  // namespace
 
-VolumeImage WithoutBiasField(const VolumeImage& image, const BiasFieldFilter& filter) {
+VolumeImage WithoutBiasField(const VolumeImage& image, const BiasFieldFilter& filter, const std::stop_token& stop) {
   FixDefaultThreads();
   GridIndex thick = image.size;
   for (std::int32_t& length : thick) length = std::max(length, kLeastVoxels);
-  if (thick != image.size) return WithSize(WithoutBiasField(WithSize(image, thick), filter), image.size);
+  if (thick != image.size) {
+    return WithSize(WithoutBiasField(WithSize(image, thick), filter, stop), image.size);
+  }
   const auto import = Import(image.values, image.size, image.spacing);
   import->Update();
   FloatImage* const whole = import->GetOutput();
-  const FloatImage::Pointer blocks = Blocks(image, whole);
+  const FloatImage::Pointer blocks = Blocks(image, whole, stop);
   const MaskImage::Pointer mask = Foreground(*blocks);
   if (!mask) return image;
-  const Lattice::Pointer lattice = FieldOf(blocks, mask, filter);
-  const double mean = MeanInMask(*Reconstruct(lattice, *blocks), *mask);
-  const FloatImage::Pointer field = Reconstruct(lattice, *whole);
+  const Lattice::Pointer lattice = FieldOf(blocks, mask, filter, stop);
+  const double mean = MeanInMask(*Reconstruct(lattice, *blocks, stop), *mask);
+  const FloatImage::Pointer field = Reconstruct(lattice, *whole, stop);
   VolumeImage result = image;
   for (std::size_t v = 0; v < result.values.size(); ++v) {
+    ThrowIfStopped(stop);
     float& value = result.values[v];
     if (value > 0) value /= static_cast<float>(std::exp(static_cast<double>(field->GetBufferPointer()[v]) - mean));
   }

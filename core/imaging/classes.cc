@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/base/stop.h"
 
 namespace fascicle {
 namespace {
@@ -115,7 +116,7 @@ std::size_t FuzzyMeans::ClassOf(double value) const {
   return nearest;
 }
 
-FuzzyMeans FindFuzzyMeans(const Histogram& histogram, int classes, double fuzziness) {
+FuzzyMeans FindFuzzyMeans(const Histogram& histogram, int classes, double fuzziness, const std::stop_token& stop) {
   constexpr int kMostIterations = 1000;
   constexpr double kTolerance = 1e-7;  // relative to the range
   const Bins bins = FilledBins(histogram);
@@ -134,6 +135,7 @@ FuzzyMeans FindFuzzyMeans(const Histogram& histogram, int classes, double fuzzin
     means.centres.push_back(moment / count);
   }
   while (!means.converged && means.iterations < kMostIterations) {
+    ThrowIfStopped(stop);
     ++means.iterations;
     double moved = 0;
     std::vector<double> weight(classes, 0), moment(classes, 0);

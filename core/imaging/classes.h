@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -41,8 +42,8 @@ struct FuzzyMeans {
   std::size_t ClassOf(double value) const;
 };
 // Finds fuzzy means on the bins of a histogram, starting from the means of Otsu's classes, until no centre moves by
-// more than 1e-7 of the range.
-FuzzyMeans FindFuzzyMeans(const Histogram& histogram, int classes, double fuzziness);
+// more than 1e-7 of the range. Throws Stopped after a stop request.
+FuzzyMeans FindFuzzyMeans(const Histogram& histogram, int classes, double fuzziness, const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

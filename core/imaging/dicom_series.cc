@@ -9,6 +9,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "core/base/stop.h"
 #include "core/imaging/dicom_check.h"
 #include "core/imaging/itk_image_io.h"
 
@@ -29,12 +30,13 @@ std::string BytesOf(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-std::optional<std::vector<Slice>> ReadSlices(const std::vector<DicomFile>& files, std::int64_t memory_limit,
+std::optional<std::vector<Slice>> ReadSlices(const std::vector<DicomFile>& files, const VolumeReaderOptions& options,
                                              Problems& problems) {
   std::vector<Slice> slices;
   std::set<std::string> series;
-  std::int64_t left = memory_limit;
+  std::int64_t left = options.memory_limit;
   for (const DicomFile& file : files) {
+    ThrowIfStopped(options.stop);
     std::error_code error;
     const ItkFile one{VolumeFormat::kDicom, file.path, std::filesystem::file_size(file.path, error), true};
     Problems found;
@@ -139,9 +141,9 @@ std::optional<VolumeImage> Stack(std::vector<Slice> slices, Problems& problems) 
 
 }  // namespace
 
-std::optional<VolumeImage> ReadDicomSeries(const std::vector<DicomFile>& files, std::int64_t memory_limit,
+std::optional<VolumeImage> ReadDicomSeries(const std::vector<DicomFile>& files, const VolumeReaderOptions& options,
                                            Problems& problems) {
-  std::optional<std::vector<Slice>> slices = ReadSlices(files, memory_limit, problems);
+  std::optional<std::vector<Slice>> slices = ReadSlices(files, options, problems);
   if (!slices) return std::nullopt;
   if (slices->size() == 1) return std::move(slices->front().image);
   return Stack(std::move(*slices), problems);

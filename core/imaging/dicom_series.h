@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/imaging/volume_files.h"
+#include "core/imaging/volume_reader.h"
 
 // Internal to this room.
 namespace fascicle {
@@ -19,7 +20,7 @@ struct DicomFile {
 // Stacks the slices of one series, in any order, along the normal of their planes. A single file may contain several
 // slices. Refuses, reporting every problem: slices of several series, slices of different sizes or directions, two
 // slices at the same position, gaps, and stacks that are not perpendicular to their slices.
-std::optional<VolumeImage> ReadDicomSeries(const std::vector<DicomFile>& files, std::int64_t memory_limit,
+std::optional<VolumeImage> ReadDicomSeries(const std::vector<DicomFile>& files, const VolumeReaderOptions& options,
                                            Problems& problems);
 
 // Whether a file starts like a DICOM file.

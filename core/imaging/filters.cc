@@ -7,9 +7,9 @@
 namespace fascicle {
 
 VolumeImage ApplyFilter(const VolumeImage& image, const ImageFilter& filter, ThreadTeam& team) {
-  if (const auto* gaussian = std::get_if<GaussianFilter>(&filter)) return GaussianOf(image, *gaussian, team.size());
-  if (const auto* curvature = std::get_if<CurvatureFilter>(&filter)) return DiffusedOf(image, *curvature, team.size());
-  if (const auto* bias = std::get_if<BiasFieldFilter>(&filter)) return WithoutBiasField(image, *bias);
+  if (const auto* gaussian = std::get_if<GaussianFilter>(&filter)) return GaussianOf(image, *gaussian, team);
+  if (const auto* curvature = std::get_if<CurvatureFilter>(&filter)) return DiffusedOf(image, *curvature, team);
+  if (const auto* bias = std::get_if<BiasFieldFilter>(&filter)) return WithoutBiasField(image, *bias, team.stop());
   return WaveletFiltered(image, std::get<WaveletFilter>(filter), team);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/stop.h"
 #include "core/imaging/classes.h"
 #include "core/imaging/masks.h"
 
@@ -22,10 +23,12 @@ std::string Text(const GridIndex& at) {
 
 // Statistics of `values` by group: group_of(voxel) is the group's number, or negative for none.
 template <class GroupOf>
-std::vector<ClassStatistics> StatisticsOf(const VolumeImage& image, int groups, const GroupOf& group_of) {
+std::vector<ClassStatistics> StatisticsOf(const VolumeImage& image, int groups, const std::stop_token& stop,
+                                          const GroupOf& group_of) {
   std::vector<ClassStatistics> all(groups);
   std::vector<double> sum(groups, 0), squares(groups, 0);
   for (std::size_t v = 0; v < image.voxels(); ++v) {
+    ThrowIfStopped(stop);
     const int group = group_of(v);
     if (group < 0) continue;
     const double value = image.values[v];
@@ -64,6 +67,7 @@ class StageRun {
  private:
   void Show(double fraction, const char* next) {
     if (progress_) progress_(fraction, next);
+    team_.ThrowIfStopped();
   }
   bool Refuse(const std::string& path, const std::string& message, const std::string& hint) {
     problems_.Add(path, message, hint);
@@ -90,8 +94,8 @@ class StageRun {
                     "at most 64 times as many as before are allowed: use larger voxels");
     }
     const bool labels = std::holds_alternative<LabelChoice>(stage_.choice);
-    result_.image =
-        Resample(result_.image, *stage_.resample, labels ? Interpolation::kNearest : Interpolation::kLinear);
+    const Interpolation interpolation = labels ? Interpolation::kNearest : Interpolation::kLinear;
+    result_.image = Resample(result_.image, *stage_.resample, interpolation, team_.stop());
     return true;
   }
 
@@ -131,6 +135,7 @@ class StageRun {
     const auto count = static_cast<int>(std::max<std::size_t>(choice.labels.size(), 1));
     std::vector<std::uint8_t> material(result_.image.voxels(), 0);
     for (std::size_t v = 0; v < material.size(); ++v) {
+      team_.ThrowIfStopped();
       const float value = result_.image.values[v];
       if (choice.labels.empty()) {
         material[v] = value != 0 ? 1 : 0;
@@ -140,7 +145,8 @@ class StageRun {
                                       [&](int label) { return value == static_cast<float>(label); });
       if (found != choice.labels.end()) material[v] = static_cast<std::uint8_t>(found - choice.labels.begin() + 1);
     }
-    result_.statistics = StatisticsOf(result_.image, count, [&](std::size_t v) { return int{material[v]} - 1; });
+    result_.statistics =
+        StatisticsOf(result_.image, count, team_.stop(), [&](std::size_t v) { return int{material[v]} - 1; });
     for (int l = 0; l < count; ++l) {
       if (result_.statistics[l].voxels > 0) continue;
       if (choice.labels.empty()) return Refuse("labels", "all voxels of the mask are 0", "");
@@ -181,7 +187,7 @@ class StageRun {
       if (choice.method == ClassMethod::kOtsu) {
         result_.thresholds = OtsuThresholds(histogram, choice.classes);
       } else {
-        means = FindFuzzyMeans(histogram, choice.classes, choice.fuzziness);
+        means = FindFuzzyMeans(histogram, choice.classes, choice.fuzziness, team_.stop());
         if (!means.converged) {
           return Refuse("classification", "fuzzy means do not converge",
                         "use fewer classes or a fuzziness nearer to 2");
@@ -200,13 +206,11 @@ class StageRun {
   void TellClasses() {
     const std::vector<double>& thresholds = result_.thresholds;
     result_.classes.resize(values().size());
-    team_.For(values().size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        const auto above = std::lower_bound(thresholds.begin(), thresholds.end(), static_cast<double>(values()[v]));
-        result_.classes[v] = static_cast<std::uint8_t>(above - thresholds.begin());
-      }
+    ForEach(team_, values().size(), 4096, [&](std::size_t v) {
+      const auto above = std::lower_bound(thresholds.begin(), thresholds.end(), static_cast<double>(values()[v]));
+      result_.classes[v] = static_cast<std::uint8_t>(above - thresholds.begin());
     });
-    result_.statistics = StatisticsOf(result_.image, static_cast<int>(thresholds.size()) + 1,
+    result_.statistics = StatisticsOf(result_.image, static_cast<int>(thresholds.size()) + 1, team_.stop(),
                                       [&](std::size_t v) { return int{result_.classes[v]}; });
   }
 
@@ -230,16 +234,14 @@ class StageRun {
     std::vector<std::uint8_t> material(result_.classes.size());
     const bool fuzzy = choice.method == ClassMethod::kFuzzyMeans;
     if (fuzzy) result_.membership.resize(material.size());
-    team_.For(material.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        double membership = 1;
-        if (fuzzy) {
-          membership = means.Membership(values()[v], result_.wanted_class);
-          result_.membership[v] = static_cast<float>(membership);
-        }
-        const bool wanted = result_.classes[v] == result_.wanted_class && membership >= choice.least_membership;
-        material[v] = wanted ? 1 : 0;
+    ForEach(team_, material.size(), 4096, [&](std::size_t v) {
+      double membership = 1;
+      if (fuzzy) {
+        membership = means.Membership(values()[v], result_.wanted_class);
+        result_.membership[v] = static_cast<float>(membership);
       }
+      const bool wanted = result_.classes[v] == result_.wanted_class && membership >= choice.least_membership;
+      material[v] = wanted ? 1 : 0;
     });
     result_.body = MakeVoxelGrid(result_.image, std::move(material));
     return true;
@@ -258,13 +260,13 @@ class StageRun {
     Erode(body, opening, team_);
     if (nothing_left())
       return Refuse("cleaning.opening", "nothing is left of the body", "it must be below half of its thickness");
-    if (stage_.cleaning.keep == KeptParts::kLargest) KeepLargestIsland(body);
+    if (stage_.cleaning.keep == KeptParts::kLargest) KeepLargestIsland(body, team_.stop());
     if (stage_.cleaning.keep == KeptParts::kSeeds && !KeepSeeds()) return false;
     Show(0.8, "cleaning");
     Restore(body, whole, opening, team_);
-    if (stage_.cleaning.fill_holes) FillHoles(body);
+    if (stage_.cleaning.fill_holes) FillHoles(body, team_.stop());
     result_.body_statistics =
-        StatisticsOf(result_.image, 1, [&](std::size_t v) { return body.material[v] != 0 ? 0 : -1; })[0];
+        StatisticsOf(result_.image, 1, team_.stop(), [&](std::size_t v) { return body.material[v] != 0 ? 0 : -1; })[0];
     return true;
   }
 
@@ -275,7 +277,7 @@ class StageRun {
                     stage_.cleaning.opening > 0 ? "move it away from the side, or open by less" : "move it");
     }
     if (!problems_.empty()) return false;
-    KeepIslandsOf(result_.body, seeds_);
+    KeepIslandsOf(result_.body, seeds_, team_.stop());
     return true;
   }
 
@@ -284,9 +286,11 @@ class StageRun {
     result_.grid = result_.body;
     MakeRightHanded(result_.grid);
     // The lattice of levels starts at the body's bounding box, so that it does not depend on the region.
-    result_.grid = CropToSolid(result_.grid);
-    for (int level = 0; level < stage_.level; ++level) result_.grid = fascicle::Coarsen(result_.grid, stage_.fraction);
-    result_.grid = CropToSolid(result_.grid);
+    result_.grid = CropToSolid(result_.grid, team_.stop());
+    for (int level = 0; level < stage_.level; ++level) {
+      result_.grid = fascicle::Coarsen(result_.grid, stage_.fraction, team_.stop());
+    }
+    result_.grid = CropToSolid(result_.grid, team_.stop());
     if (result_.grid.voxels() == 0)
       return Refuse("level", "no voxel is left at this level", "use a lower level, or a smaller fraction");
     return true;

@@ -104,7 +104,7 @@ using ImageProgress = std::function<void(double fraction, const char* stage)>;
 // Runs a stage, which CheckImageStage must have accepted, on an image. The same bits for any number of threads. Returns
 // nothing and adds to `problems`, with paths as above, if the region is not inside of the image, a label has no voxels
 // (the message lists the existing labels), a seed lies outside or in another class, all values are equal, or no voxel
-// is left.
+// is left. Throws Stopped after a stop request to the team.
 std::optional<StagedImage> RunImageStage(const VolumeImage& image, const ImageStage& stage, ThreadTeam& team,
                                          Problems& problems, const ImageProgress& progress = {});
 

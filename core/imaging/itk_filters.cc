@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/imaging/itk_import.h"
+#include "core/imaging/itk_stop.h"
 
 namespace fascicle {
 namespace {
@@ -15,8 +16,8 @@ namespace {
 using FloatImage = itk::Image<float, 3>;
 
 template <class Filter>
-std::vector<float> ValuesOf(Filter& filter, std::size_t count) {
-  filter.Update();
+std::vector<float> ValuesOf(Filter& filter, std::size_t count, const std::stop_token& stop) {
+  UpdateUnlessStopped(filter, stop);
   const float* values = filter.GetOutput()->GetBufferPointer();
   return {values, values + count};
 }
@@ -33,7 +34,7 @@ VolumeImage WithValues(const VolumeImage& image, std::vector<float> values) {
 
 }  // namespace
 
-VolumeImage GaussianOf(const VolumeImage& image, const GaussianFilter& filter, int threads) {
+VolumeImage GaussianOf(const VolumeImage& image, const GaussianFilter& filter, const ThreadTeam& team) {
   const auto import = Import(image.values, image.size, image.spacing);
   auto blur = itk::DiscreteGaussianImageFilter<FloatImage, FloatImage>::New();
   blur->SetInput(import->GetOutput());
@@ -43,11 +44,11 @@ VolumeImage GaussianOf(const VolumeImage& image, const GaussianFilter& filter, i
   blur->SetMaximumError(kLeftOut);
   const double widest = filter.deviation / image.spacing.minCoeff();
   blur->SetMaximumKernelWidth(2 * static_cast<int>(std::ceil(6 * widest)) + 3);
-  blur->SetNumberOfWorkUnits(threads);
-  return WithValues(image, ValuesOf(*blur, image.voxels()));
+  blur->SetNumberOfWorkUnits(team.size());
+  return WithValues(image, ValuesOf(*blur, image.voxels(), team.stop()));
 }
 
-VolumeImage DiffusedOf(const VolumeImage& image, const CurvatureFilter& filter, int threads) {
+VolumeImage DiffusedOf(const VolumeImage& image, const CurvatureFilter& filter, const ThreadTeam& team) {
   // In units of the smallest spacing, for which the step below is the largest stable one: 1 / 2^4 in three dimensions.
   const auto import = Import(image.values, image.size, image.spacing / image.spacing.minCoeff());
   auto diffusion = itk::CurvatureAnisotropicDiffusionImageFilter<FloatImage, FloatImage>::New();
@@ -56,8 +57,8 @@ VolumeImage DiffusedOf(const VolumeImage& image, const CurvatureFilter& filter, 
   diffusion->SetConductanceParameter(filter.conductance);
   diffusion->SetTimeStep(0.0625);
   diffusion->SetUseImageSpacing(true);
-  diffusion->SetNumberOfWorkUnits(threads);
-  return WithValues(image, ValuesOf(*diffusion, image.voxels()));
+  diffusion->SetNumberOfWorkUnits(team.size());
+  return WithValues(image, ValuesOf(*diffusion, image.voxels(), team.stop()));
 }
 
 }  // namespace fascicle

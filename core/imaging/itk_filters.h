@@ -4,11 +4,11 @@
 #include "core/imaging/filters.h"
 #include "core/imaging/volume_image.h"
 
-// ITK's filters, run with the given number of threads. Internal to this room.
+// ITK's filters, run with as many threads as the team has; they heed its stop requests. Internal to this room.
 namespace fascicle {
 
-VolumeImage GaussianOf(const VolumeImage& image, const GaussianFilter& filter, int threads);
-VolumeImage DiffusedOf(const VolumeImage& image, const CurvatureFilter& filter, int threads);
+VolumeImage GaussianOf(const VolumeImage& image, const GaussianFilter& filter, const ThreadTeam& team);
+VolumeImage DiffusedOf(const VolumeImage& image, const CurvatureFilter& filter, const ThreadTeam& team);
 
 }  // namespace fascicle
 

@@ -30,16 +30,14 @@ std::vector<std::uint8_t> Within(const std::vector<std::uint8_t>& marked, const 
     const std::int32_t size = grid.size[axis];
     const double spacing = grid.spacing[axis];
     const auto reach = static_cast<std::int32_t>(std::min<double>(size - 1, std::floor(radius * kRounding / spacing)));
-    team.For(marked.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        const auto at = static_cast<std::int32_t>(v / stride % size);
-        double least = squares[v];
-        for (std::int32_t d = std::max(-reach, -at); d <= std::min(reach, size - 1 - at); ++d) {
-          const double way = d * spacing;
-          least = std::min(least, squares[v + static_cast<std::ptrdiff_t>(stride) * d] + way * way);
-        }
-        next[v] = least;
+    ForEach(team, marked.size(), 4096, [&](std::size_t v) {
+      const auto at = static_cast<std::int32_t>(v / stride % size);
+      double least = squares[v];
+      for (std::int32_t d = std::max(-reach, -at); d <= std::min(reach, size - 1 - at); ++d) {
+        const double way = d * spacing;
+        least = std::min(least, squares[v + static_cast<std::ptrdiff_t>(stride) * d] + way * way);
       }
+      next[v] = least;
     });
     squares.swap(next);
     stride *= size;
@@ -68,8 +66,8 @@ void Restore(VoxelGrid& grid, const VoxelGrid& whole, double radius, ThreadTeam&
   }
 }
 
-void KeepIslandsOf(VoxelGrid& grid, const std::vector<GridIndex>& seeds) {
-  const Islands islands = FindIslands(grid);
+void KeepIslandsOf(VoxelGrid& grid, const std::vector<GridIndex>& seeds, const std::stop_token& stop) {
+  const Islands islands = FindIslands(grid, stop);
   std::vector<bool> kept(islands.voxels.size(), false);
   for (const GridIndex& seed : seeds) kept[islands.island[grid.IndexOf(seed)]] = true;
   for (std::size_t v = 0; v < grid.voxels(); ++v) {
@@ -77,14 +75,14 @@ void KeepIslandsOf(VoxelGrid& grid, const std::vector<GridIndex>& seeds) {
   }
 }
 
-void FillHoles(VoxelGrid& grid) {
+void FillHoles(VoxelGrid& grid, const std::stop_token& stop) {
   VoxelGrid empty = grid;
   empty.material = Marked(grid, false);
-  const Islands islands = FindIslands(empty);
+  const Islands islands = FindIslands(empty, stop);
   std::vector<bool> open(islands.voxels.size(), false);
   std::vector<std::map<std::uint8_t, std::int64_t>> around(
       islands.voxels.size());  // number of faces with each material
-  ForVoxels(grid, [&](std::size_t v, const GridIndex& at) {
+  const auto look_around = [&](std::size_t v, const GridIndex& at) {
     const std::int32_t island = islands.island[v];
     if (island < 0) return;
     for (int side = 0; side < 6; ++side) {
@@ -96,7 +94,8 @@ void FillHoles(VoxelGrid& grid) {
         ++around[island][material];
       }
     }
-  });
+  };
+  ForVoxels(grid, look_around, stop);
   std::vector<std::uint8_t> filling(islands.voxels.size(), 0);
   for (std::size_t h = 0; h < filling.size(); ++h) {
     if (open[h]) continue;

@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/base/stop.h"
+
 namespace fascicle {
 namespace {
 
@@ -211,13 +213,13 @@ bool CheckClaim(const VolumeClaim& claim, std::int64_t memory_limit, Problems& p
   return true;
 }
 
-bool CheckDeflated(std::string_view bytes, Problems& problems) {
+bool CheckDeflated(std::string_view bytes, const std::stop_token& stop, Problems& problems) {
   constexpr int kEitherHeader = 15 + 32;
   std::vector<unsigned char> scratch(1 << 16);
   z_stream stream = {};
   int state = inflateInit2(&stream, kEitherHeader);
   constexpr std::size_t kMost = 1 << 30;  // zlib counts in 32 bits
-  while (state == Z_OK) {
+  while (state == Z_OK && !stop.stop_requested()) {
     if (stream.avail_in == 0) {
       const std::size_t taken = std::min(bytes.size(), kMost);
       if (taken == 0) break;
@@ -230,6 +232,7 @@ bool CheckDeflated(std::string_view bytes, Problems& problems) {
     state = inflate(&stream, Z_NO_FLUSH);
   }
   inflateEnd(&stream);
+  ThrowIfStopped(stop);
   if (state == Z_STREAM_END) return true;
   problems.Add("", "the file's compressed voxels are incomplete or damaged", "is it complete?");
   return false;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -56,8 +57,8 @@ struct VolumeClaim {
 bool CheckClaim(const VolumeClaim& claim, std::int64_t memory_limit, Problems& problems);
 
 // Whether the bytes start with a complete deflated stream (zlib or gzip), checksum included. Libraries accept
-// incomplete streams. If not, returns false and adds a problem.
-bool CheckDeflated(std::string_view bytes, Problems& problems);
+// incomplete streams. If not, returns false and adds a problem. Throws Stopped after a stop request.
+bool CheckDeflated(std::string_view bytes, const std::stop_token& stop, Problems& problems);
 
 // Checks spacing and axes as read from a file: spacings must be finite and above 0; axes must be orthonormal to 1e-3
 // and are then made so to the last bit. If not, returns false and adds problems.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/check.h"
+#include "core/base/stop.h"
 
 namespace fascicle {
 namespace {
@@ -71,7 +72,8 @@ GridIndex ResampledSize(const GridIndex& size, const Vec3& from, double spacing)
   return resampled;
 }
 
-VolumeImage Resample(const VolumeImage& image, double spacing, Interpolation interpolation) {
+VolumeImage Resample(const VolumeImage& image, double spacing, Interpolation interpolation,
+                     const std::stop_token& stop) {
   VolumeImage cubes;
   cubes.size = ResampledSize(image.size, image.spacing, spacing);
   cubes.spacing = Vec3::Constant(spacing);
@@ -88,6 +90,7 @@ VolumeImage Resample(const VolumeImage& image, double spacing, Interpolation int
   cubes.values.reserve(cubes.voxels());
   for (const Between& z : places[2]) {
     for (const Between& y : places[1]) {
+      ThrowIfStopped(stop);
       const float* rows[4] = {
           &image.values[image.IndexOf({0, y.low, z.low})], &image.values[image.IndexOf({0, y.high, z.low})],
           &image.values[image.IndexOf({0, y.low, z.high})], &image.values[image.IndexOf({0, y.high, z.high})]};

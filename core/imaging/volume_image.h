@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_IMAGING_VOLUME_IMAGE_H_
 
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "core/geometry/voxel_grid.h"
@@ -48,8 +49,10 @@ VolumeImage Crop(const VolumeImage& image, const VoxelBox& box);
 
 // How to evaluate values between the centres of voxels: trilinear, or nearest voxel for labels. Beyond the outermost
 // centres the values are constant. (Resampling: cubes of the given spacing [m] fill the same box up to half a cube.)
+// Throws Stopped after a stop request.
 enum class Interpolation { kLinear, kNearest };
-VolumeImage Resample(const VolumeImage& image, double spacing, Interpolation interpolation);
+VolumeImage Resample(const VolumeImage& image, double spacing, Interpolation interpolation,
+                     const std::stop_token& stop = {});
 // The size of a resampled image.
 GridIndex ResampledSize(const GridIndex& size, const Vec3& from, double spacing);
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "core/base/stop.h"
 #include "core/imaging/dicom_series.h"
 #include "core/imaging/itk_image_io.h"
 #include "core/imaging/nifti_check.h"
@@ -113,12 +114,13 @@ std::uint64_t NiftiVoxelBytes(const std::string& header) {
 }
 
 // Compressed voxels at an offset of their file must be complete. Other encodings, such as text, are left to ITK.
-bool CheckCompressed(const ItkFile& file, std::size_t offset, const fs::path& voxels, Problems& problems) {
+bool CheckCompressed(const ItkFile& file, std::size_t offset, const fs::path& voxels, const std::stop_token& stop,
+                     Problems& problems) {
   const std::string bytes = StartOf(voxels, offset + file.bytes);
   const std::string_view data = std::string_view(bytes).substr(std::min(offset, bytes.size()));
   const bool gzip = data.starts_with("\x1f\x8b");
   if (!gzip && file.format != VolumeFormat::kMetaImage) return true;
-  return CheckDeflated(data, problems);
+  return CheckDeflated(data, stop, problems);
 }
 
 std::optional<VolumeImage> ReadFile(const fs::path& path, const VolumeReaderOptions& options, Problems& problems) {
@@ -153,8 +155,10 @@ std::optional<VolumeImage> ReadFile(const fs::path& path, const VolumeReaderOpti
       file.bytes = *data;
     }
   }
-  if (file.compressed && !CheckCompressed(file, offset, voxels, problems)) return std::nullopt;
+  if (file.compressed && !CheckCompressed(file, offset, voxels, options.stop, problems)) return std::nullopt;
+  ThrowIfStopped(options.stop);
   std::optional<ItkVolume> volume = ReadByItk(file, options.memory_limit, problems);
+  ThrowIfStopped(options.stop);
   if (!volume) return std::nullopt;
   return std::move(volume->image);
 }
@@ -176,7 +180,7 @@ std::optional<VolumeImage> ReadFiles(const std::vector<fs::path>& paths, const V
   if (images.empty() && !slices.empty()) {
     for (const DicomFile& slice : slices) SizeOf(slice.path, problems);
     if (!problems.empty()) return std::nullopt;
-    return ReadDicomSeries(slices, options.memory_limit, problems);
+    return ReadDicomSeries(slices, options, problems);
   }
   // A header takes precedence over the data file that it names.
   const auto header = std::find_if(images.begin(), images.end(),
@@ -247,6 +251,7 @@ std::optional<VolumeImage> ReadVolume(const std::vector<VolumeFile>& files, cons
   for (const VolumeFile& file : files) names.insert(BaseName(file.name));
   std::vector<fs::path> paths;
   for (const VolumeFile& file : files) {
+    ThrowIfStopped(options.stop);
     fs::path place = folder.path();
     // Slices of different folders may have the same names.
     if (names.size() < files.size()) place /= std::to_string(paths.size());

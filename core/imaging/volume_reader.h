@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +34,7 @@ struct VolumeReaderOptions {
   // Most memory that reading may need [byte]: 4 bytes per voxel plus the file's own size. Larger images are refused by
   // their header.
   std::int64_t memory_limit = std::int64_t{8} << 30;
+  std::stop_token stop;  // reading throws Stopped once it is requested
 };
 
 // The bytes of a file. The views must stay valid during the call only.

@@ -30,24 +30,22 @@ void BlurAlongRows(const std::vector<float>& from, const GridIndex& size, std::i
                    ThreadTeam& team) {
   const auto length = static_cast<std::size_t>(size[0]);
   const std::int32_t reach = std::min(2 * step, size[0]);
-  team.For(from.size() / length, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      const float* in = &from[row * length];
-      float* out = &to[row * length];
-      const auto at_side = [&](std::int32_t i) {
-        const auto taps = Taps(i, step, size[0]);
-        float sum = 0;
-        for (int t = 0; t < 5; ++t) sum += kSpline[t] * in[taps[t]];
-        out[i] = sum;
-      };
-      for (std::int32_t i = 0; i < reach; ++i) at_side(i);
-      for (std::int32_t i = reach; i < size[0] - reach; ++i) {
-        float sum = 0;
-        for (int t = 0; t < 5; ++t) sum += kSpline[t] * in[i + (t - 2) * step];
-        out[i] = sum;
-      }
-      for (std::int32_t i = std::max(reach, size[0] - reach); i < size[0]; ++i) at_side(i);
+  ForEach(team, from.size() / length, kGrain, [&](std::size_t row) {
+    const float* in = &from[row * length];
+    float* out = &to[row * length];
+    const auto at_side = [&](std::int32_t i) {
+      const auto taps = Taps(i, step, size[0]);
+      float sum = 0;
+      for (int t = 0; t < 5; ++t) sum += kSpline[t] * in[taps[t]];
+      out[i] = sum;
+    };
+    for (std::int32_t i = 0; i < reach; ++i) at_side(i);
+    for (std::int32_t i = reach; i < size[0] - reach; ++i) {
+      float sum = 0;
+      for (int t = 0; t < 5; ++t) sum += kSpline[t] * in[i + (t - 2) * step];
+      out[i] = sum;
     }
+    for (std::int32_t i = std::max(reach, size[0] - reach); i < size[0]; ++i) at_side(i);
   });
 }
 
@@ -56,17 +54,15 @@ void BlurAcrossRows(const std::vector<float>& from, const GridIndex& size, int a
                     std::vector<float>& to, ThreadTeam& team) {
   const auto length = static_cast<std::size_t>(size[0]);
   const std::size_t stride = axis == 1 ? length : length * size[1];
-  team.For(from.size() / length, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      const auto at = static_cast<std::int32_t>(axis == 1 ? row % size[1] : row / size[1]);
-      const auto taps = Taps(at, step, size[axis]);
-      const float* in[5];
-      for (int t = 0; t < 5; ++t) in[t] = &from[row * length] + (taps[t] - at) * static_cast<std::ptrdiff_t>(stride);
-      float* out = &to[row * length];
-      for (std::size_t i = 0; i < length; ++i) {
-        out[i] = kSpline[0] * in[0][i] + kSpline[1] * in[1][i] + kSpline[2] * in[2][i] + kSpline[3] * in[3][i] +
-                 kSpline[4] * in[4][i];
-      }
+  ForEach(team, from.size() / length, kGrain, [&](std::size_t row) {
+    const auto at = static_cast<std::int32_t>(axis == 1 ? row % size[1] : row / size[1]);
+    const auto taps = Taps(at, step, size[axis]);
+    const float* in[5];
+    for (int t = 0; t < 5; ++t) in[t] = &from[row * length] + (taps[t] - at) * static_cast<std::ptrdiff_t>(stride);
+    float* out = &to[row * length];
+    for (std::size_t i = 0; i < length; ++i) {
+      out[i] = kSpline[0] * in[0][i] + kSpline[1] * in[1][i] + kSpline[2] * in[2][i] + kSpline[3] * in[3][i] +
+               kSpline[4] * in[4][i];
     }
   });
 }

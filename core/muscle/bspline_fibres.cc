@@ -19,6 +19,7 @@ BsplineFibreField BsplineFibres(const TetMesh& mesh, const BsplineLocator& locat
 
   BsplineFibreField field;
   for (const BsplineLocation& location : locations) {
+    team.ThrowIfStopped();
     const Mat3 gradients = locator.solid().At(location.parameters).gradients;
     const Vec3 along = gradients.col(2);
     field.fibres.push_back(along.norm() > kFlat * gradients.norm() ? along.normalized() : Vec3(Vec3::Zero()));
@@ -33,7 +34,7 @@ BsplineFibreField BsplineFibres(const TetMesh& mesh, const BsplineLocator& locat
                      " tetrahedra lie outside of the B-spline solid",
                  "give its control points in the coordinates and the unit of the mesh");
     field.fibres.clear();
-  } else if (const std::size_t empty = FillFromNeighbours(mesh, field.fibres); empty > 0) {
+  } else if (const std::size_t empty = FillFromNeighbours(mesh, team.stop(), field.fibres); empty > 0) {
     problems.Add({}, "the B-spline solid has no length along w in " + std::to_string(empty) + " tetrahedra",
                  "its control points must not all be equal along w");
     field.fibres.clear();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <string_view>
 #include <vector>
 
@@ -27,9 +28,10 @@ FibreField ReadFibres(const TetMesh& mesh, std::string_view text, Problems& prob
 // as that of a box, is found to 1e-8. Where the gradient vanishes, as in tetrahedra all of whose nodes belong to one
 // region, the direction is taken from the neighbours. Runs on one thread: the same bits on every run. Adds a problem
 // and returns nothing if a region is empty or refers to a node that does not exist, if regions overlap, if a part of
-// the mesh is not connected to both regions, or if the solver does not converge.
+// the mesh is not connected to both regions, or if the solver does not converge. Throws Stopped after a stop request.
 FibreField HarmonicFibres(const TetMesh& mesh, std::span<const std::int32_t> origin,
-                          std::span<const std::int32_t> insertion, Problems& problems);
+                          std::span<const std::int32_t> insertion, Problems& problems,
+                          const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

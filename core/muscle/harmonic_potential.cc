@@ -43,14 +43,15 @@ std::optional<std::vector<Part>> MarkNodes(std::size_t node_count, std::span<con
 }
 
 // Solves for the potential at the nodes.
-std::optional<std::vector<double>> SolvePotential(const TetMesh& mesh, const std::vector<Part>& parts) {
+std::optional<std::vector<double>> SolvePotential(const TetMesh& mesh, const std::vector<Part>& parts,
+                                                  const std::stop_token& stop) {
   std::vector<bool> fixed;
   Eigen::VectorXd given = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parts.size()));
   for (const Part part : parts) {
     if (part == Part::kInsertion) given[static_cast<Eigen::Index>(fixed.size())] = 1;
     fixed.push_back(part != Part::kFree);
   }
-  const auto potential = SolveLaplace(mesh, fixed, given);
+  const auto potential = SolveLaplace(mesh, fixed, given, stop);
   if (!potential) return std::nullopt;
   return std::vector<double>(potential->data(), potential->data() + potential->size());
 }
@@ -83,17 +84,18 @@ FibreField GradientDirections(const TetMesh& mesh, const std::vector<double>& po
 }  // namespace
 
 std::optional<HarmonicPotential> SolveHarmonicPotential(const TetMesh& mesh, std::span<const std::int32_t> origin,
-                                                        std::span<const std::int32_t> insertion, Problems& problems) {
+                                                        std::span<const std::int32_t> insertion, Problems& problems,
+                                                        const std::stop_token& stop) {
   const auto parts = MarkNodes(mesh.nodes.size(), origin, insertion, problems);
   if (!parts) return std::nullopt;
-  auto potential = SolvePotential(mesh, *parts);
+  auto potential = SolvePotential(mesh, *parts, stop);
   if (!potential) {
     problems.Add({}, "the potential between origin and insertion was not found: the solver did not converge",
                  "check the mesh for flat or inverted tetrahedra");
     return std::nullopt;
   }
   FibreField directions = GradientDirections(mesh, *potential);
-  if (const std::size_t empty = FillFromNeighbours(mesh, directions); empty > 0) {
+  if (const std::size_t empty = FillFromNeighbours(mesh, stop, directions); empty > 0) {
     problems.Add({}, std::to_string(empty) + " tetrahedra have no path to both the fibres' origin and their insertion",
                  "the mesh may have separate parts, or both regions may lie at the same end");
     return std::nullopt;
@@ -102,8 +104,8 @@ std::optional<HarmonicPotential> SolveHarmonicPotential(const TetMesh& mesh, std
 }
 
 FibreField HarmonicFibres(const TetMesh& mesh, std::span<const std::int32_t> origin,
-                          std::span<const std::int32_t> insertion, Problems& problems) {
-  auto potential = SolveHarmonicPotential(mesh, origin, insertion, problems);
+                          std::span<const std::int32_t> insertion, Problems& problems, const std::stop_token& stop) {
+  auto potential = SolveHarmonicPotential(mesh, origin, insertion, problems, stop);
   return potential ? std::move(potential->directions) : FibreField();
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/base/problems.h"
@@ -17,9 +18,11 @@ struct HarmonicPotential {
   FibreField directions;       // of the gradient in each tetrahedron, like HarmonicFibres
 };
 
-// Returns nothing and adds the problems listed at HarmonicFibres if there is no such potential.
+// Returns nothing and adds the problems listed at HarmonicFibres if there is no such potential. Throws Stopped after a
+// stop request.
 std::optional<HarmonicPotential> SolveHarmonicPotential(const TetMesh& mesh, std::span<const std::int32_t> origin,
-                                                        std::span<const std::int32_t> insertion, Problems& problems);
+                                                        std::span<const std::int32_t> insertion, Problems& problems,
+                                                        const std::stop_token& stop);
 
 }  // namespace fascicle
 

@@ -4,7 +4,28 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 
+#include "core/base/stop.h"
+
 namespace fascicle {
+namespace {
+
+// The diagonal, which conjugate gradients apply once in each iteration: the place to end them. Eigen has none of its
+// own.
+class StoppablePreconditioner : public Eigen::DiagonalPreconditioner<double> {
+ public:
+  void SetStop(const std::stop_token& stop) { stop_ = stop; }
+
+  template <class Vector>
+  auto solve(const Eigen::MatrixBase<Vector>& vector) const {
+    ThrowIfStopped(stop_);
+    return Eigen::DiagonalPreconditioner<double>::solve(vector);
+  }
+
+ private:
+  std::stop_token stop_;
+};
+
+}  // namespace
 
 LinearElement MakeLinearElement(const TetMesh& mesh, std::size_t tetrahedron) {
   std::array<Vec3, 4> X;
@@ -21,8 +42,8 @@ LinearElement MakeLinearElement(const TetMesh& mesh, std::size_t tetrahedron) {
   return element;
 }
 
-std::optional<Eigen::MatrixXd> SolveLaplace(const TetMesh& mesh, const std::vector<bool>& fixed,
-                                            Eigen::MatrixXd values) {
+std::optional<Eigen::MatrixXd> SolveLaplace(const TetMesh& mesh, const std::vector<bool>& fixed, Eigen::MatrixXd values,
+                                            const std::stop_token& stop) {
   constexpr double kTolerance = 1e-12;
   std::vector<int> unknown(fixed.size(), -1);
   int unknowns = 0;
@@ -35,6 +56,7 @@ std::optional<Eigen::MatrixXd> SolveLaplace(const TetMesh& mesh, const std::vect
   entries.reserve(16 * mesh.tetrahedra.size());
   Eigen::MatrixXd load = Eigen::MatrixXd::Zero(unknowns, values.cols());
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+    ThrowIfStopped(stop);
     const LinearElement element = MakeLinearElement(mesh, e);
     for (std::size_t a = 0; a < 4; ++a) {
       const std::size_t node_a = static_cast<std::size_t>(mesh.tetrahedra[e][a]);
@@ -54,8 +76,11 @@ std::optional<Eigen::MatrixXd> SolveLaplace(const TetMesh& mesh, const std::vect
   laplacian.setFromTriplets(entries.begin(), entries.end());
   if (!laplacian.coeffs().allFinite() || !load.allFinite()) return std::nullopt;  // flat tetrahedra
 
-  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver(laplacian);
+  ThrowIfStopped(stop);
+  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper, StoppablePreconditioner> solver(
+      laplacian);
   solver.setTolerance(kTolerance);
+  solver.preconditioner().SetStop(stop);
   for (Eigen::Index column = 0; column < values.cols(); ++column) {
     const Eigen::VectorXd solution = solver.solve(load.col(column));
     if (solver.info() != Eigen::Success || !solution.allFinite()) return std::nullopt;

@@ -28,9 +28,9 @@ bool InsideOfARegion(const Cell& cell, const std::vector<double>& potential) {
 }
 
 // Nodes of the boundary between the regions.
-std::vector<bool> LateralNodes(const TetMesh& mesh, const std::vector<double>& potential) {
+std::vector<bool> LateralNodes(const TetMesh& mesh, const std::vector<double>& potential, const std::stop_token& stop) {
   std::vector<bool> lateral(mesh.nodes.size(), false);
-  for (const Triangle& triangle : BoundaryTriangles(mesh)) {
+  for (const Triangle& triangle : BoundaryTriangles(mesh, stop)) {
     if (InsideOfARegion(triangle, potential)) continue;
     for (const std::int32_t node : triangle) lateral[static_cast<std::size_t>(node)] = true;
   }
@@ -49,15 +49,15 @@ std::vector<bool> NodesBetween(const TetMesh& mesh, const std::vector<double>& p
 
 // Parameters u and v of the nodes.
 std::optional<Eigen::MatrixXd> ParametersAcross(const TetMesh& mesh, const std::vector<double>& potential,
-                                                const CrossSections& sections) {
-  const std::vector<bool> lateral = LateralNodes(mesh, potential);
+                                                const CrossSections& sections, const std::stop_token& stop) {
+  const std::vector<bool> lateral = LateralNodes(mesh, potential, stop);
   Eigen::MatrixXd given = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(mesh.nodes.size()), 2);
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
     if (!lateral[n]) continue;
     const Eigen::Vector2d radius = sections.Across(mesh.nodes[n], potential[n]).stableNormalized();
     given.row(static_cast<Eigen::Index>(n)) = (Eigen::Vector2d::Constant(0.5) + 0.5 * radius).transpose();
   }
-  return SolveLaplace(mesh, lateral, std::move(given));
+  return SolveLaplace(mesh, lateral, std::move(given), stop);
 }
 
 std::vector<SolidSample> MakeSamples(const TetMesh& mesh, const std::vector<double>& potential,
@@ -94,25 +94,25 @@ void Thin(std::vector<SolidSample>& samples) {
 }
 
 std::optional<SolidFit> FitAlong(const TetMesh& mesh, const std::vector<double>& potential,
-                                 const MuscleSolidOptions& options) {
+                                 const MuscleSolidOptions& options, const std::stop_token& stop) {
   const auto sections = CrossSections::Make(mesh, potential);
   if (!sections) return std::nullopt;
-  const auto across = ParametersAcross(mesh, potential, *sections);
+  const auto across = ParametersAcross(mesh, potential, *sections, stop);
   if (!across) return std::nullopt;
   std::vector<SolidSample> samples = MakeSamples(mesh, potential, *sections, *across);
   Thin(samples);
   const auto basis = [&](std::size_t d) { return BsplineBasis::Uniform(options.degrees[d], options.controls[d]); };
-  return FitBsplineSolid({basis(0), basis(1), basis(2)}, samples, options.smoothing);
+  return FitBsplineSolid({basis(0), basis(1), basis(2)}, samples, options.smoothing, stop);
 }
 
 }  // namespace
 
 std::optional<SolidFit> FitMuscleSolid(const TetMesh& mesh, std::span<const std::int32_t> origin,
                                        std::span<const std::int32_t> insertion, const MuscleSolidOptions& options,
-                                       Problems& problems) {
-  const auto harmonic = SolveHarmonicPotential(mesh, origin, insertion, problems);
+                                       Problems& problems, const std::stop_token& stop) {
+  const auto harmonic = SolveHarmonicPotential(mesh, origin, insertion, problems, stop);
   if (!harmonic) return std::nullopt;
-  auto fit = FitAlong(mesh, harmonic->values, options);
+  auto fit = FitAlong(mesh, harmonic->values, options, stop);
   if (!fit) {
     problems.Add({}, "no B-spline solid could be fitted to the mesh",
                  "choose regions at the two ends of the muscle, with a surface between them");

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stop_token>
 
 #include "core/base/problems.h"
 #include "core/geometry/bspline_fit.h"
@@ -25,10 +26,10 @@ struct MuscleSolidOptions {
 //          cross-section, scaled to be round; inside: harmonic
 // so that lines of constant (u, v) follow the surface. The corners of the (u, v) square lie outside of the circle and
 // carry no fibres. Adds problems and returns nothing in the cases of HarmonicFibres, if there is no fit, or if the fit
-// is not close to the nodes.
+// is not close to the nodes. Throws Stopped after a stop request.
 std::optional<SolidFit> FitMuscleSolid(const TetMesh& mesh, std::span<const std::int32_t> origin,
                                        std::span<const std::int32_t> insertion, const MuscleSolidOptions& options,
-                                       Problems& problems);
+                                       Problems& problems, const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

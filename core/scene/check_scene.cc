@@ -1,23 +1,19 @@
+#include "core/base/stop.h"
 #include "core/scene/checks.h"
 
 namespace fascicle {
 
-void CheckScene(const Scene& scene, Problems& problems) {
-  scene_checks::CheckBodies(scene, problems);
-  scene_checks::CheckCurves(scene, problems);
-  scene_checks::CheckMaterials(scene, problems);
-  scene_checks::CheckActivations(scene, problems);
-  scene_checks::CheckInitialDisplacement(scene, problems);
-  scene_checks::CheckFibres(scene, problems);
-  scene_checks::CheckConstraints(scene, problems);
-  scene_checks::CheckLoads(scene, problems);
-  scene_checks::CheckFloors(scene, problems);
-  scene_checks::CheckTet(scene, problems);
-  scene_checks::CheckVoxel(scene, problems);
-  scene_checks::CheckEulerian(scene, problems);
-  scene_checks::CheckOutput(scene, problems);
+void CheckScene(const Scene& scene, Problems& problems, const std::stop_token& stop) {
+  using namespace scene_checks;  // NOLINT(google-build-using-namespace): all of them
+  for (const auto check :
+       {CheckBodies, CheckCurves, CheckMaterials, CheckActivations, CheckInitialDisplacement, CheckFibres,
+        CheckConstraints, CheckLoads, CheckFloors, CheckTet, CheckVoxel, CheckEulerian, CheckOutput}) {
+    ThrowIfStopped(stop);
+    check(scene, problems);
+  }
+  ThrowIfStopped(stop);
   // Adds up loads over curves, so the curves must be valid.
-  if (problems.empty()) scene_checks::CheckSupports(scene, problems);
+  if (problems.empty()) CheckSupports(scene, problems);
 }
 
 }  // namespace fascicle

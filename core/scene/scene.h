@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_SCENE_SCENE_H_
 #define FASCICLE_CORE_SCENE_SCENE_H_
 
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,8 @@ inline constexpr auto kFieldNames<Scene> = FieldNames("name", "bodies", "gravity
 // Checks relations between fields: contradictory constraints at a node, loads on regions without surface, missing
 // fibres, activation outside [0, 1], bodies without mass, bodies that start inside of a floor, number of frames, and
 // bodies that loads would accelerate indefinitely (without loads and gravity, free bodies are allowed). Each file of
-// this room has one check.
-void CheckScene(const Scene& scene, Problems& problems);
+// this room has one check. Throws Stopped between two checks after a stop request.
+void CheckScene(const Scene& scene, Problems& problems, const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

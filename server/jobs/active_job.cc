@@ -54,6 +54,16 @@ std::shared_ptr<FrameStore> ActiveJob::frames() const {
   return frames_;
 }
 
+void ActiveJob::SetScene(std::shared_ptr<const Scene> scene) {
+  const std::lock_guard lock(mutex_);
+  scene_ = std::move(scene);
+}
+
+std::shared_ptr<const Scene> ActiveJob::TakeScene() {
+  const std::lock_guard lock(mutex_);
+  return std::move(scene_);
+}
+
 void ActiveJob::FillIn(JobRecord& record) const {
   record.fraction = progress_.fraction;
   record.time = progress_.time;

@@ -7,6 +7,7 @@
 #include <stop_token>
 #include <string>
 
+#include "core/scene/scene.h"
 #include "core/sim/simulation.h"
 #include "server/jobs/eta.h"
 #include "server/jobs/job_manager.h"
@@ -34,6 +35,9 @@ class ActiveJob {
   void SetProgress(const Progress& progress);
   void SetFrames(std::shared_ptr<FrameStore> frames);
   std::shared_ptr<FrameStore> frames() const;
+  // The job's scene, where it is there already; to be taken once.
+  void SetScene(std::shared_ptr<const Scene> scene);
+  std::shared_ptr<const Scene> TakeScene();
 
   // `stored` completed by the data in memory; queue_position stays 0.
   JobView View(JobRecord stored) const;
@@ -53,6 +57,7 @@ class ActiveJob {
   Progress progress_;
   EtaEstimator eta_;
   std::shared_ptr<FrameStore> frames_;
+  std::shared_ptr<const Scene> scene_;
 };
 
 // The view of a record whose job is not active.

@@ -64,15 +64,19 @@ struct JobManager::Impl {
       before = page.back().id;
       for (JobRecord& record : page) {
         Resume(store, record);
-        if (!IsFinal(record.state)) Enqueue(std::move(record));
+        if (!IsFinal(record.state)) Enqueue(std::move(record), nullptr);
       }
     }
   }
 
-  void Enqueue(JobRecord record) {
+  void Enqueue(JobRecord record, std::shared_ptr<const Scene> scene) {
     auto job = std::make_shared<ActiveJob>(store, std::move(record));
     {
       const std::lock_guard lock(mutex);
+      if (scene != nullptr && with_scene.size() < static_cast<std::size_t>(std::max(1, options.workers))) {
+        job->SetScene(std::move(scene));
+        with_scene.insert(job->id());
+      }
       queue.insert(job->id());
       active[job->id()] = job;
     }
@@ -88,6 +92,7 @@ struct JobManager::Impl {
   void Forget(std::string_view id) {
     const std::lock_guard lock(mutex);
     if (const auto found = queue.find(id); found != queue.end()) queue.erase(found);
+    if (const auto found = with_scene.find(id); found != with_scene.end()) with_scene.erase(found);
     if (const auto found = active.find(id); found != active.end()) active.erase(found);
   }
 
@@ -108,6 +113,7 @@ struct JobManager::Impl {
     if (is_draining) return nullptr;
     const std::string id = *queue.begin();
     queue.erase(queue.begin());
+    with_scene.erase(id);
     return *running.insert(active.at(id)).first;
   }
 
@@ -152,8 +158,9 @@ struct JobManager::Impl {
   std::mutex mutex;  // guards the members below; never held during disk access
   std::condition_variable queue_changed;
   std::map<std::string, std::shared_ptr<ActiveJob>, std::less<>> active;
-  std::set<std::string, std::less<>> queue;      // in the order of creation; all of them active
-  std::set<std::shared_ptr<ActiveJob>> running;  // with a worker
+  std::set<std::string, std::less<>> queue;       // in the order of creation; all of them active
+  std::set<std::string, std::less<>> with_scene;  // those of the queue whose scene is there
+  std::set<std::shared_ptr<ActiveJob>> running;   // with a worker
   bool is_draining = false;
 
   std::mutex drain_mutex;  // serializes drains; guards workers
@@ -165,7 +172,7 @@ JobManager::JobManager(Store& store, JobCodec codec, JobManagerOptions options)
 
 JobManager::~JobManager() = default;
 
-JobView JobManager::Submit(JobRecord record, bool* repeated) {
+JobView JobManager::Submit(JobRecord record, bool* repeated, std::shared_ptr<const Scene> scene) {
   record.create_time_us = UnixTimeUs();
   record.id = impl_->ids.Next(record.create_time_us / 1000);
   record.state = JobState::kQueued;
@@ -173,7 +180,7 @@ JobView JobManager::Submit(JobRecord record, bool* repeated) {
   const bool is_new = impl_->store.CreateJob(record, &existing);
   if (repeated != nullptr) *repeated = !is_new;
   if (!is_new) return impl_->View(impl_->FindActive(existing.id), std::move(existing));
-  impl_->Enqueue(record);
+  impl_->Enqueue(record, std::move(scene));
   impl_->notifier.Notify(record.id);
   return impl_->View(impl_->FindActive(record.id), std::move(record));
 }

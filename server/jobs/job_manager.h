@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,8 +29,9 @@ struct RunProfile {
 // several threads at once. Exceptions make the job fail with reason INTERNAL (StoreError: STORAGE).
 struct JobCodec {
   // Builds the scene of a job's spec. Assets are read from `assets`; stages are timed in `profile`. Throws
-  // std::runtime_error if the scene can't be built any more (an asset was lost).
-  std::function<std::shared_ptr<const Scene>(const std::string& spec, AssetStore& assets, Profile* profile)>
+  // std::runtime_error if the scene can't be built any more (an asset was lost), and Stopped after a stop request.
+  std::function<std::shared_ptr<const Scene>(const std::string& spec, AssetStore& assets, Profile* profile,
+                                             const std::stop_token& stop)>
       decode_scene;
   std::function<std::string(const Scene&, const FrameLayout&)> encode_geometry;
   std::function<std::string(const Frame&)> encode_frame;
@@ -63,10 +65,11 @@ class JobManager {
   // Drains; the next process continues unfinished jobs.
   ~JobManager();
 
-  // `record` has spec, scene_name, threads, request_id and request_digest set. Returns the new job, or the earlier one
-  // with the same request id (then `*repeated` is true; the caller compares request_digest). The job is durable on
-  // return.
-  JobView Submit(JobRecord record, bool* repeated);
+  // `record` has spec, scene_name, threads, request_id, request_digest and the profile so far set. Returns the new job,
+  // or the earlier one with the same request id (then `*repeated` is true; the caller compares request_digest). The job
+  // is durable on return. `scene` is the scene of the spec, which the worker then need not decode. Only as many scenes
+  // of waiting jobs are kept as there are workers.
+  JobView Submit(JobRecord record, bool* repeated, std::shared_ptr<const Scene> scene = nullptr);
   std::optional<JobView> Get(std::string_view id);
   std::vector<JobView> List(int limit, std::string_view before_id, const std::vector<JobState>& states);
   // Asks the job to stop; a final job stays as it is. Returns nothing if there is no such job.

@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "core/base/stop.h"
 #include "server/jobs/frame_writer.h"
 
 namespace fascicle::server {
@@ -47,19 +48,23 @@ std::unique_ptr<Simulation> MakeSimulation(std::shared_ptr<const Scene> scene, i
   return std::make_unique<Simulation>(std::move(scene), threads, &profile);
 }
 
-std::shared_ptr<const Scene> DecodeScene(const RunContext& context, const std::string& spec, Profile& profile) {
+// As whoever submitted the job has left it, or from the specification.
+std::shared_ptr<const Scene> SceneOf(const RunContext& context, ActiveJob& job, const std::string& spec,
+                                     Profile& profile) {
   const StageTimer timer(&profile, "scene");
-  std::shared_ptr<const Scene> scene = context.codec.decode_scene(spec, context.store, &profile);
+  std::shared_ptr<const Scene> scene = job.TakeScene();
+  if (scene == nullptr) scene = context.codec.decode_scene(spec, context.store, &profile, job.stop_token());
   if (scene == nullptr) throw std::runtime_error("the scene can't be built");
   return scene;
 }
 
-// Everything before the first step.
+// Everything before the first step. Throws Stopped when the job is asked to stop.
 std::unique_ptr<Simulation> SetUp(const RunContext& context, ActiveJob& job, Profile& profile) {
   const StageTimer timer(&profile, "set-up");
   const std::optional<JobRecord> record = context.store.GetJob(job.id());
   if (!record) throw StoreError("job " + job.id() + " has gone");
-  const std::shared_ptr<const Scene> scene = DecodeScene(context, record->spec, profile);
+  const std::shared_ptr<const Scene> scene = SceneOf(context, job, record->spec, profile);
+  ThrowIfStopped(job.stop_token());
   const std::shared_ptr<FrameStore> frames = context.store.OpenFrames(job.id());
   if (frames == nullptr) throw StoreError("job " + job.id() + " has gone");
   job.SetFrames(frames);
@@ -98,6 +103,8 @@ Outcome SimulateSafely(const RunContext& context, ActiveJob& job, RunProfile& pr
                        const std::function<void()>& notify) {
   try {
     return Simulate(context, job, profile, notify);
+  } catch (const Stopped&) {
+    return {Outcome::Kind::kCancelled, {}};
   } catch (const StoreError& error) {
     return Failed("STORAGE", error.what(), "check the free space and the health of the server's disk", job);
   } catch (const std::exception& error) {

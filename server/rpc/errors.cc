@@ -6,6 +6,7 @@
 #include <new>
 #include <utility>
 
+#include "core/base/stop.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/store/store.h"
@@ -155,6 +156,8 @@ grpc::Status OutOfRange(const std::string& reason, const std::string& message) {
   return MakeStatus(grpc::StatusCode::OUT_OF_RANGE, reason, message, {});
 }
 
+grpc::Status Cancelled() { return MakeStatus(grpc::StatusCode::CANCELLED, "CANCELLED", "the call was cancelled", {}); }
+
 grpc::Status Internal(const std::string& reason, const std::string& message) {
   return MakeStatus(grpc::StatusCode::INTERNAL, reason, message, {});
 }
@@ -162,6 +165,8 @@ grpc::Status Internal(const std::string& reason, const std::string& message) {
 grpc::Status Guarded(spdlog::logger& log, const char* what, const std::function<grpc::Status()>& body) noexcept {
   try {
     return body();
+  } catch (const Stopped&) {
+    return Cancelled();
   } catch (const StoreError& e) {
     log.error("{}: storage failed: {}", what, e.what());
     return Internal("STORAGE", Shortened(std::string("the server's storage failed: ") + e.what()));

@@ -48,10 +48,11 @@ grpc::Status Unavailable(const std::string& reason, const std::string& message, 
 grpc::Status ShuttingDown();
 grpc::Status Aborted(const std::string& reason, const std::string& message);
 grpc::Status OutOfRange(const std::string& reason, const std::string& message);
+grpc::Status Cancelled();
 grpc::Status Internal(const std::string& reason, const std::string& message);
 
 // Runs `body`. An exception is logged under `what` and becomes an INTERNAL error: STORAGE for a StoreError,
-// OUT_OF_MEMORY, or INTERNAL.
+// OUT_OF_MEMORY, or INTERNAL. Stopped becomes CANCELLED.
 grpc::Status Guarded(spdlog::logger& log, const char* what, const std::function<grpc::Status()>& body) noexcept;
 
 }  // namespace fascicle::server

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/digest.h"
+#include "core/base/stop.h"
 #include "server/rpc/job_messages.h"
 #include "server/rpc/names.h"
 #include "server/translate/translate.h"
@@ -33,19 +34,24 @@ grpc::ServerUnaryReactor* JobServiceImpl::CreateJob(grpc::CallbackServerContext*
     reactor->Finish(Unavailable("OVERLOADED", "too many jobs are being submitted", std::chrono::seconds(2)));
     return reactor;
   }
-  return RunUnary(context_, context_.slow, call, "CreateJob", [this, request, response, limit = DetailsLimit(*call)] {
-    return Create(*request, *response, limit);
-  });
+  return RunStoppable(context_, context_.slow, "CreateJob",
+                      [this, request, response, limit = DetailsLimit(*call)](const std::stop_token& stop) {
+                        return Create(*request, *response, limit, stop);
+                      });
 }
 
-grpc::Status JobServiceImpl::Create(const v1::CreateJobRequest& request, v1::Job& response, std::size_t details_limit) {
+grpc::Status JobServiceImpl::Create(const v1::CreateJobRequest& request, v1::Job& response, std::size_t details_limit,
+                                    const std::stop_token& stop) {
+  ThrowIfStopped(stop);
   const std::vector<std::string> missing = MissingAssets(request.job().scene());
   if (!missing.empty()) {
     return FailedPrecondition("MISSING_ASSET", missing, "an asset of the scene was not uploaded", details_limit);
   }
   Problems problems;
   CheckRequest(request, problems);
-  if (request.job().has_scene()) CheckScene(request.job().scene(), problems);
+  Profile profile;
+  std::shared_ptr<const Scene> scene;
+  if (request.job().has_scene()) scene = Translate(request.job().scene(), profile, stop, problems);
   if (!problems.empty()) return InvalidArgument(problems, details_limit);
   if (request.validate_only()) {
     response.set_scene_name(request.job().scene().name());
@@ -56,11 +62,12 @@ grpc::Status JobServiceImpl::Create(const v1::CreateJobRequest& request, v1::Job
   record.scene_name = request.job().scene().name();
   record.threads = request.job().threads();
   record.spec = SpecOf(request.job());
+  record.profile = EncodeProfileOfCheck(profile).SerializeAsString();
   record.request_id = request.request_id();
   record.request_digest = Hex(Sha256Of(record.spec));
   const std::string digest = record.request_digest;
   bool repeated = false;
-  const JobView view = context_.jobs.Submit(std::move(record), &repeated);
+  const JobView view = context_.jobs.Submit(std::move(record), &repeated, std::move(scene));
   if (repeated && view.record.request_digest != digest) {
     return AlreadyExists("REQUEST_ID_REUSED", "job", JobName(view.record.id),
                          "request_id " + request.request_id() + " was used for another job");
@@ -77,11 +84,16 @@ std::vector<std::string> JobServiceImpl::MissingAssets(const v1::Scene& scene) {
   return missing;
 }
 
-void JobServiceImpl::CheckScene(const v1::Scene& scene, Problems& problems) {
+std::shared_ptr<const Scene> JobServiceImpl::Translate(const v1::Scene& scene, Profile& profile,
+                                                       const std::stop_token& stop, Problems& problems) {
+  const StageTimer timer(&profile, "check");
   const auto read = [this](const std::string& sha256_hex) { return context_.store.ReadAsset(sha256_hex); };
   Problems found;
-  if (TranslateScene(scene, read, found) == nullptr && found.empty()) found.Add("", "cannot be translated");
+  auto translated = TranslateScene(scene, read, found, {}, {&profile, &context_.results, stop});
+  if (translated == nullptr && found.empty()) found.Add("", "cannot be translated");
   problems.Append("job.scene", found);
+  profile.NoteCpu();
+  return translated;
 }
 
 grpc::ServerUnaryReactor* JobServiceImpl::GetJob(grpc::CallbackServerContext* call, const v1::GetJobRequest* request,

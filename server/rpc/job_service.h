@@ -1,12 +1,19 @@
 #ifndef FASCICLE_SERVER_RPC_JOB_SERVICE_H_
 #define FASCICLE_SERVER_RPC_JOB_SERVICE_H_
 
+#include <memory>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "core/base/problems.h"
+#include "core/base/profile.h"
 #include "fascicle/v1/simulation_service.grpc.pb.h"
 #include "server/rpc/rpc_context.h"
+
+namespace fascicle {
+struct Scene;
+}
 
 namespace fascicle::server {
 
@@ -27,11 +34,14 @@ class JobServiceImpl : public v1::JobService::CallbackService {
                                       google::protobuf::Empty* response) override;
 
  private:
-  grpc::Status Create(const v1::CreateJobRequest& request, v1::Job& response, std::size_t details_limit);
+  grpc::Status Create(const v1::CreateJobRequest& request, v1::Job& response, std::size_t details_limit,
+                      const std::stop_token& stop);
   grpc::Status List(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
   // `assets/{sha256}` of the scene's assets that the store lacks.
   std::vector<std::string> MissingAssets(const v1::Scene& scene);
-  void CheckScene(const v1::Scene& scene, Problems& problems);
+  // The scene to run; nullptr, with problems, when something is wrong with it.
+  std::shared_ptr<const Scene> Translate(const v1::Scene& scene, Profile& profile, const std::stop_token& stop,
+                                         Problems& problems);
 
   RpcContext& context_;
 };

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <stop_token>
 #include <utility>
 
 #include <grpcpp/server_context.h>
@@ -14,6 +15,7 @@
 #include "server/rpc/executor.h"
 #include "server/rpc/open_streams.h"
 #include "server/store/store.h"
+#include "server/translate/result_cache.h"
 
 namespace fascicle::server {
 
@@ -30,6 +32,7 @@ struct RpcSettings {
 struct RpcContext {
   Store& store;
   JobManager& jobs;
+  ResultCache& results;
   Executor& quick;  // reads and short writes
   Executor& slow;   // translation of scenes, uploads
   OpenStreams& streams;
@@ -48,6 +51,31 @@ grpc::ServerUnaryReactor* RunUnary(RpcContext& context, Executor& executor, grpc
   }
   executor.Post(
       [&context, reactor, method, body = std::move(body)] { reactor->Finish(Guarded(context.log, method, body)); });
+  return reactor;
+}
+
+// Of a call whose work ends when its caller has given up.
+class StoppableReactor final : public grpc::ServerUnaryReactor {
+ public:
+  std::stop_token stop() const { return stop_.get_token(); }
+  void OnCancel() override { stop_.request_stop(); }
+  void OnDone() override { delete this; }
+
+ private:
+  std::stop_source stop_;
+};
+
+// As RunUnary, with a body that takes the stop token of its call.
+template <class Body>
+grpc::ServerUnaryReactor* RunStoppable(RpcContext& context, Executor& executor, const char* method, Body body) {
+  auto* reactor = new StoppableReactor;
+  if (context.streams.draining()) {
+    reactor->Finish(ShuttingDown());
+    return reactor;
+  }
+  executor.Post([&context, reactor, stop = reactor->stop(), method, body = std::move(body)] {
+    reactor->Finish(Guarded(context.log, method, [&] { return body(stop); }));
+  });
   return reactor;
 }
 

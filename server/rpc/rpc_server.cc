@@ -45,9 +45,10 @@ void KeepLibraryUp() { [[maybe_unused]] static const bool kept = (grpc_init(), t
 }  // namespace
 
 struct RpcServer::Impl {
-  Impl(Store& store, JobManager& jobs, std::shared_ptr<spdlog::logger> log, const RpcSettings& settings)
+  Impl(Store& store, JobManager& jobs, ResultCache& results, std::shared_ptr<spdlog::logger> log,
+       const RpcSettings& settings)
       : logger(std::move(log)),
-        context{store, jobs, quick, slow, streams, *logger, settings},
+        context{store, jobs, results, quick, slow, streams, *logger, settings},
         quick(kQuickThreads, [this](const std::string& what) { logger->error("executor: {}", what); }),
         slow(kSlowThreads, [this](const std::string& what) { logger->error("executor: {}", what); }) {}
 
@@ -66,9 +67,9 @@ struct RpcServer::Impl {
   bool stopped = false;
 };
 
-RpcServer::RpcServer(const std::string& listen, Store& store, JobManager& jobs, std::shared_ptr<spdlog::logger> log,
-                     const RpcSettings& settings)
-    : impl_(std::make_unique<Impl>(store, jobs, std::move(log), settings)) {
+RpcServer::RpcServer(const std::string& listen, Store& store, JobManager& jobs, ResultCache& results,
+                     std::shared_ptr<spdlog::logger> log, const RpcSettings& settings)
+    : impl_(std::make_unique<Impl>(store, jobs, results, std::move(log), settings)) {
   KeepLibraryUp();
   // Both are settings of the whole process; enabling them twice has no effect.
   grpc::EnableDefaultHealthCheckService(true);

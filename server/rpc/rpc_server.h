@@ -17,8 +17,8 @@ class RpcServer {
  public:
   // Listens on `listen` ("HOST:PORT"; port 0 chooses a free one). The other arguments must outlive this object. Throws
   // std::runtime_error if it cannot listen there.
-  RpcServer(const std::string& listen, Store& store, JobManager& jobs, std::shared_ptr<spdlog::logger> log,
-            const RpcSettings& settings);
+  RpcServer(const std::string& listen, Store& store, JobManager& jobs, ResultCache& results,
+            std::shared_ptr<spdlog::logger> log, const RpcSettings& settings);
   ~RpcServer();
 
   int port() const;

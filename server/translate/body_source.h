@@ -6,7 +6,6 @@
 #include <string>
 
 #include "core/base/problems.h"
-#include "core/base/profile.h"
 #include "fascicle/v1/scene.pb.h"
 #include "server/translate/translate.h"
 
@@ -19,7 +18,7 @@ struct BodySource {
   double duration;       // of the scene [s]
   const AssetReader& assets;
   std::int64_t& budget;  // elements left for the body; reduced by its number of elements
-  Profile* profile;      // may be nullptr
+  const TranslateTools& tools;
 };
 
 // Adds a problem for each of the named fields that the body has, because its shape does not support them.

@@ -12,6 +12,7 @@
 #include "core/muscle/muscle_solid.h"
 #include "server/translate/fibre_ends.h"
 #include "server/translate/files.h"
+#include "server/translate/kept_results.h"
 #include "server/translate/values.h"
 
 namespace fascicle::server {
@@ -52,7 +53,7 @@ void CheckSizes(const v1::FittedSolid& fitted, const std::string& path, Problems
 
 std::optional<BsplineSolid> FitSolid(const v1::FittedSolid& fitted, const std::string& path,
                                      const TranslatedTetrahedra* mesh, const NamedRegions& regions,
-                                     Problems& problems) {
+                                     const std::stop_token& stop, Problems& problems) {
   Problems own;
   const auto ends = FindFibreEnds(fitted, path, regions, own);
   const bool ruled = ObeysRules(fitted);
@@ -63,44 +64,81 @@ std::optional<BsplineSolid> FitSolid(const v1::FittedSolid& fitted, const std::s
   std::copy_n(fitted.degrees().begin(), 3, options.degrees.begin());
   std::copy_n(fitted.controls().begin(), 3, options.controls.begin());
   options.smoothing = fitted.smoothing();
-  auto fit = FitMuscleSolid(mesh->mesh, ends->origin, ends->insertion, options, own);
+  auto fit = FitMuscleSolid(mesh->mesh, ends->origin, ends->insertion, options, own, stop);
   problems.Append(path, own);
   if (!fit) return std::nullopt;
   return std::move(fit->solid);
 }
 
-void AddNotes(const BsplineFibreField& field, const std::string& path, std::vector<std::string>& notes) {
+std::vector<std::string> NotesOf(const BsplineFibreField& field) {
+  std::vector<std::string> notes;
   const std::string of = " of " + std::to_string(field.fibres.size()) + " tetrahedra ";
   if (field.outside > 0) {
     char farthest[32];
     std::snprintf(farthest, sizeof(farthest), "%.2g mm", 1e3 * field.farthest);
-    notes.push_back(path + ": " + std::to_string(field.outside) + of + "have their centroid outside of the solid, by " +
-                    farthest + " at most; they have the fibre of the nearest point");
+    notes.push_back(std::to_string(field.outside) + of + "have their centroid outside of the solid, by " + farthest +
+                    " at most; they have the fibre of the nearest point");
   }
   if (field.folded > 0) {
-    notes.push_back(path + ": at the centroids of " + std::to_string(field.folded) + of +
+    notes.push_back("at the centroids of " + std::to_string(field.folded) + of +
                     "the solid is inverted, and its fibres cross");
   }
+  return notes;
+}
+
+// The part that takes long, and that is kept. Nothing where something is wrong.
+std::optional<ComputedFibres> Compute(const BodySource& source, const std::string& path,
+                                      const TranslatedTetrahedra* mesh, const NamedRegions& regions,
+                                      Problems& problems) {
+  const StageTimer timer(source.tools.profile, "bspline");
+  const v1::BsplineFibres& bspline = source.wire.fibres().bspline();
+  std::optional<BsplineSolid> solid;
+  if (bspline.has_file()) {
+    solid = ReadSolid(bspline.file(), MetresIn(source.wire.unit()), JoinPath(path, "file"), source.assets, problems);
+  } else if (bspline.has_fitted()) {
+    solid = FitSolid(bspline.fitted(), JoinPath(path, "fitted"), mesh, regions, source.tools.stop, problems);
+  }
+  if (!solid || mesh == nullptr || !mesh->sound) return std::nullopt;
+  ThreadTeam team(static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads)),
+                  source.tools.stop);
+  Problems own;
+  BsplineFibreField field = BsplineFibres(mesh->mesh, BsplineLocator(std::move(*solid)), team, own);
+  problems.Append(path, own);
+  if (!own.empty()) return std::nullopt;
+  std::vector<std::string> notes = NotesOf(field);
+  return ComputedFibres{std::move(field.fibres), std::move(notes)};
+}
+
+// All that the fibres depend on, of a sound mesh.
+ArchiveWriter InputsOf(const BodySource& source, const TetMesh& mesh, const NamedRegions& regions) {
+  constexpr std::uint32_t kVersion = 1;  // of what Compute gives
+  const v1::BsplineFibres& bspline = source.wire.fibres().bspline();
+  ArchiveWriter writer("B-spline fibres", kVersion);
+  PutMessage("bspline", bspline, writer);
+  writer.PutDouble("metres", MetresIn(source.wire.unit()));
+  PutMesh(mesh, writer);
+  Problems said;  // by Compute
+  if (const auto ends = bspline.has_fitted() ? FindFibreEnds(bspline.fitted(), "", regions, said) : std::nullopt) {
+    writer.PutInts("origin", ends->origin);
+    writer.PutInts("insertion", ends->insertion);
+  }
+  return writer;
 }
 
 }  // namespace
 
-FibreField TranslateBsplineFibres(const v1::BsplineFibres& bspline, v1::LengthUnit unit, const std::string& path,
-                                  const TranslatedTetrahedra* mesh, const NamedRegions& regions,
-                                  const AssetReader& assets, std::vector<std::string>& notes, Problems& problems) {
-  std::optional<BsplineSolid> solid;
-  if (bspline.has_file()) {
-    solid = ReadSolid(bspline.file(), MetresIn(unit), JoinPath(path, "file"), assets, problems);
-  } else if (bspline.has_fitted()) {
-    solid = FitSolid(bspline.fitted(), JoinPath(path, "fitted"), mesh, regions, problems);
+FibreField TranslateBsplineFibres(const BodySource& source, const std::string& path, const TranslatedTetrahedra* mesh,
+                                  const NamedRegions& regions, std::vector<std::string>& notes, Problems& problems) {
+  const auto compute = [&] { return Compute(source, path, mesh, regions, problems); };
+  if (mesh == nullptr || !mesh->sound) {
+    compute();  // what is wrong with the solid is told, too
+    return {};
   }
-  if (!solid || mesh == nullptr || !mesh->sound) return {};
-  ThreadTeam team(static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, kMostThreads)));
-  Problems own;
-  BsplineFibreField field = BsplineFibres(mesh->mesh, BsplineLocator(std::move(*solid)), team, own);
-  problems.Append(path, own);
-  AddNotes(field, path, notes);
-  return std::move(field.fibres);
+  auto computed = Kept<ComputedFibres>(
+      source.tools, [&] { return InputsOf(source, mesh->mesh, regions); }, compute);
+  if (!computed) return {};
+  for (const std::string& note : computed->notes) notes.push_back(path + ": " + note);
+  return std::move(computed->fibres);
 }
 
 }  // namespace fascicle::server

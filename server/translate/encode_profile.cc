@@ -40,6 +40,14 @@ void Add(const std::vector<ProfileStage>& stages, bool concurrent, v1::Profile& 
 
 }  // namespace
 
+v1::Profile EncodeProfileOfCheck(const Profile& profile) {
+  v1::Profile sum;
+  sum.set_wall_seconds(profile.wall_seconds());
+  sum.set_cpu_seconds(profile.cpu_seconds());
+  Add(profile.Stages(), false, sum);
+  return sum;
+}
+
 v1::Profile EncodeProfile(const RunProfile& profile) {
   v1::Profile sum;
   if (!sum.ParseFromString(profile.earlier)) sum.Clear();

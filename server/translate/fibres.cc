@@ -6,21 +6,36 @@
 #include "server/translate/bspline_fibres.h"
 #include "server/translate/fibre_ends.h"
 #include "server/translate/files.h"
+#include "server/translate/kept_results.h"
 #include "server/translate/materials.h"
 #include "server/translate/values.h"
 
 namespace fascicle::server {
 namespace {
 
-FibreField TranslateHarmonic(const v1::HarmonicFibres& harmonic, const std::string& path,
-                             const TranslatedTetrahedra* mesh, const NamedRegions& regions, Problems& problems) {
-  const auto ends = FindFibreEnds(harmonic, path, regions, problems);
+FibreField TranslateHarmonic(const BodySource& source, const std::string& path, const TranslatedTetrahedra* mesh,
+                             const NamedRegions& regions, Problems& problems) {
+  constexpr std::uint32_t kVersion = 1;  // of what HarmonicFibres gives
+  const auto ends = FindFibreEnds(source.wire.fibres().harmonic(), path, regions, problems);
   // Invalid meshes have been reported.
   if (!ends || mesh == nullptr || !mesh->sound) return {};
-  Problems own;
-  FibreField fibres = HarmonicFibres(mesh->mesh, ends->origin, ends->insertion, own);
-  problems.Append(path, own);
-  return own.empty() ? fibres : FibreField();
+  const auto inputs = [&] {
+    ArchiveWriter writer("harmonic fibres", kVersion);
+    PutMesh(mesh->mesh, writer);
+    writer.PutInts("origin", ends->origin);
+    writer.PutInts("insertion", ends->insertion);
+    return writer;
+  };
+  const auto compute = [&]() -> std::optional<ComputedFibres> {
+    const StageTimer timer(source.tools.profile, "harmonic");
+    Problems own;
+    FibreField fibres = HarmonicFibres(mesh->mesh, ends->origin, ends->insertion, own, source.tools.stop);
+    problems.Append(path, own);
+    if (!own.empty()) return std::nullopt;
+    return ComputedFibres{std::move(fibres), {}};
+  };
+  auto computed = Kept<ComputedFibres>(source.tools, inputs, compute);
+  return computed ? std::move(computed->fibres) : FibreField();
 }
 
 FibreField TranslateField(const BodySource& source, const std::string& path, const TranslatedTetrahedra* mesh,
@@ -33,11 +48,10 @@ FibreField TranslateField(const BodySource& source, const std::string& path, con
     return own.empty() && mesh != nullptr && ObeysRules(fibres) ? ConstantFibres(mesh->mesh, direction) : FibreField();
   }
   if (fibres.has_harmonic()) {
-    return TranslateHarmonic(fibres.harmonic(), JoinPath(path, "harmonic"), mesh, regions, problems);
+    return TranslateHarmonic(source, JoinPath(path, "harmonic"), mesh, regions, problems);
   }
   if (fibres.has_bspline()) {
-    return TranslateBsplineFibres(fibres.bspline(), source.wire.unit(), JoinPath(path, "bspline"), mesh, regions,
-                                  source.assets, notes, problems);
+    return TranslateBsplineFibres(source, JoinPath(path, "bspline"), mesh, regions, notes, problems);
   }
   if (!fibres.has_file()) return {};
   const std::string file_path = JoinPath(path, "file");
@@ -83,7 +97,7 @@ void CheckFibresAreGiven(const BodySource& source, Problems& problems) {
 
 FibreField TranslateFibres(const BodySource& source, const TranslatedTetrahedra* mesh, const NamedRegions& regions,
                            std::vector<std::string>& notes, Problems& problems) {
-  const StageTimer timer(source.profile, "fibres");
+  const StageTimer timer(source.tools.profile, "fibres");
   CheckFibresAreGiven(source, problems);
   const v1::Body& wire = source.wire;
   FibreField fibres;

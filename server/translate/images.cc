@@ -9,6 +9,7 @@
 #include "core/imaging/image_stage.h"
 #include "core/imaging/volume_reader.h"
 #include "server/translate/files.h"
+#include "server/translate/kept_results.h"
 #include "server/translate/values.h"
 
 namespace fascicle::server {
@@ -40,8 +41,8 @@ std::optional<RawLayout> TranslateRaw(const v1::ImageShape& shape, double metres
   return raw;
 }
 
-std::optional<VolumeImage> ReadImage(const v1::ImageShape& shape, double metres, const std::string& path,
-                                     const AssetReader& assets, Problems& problems) {
+std::optional<VolumeImage> ReadImage(const BodySource& source, const std::string& path, Problems& problems) {
+  const v1::ImageShape& shape = source.wire.mesh().image();
   if (shape.has_phantom()) {
     return MakeArmPhantom(
                {shape.phantom().noise(), shape.phantom().bias(), static_cast<std::uint64_t>(shape.phantom().seed())})
@@ -50,7 +51,7 @@ std::optional<VolumeImage> ReadImage(const v1::ImageShape& shape, double metres,
   const std::string file_path = JoinPath(path, "file");
   std::vector<std::pair<std::string, std::string>> named;  // files and their bytes
   const auto read = [&](const v1::FileRef& file, const std::string& at) {
-    auto bytes = ReadFile(file, at, assets, problems);
+    auto bytes = ReadFile(file, at, source.assets, problems);
     if (bytes) named.emplace_back(file.path(), std::move(*bytes));
     return bytes.has_value();
   };
@@ -60,8 +61,9 @@ std::optional<VolumeImage> ReadImage(const v1::ImageShape& shape, double metres,
   }
   Problems own;
   VolumeReaderOptions options;
-  options.raw = TranslateRaw(shape, metres, path, problems);
+  options.raw = TranslateRaw(shape, MetresIn(source.wire.unit()), path, problems);
   options.memory_limit = kMemoryLimit;
+  options.stop = source.tools.stop;
   if (!complete || (shape.has_raw() && !options.raw)) return std::nullopt;
   std::vector<VolumeFile> files;
   for (const auto& [name, bytes] : named) files.push_back({name, bytes});
@@ -140,22 +142,40 @@ void AppendOfStage(const std::string& path, const Problems& own, const v1::Image
   }
 }
 
-void AddNote(const StagedImage& staged, const std::string& path, std::vector<std::string>& notes) {
+std::vector<std::string> NotesOf(const StagedImage& staged) {
   char text[200];
   std::snprintf(text, sizeof text, "%lld voxels, %.4g cm^3, mean value %.4g, in the image's own",
                 static_cast<long long>(staged.body_statistics.voxels), 1e6 * staged.body_statistics.volume,
                 staged.body_statistics.mean);
-  notes.push_back(path + ": " + text);
+  std::vector<std::string> notes = {text};
   std::string thresholds;
   for (const double threshold : staged.thresholds) thresholds += (thresholds.empty() ? "" : ", ") + Text(threshold);
-  if (!thresholds.empty()) notes.push_back(path + ": thresholds between classes: " + thresholds);
+  if (!thresholds.empty()) notes.push_back("thresholds between classes: " + thresholds);
+  return notes;
+}
+
+// From the file to the body's voxels: the part that takes long, and that is kept.
+std::optional<SegmentedImage> Segment(const BodySource& source, const ImageStage& stage, const std::string& path,
+                                      Problems& problems) {
+  const StageTimer timer(source.tools.profile, "segmentation");
+  const v1::ImageShape& shape = source.wire.mesh().image();
+  const auto image = ReadImage(source, path, problems);
+  if (!image) return std::nullopt;
+  Problems of_stage;
+  ThreadTeam team(1, source.tools.stop);
+  auto staged = RunImageStage(*image, stage, team, of_stage);
+  AppendOfStage(path, of_stage, shape, problems);
+  if (!staged) return std::nullopt;
+  return SegmentedImage{std::move(staged->grid), NotesOf(*staged)};
 }
 
 }  // namespace
 
-std::optional<VoxelGrid> TranslateImage(const v1::ImageShape& shape, double metres, const std::string& path,
-                                        const AssetReader& assets, std::vector<std::string>& notes,
-                                        Problems& problems) {
+std::optional<VoxelGrid> TranslateImage(const BodySource& source, const std::string& path,
+                                        std::vector<std::string>& notes, Problems& problems) {
+  constexpr std::uint32_t kVersion = 1;  // of what Segment gives
+  const v1::ImageShape& shape = source.wire.mesh().image();
+  const double metres = MetresIn(source.wire.unit());
   const bool has_source = shape.has_file() || shape.has_phantom();
   if (!has_source) problems.Add(path, "has no source", "give one of: file, phantom");
   // Violations of the rules are reported by the rules.
@@ -164,15 +184,20 @@ std::optional<VoxelGrid> TranslateImage(const v1::ImageShape& shape, double metr
   Problems of_settings;
   CheckImageStage(stage, of_settings);
   AppendOfStage(path, of_settings, shape, problems);
-  const auto image = ReadImage(shape, metres, path, assets, problems);
-  if (!image || !of_settings.empty()) return std::nullopt;
-  Problems of_stage;
-  ThreadTeam team(1);
-  const auto staged = RunImageStage(*image, stage, team, of_stage);
-  AppendOfStage(path, of_stage, shape, problems);
-  if (!staged) return std::nullopt;
-  AddNote(*staged, path, notes);
-  return staged->grid;
+  if (!of_settings.empty()) {
+    ReadImage(source, path, problems);  // what is wrong with it is told, too
+    return std::nullopt;
+  }
+  const auto inputs = [&] {
+    ArchiveWriter writer("segmented image", kVersion);
+    PutMessage("image", shape, writer);
+    writer.PutDouble("metres", metres);
+    return writer;
+  };
+  auto segmented = Kept<SegmentedImage>(source.tools, inputs, [&] { return Segment(source, stage, path, problems); });
+  if (!segmented) return std::nullopt;
+  for (const std::string& note : segmented->notes) notes.push_back(path + ": " + note);
+  return std::move(segmented->grid);
 }
 
 }  // namespace fascicle::server

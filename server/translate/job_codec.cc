@@ -13,11 +13,11 @@ std::string Serialize(const M& message) {
   return bytes;
 }
 
-std::shared_ptr<const Scene> DecodeScene(const std::string& spec, AssetStore& assets, Profile* profile) {
+std::shared_ptr<const Scene> DecodeScene(const std::string& spec, AssetStore& assets, const TranslateTools& tools) {
   v1::Job job;
   if (!job.ParseFromString(spec)) throw std::runtime_error("the stored job can't be read");
   Problems problems;
-  auto scene = TranslateScene(job.scene(), ReaderOf(assets), problems, {}, profile);
+  auto scene = TranslateScene(job.scene(), ReaderOf(assets), problems, {}, tools);
   if (scene == nullptr) throw std::runtime_error("the stored scene can't be built any more:\n" + problems.ToString());
   return scene;
 }
@@ -28,8 +28,11 @@ AssetReader ReaderOf(AssetStore& assets) {
   return [&assets](const std::string& sha256_hex) { return assets.ReadAsset(sha256_hex); };
 }
 
-JobCodec MakeJobCodec() {
-  return {.decode_scene = DecodeScene,
+JobCodec MakeJobCodec(ResultCache* results) {
+  return {.decode_scene =
+              [results](const std::string& spec, AssetStore& assets, Profile* profile, const std::stop_token& stop) {
+                return DecodeScene(spec, assets, {profile, results, stop});
+              },
           .encode_geometry = [](const Scene& scene,
                                 const FrameLayout& layout) { return Serialize(EncodeGeometry(scene, layout)); },
           .encode_frame = [](const Frame& frame) { return Serialize(EncodeFrame(frame)); },

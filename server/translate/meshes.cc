@@ -25,20 +25,21 @@ void CheckElements(const v1::Mesh& mesh, const std::string& path, Problems& prob
   }
 }
 
-std::optional<TetMesh> ReadMeshFile(const v1::Mesh& mesh, const std::string& path, const AssetReader& assets,
-                                    Problems& problems) {
+std::optional<TetMesh> ReadMeshFile(const BodySource& source, const std::string& path, Problems& problems) {
+  const v1::Mesh& mesh = source.wire.mesh();
   CheckElements(mesh, path, problems);
   const std::string file_path = JoinPath(path, "file");
-  const auto bytes = ReadFile(mesh.file(), file_path, assets, problems);
+  const auto bytes = ReadFile(mesh.file(), file_path, source.assets, problems);
   std::optional<std::string> element_bytes;
   if (IsTetGen(mesh.file())) {
     if (!mesh.has_elements()) return std::nullopt;
-    element_bytes = ReadFile(mesh.elements(), JoinPath(path, "elements"), assets, problems);
+    element_bytes = ReadFile(mesh.elements(), JoinPath(path, "elements"), source.assets, problems);
     if (!element_bytes) return std::nullopt;
   }
   if (!bytes || mesh.file().path().empty()) return std::nullopt;
   Problems own;
-  auto read = ReadMesh({mesh.file().path(), *bytes, element_bytes ? *element_bytes : std::string_view()}, own);
+  const MeshFile file = {mesh.file().path(), *bytes, element_bytes ? *element_bytes : std::string_view()};
+  auto read = ReadMesh(file, own, source.tools.stop);
   problems.Append(file_path, own);
   return read;
 }
@@ -110,7 +111,7 @@ bool IsOfTetrahedra(const BodySource& source, Method method, Problems& problems)
 
 std::optional<TetMesh> TetrahedraOfFile(const BodySource& source, const std::string& path, Problems& problems) {
   CheckUnit(source, "mesh", problems);
-  auto mesh = ReadMeshFile(source.wire.mesh(), path, source.assets, problems);
+  auto mesh = ReadMeshFile(source, path, problems);
   if (!mesh || !Spend(static_cast<std::int64_t>(mesh->tetrahedra.size()), "tetrahedra", source.budget,
                       JoinPath(path, "file"), "use a coarser mesh", problems)) {
     return std::nullopt;
@@ -137,15 +138,14 @@ std::optional<BrickMesh> BricksOfBox(const BodySource& source, const std::string
   std::int64_t count = 1;
   for (const std::int32_t divisions : box.divisions()) count *= divisions;
   if (!Spend(count, "voxels", source.budget, path, "use fewer divisions", problems)) return std::nullopt;
-  return MakeBrickMesh(BoxOfVoxels(box, MetresIn(source.wire.unit())));
+  return MakeBrickMesh(BoxOfVoxels(box, MetresIn(source.wire.unit())), source.tools.stop);
 }
 
 std::optional<BrickMesh> BricksOfImage(const BodySource& source, const std::string& path,
                                        std::vector<std::string>& notes, Problems& problems) {
-  auto grid =
-      TranslateImage(source.wire.mesh().image(), MetresIn(source.wire.unit()), path, source.assets, notes, problems);
+  auto grid = TranslateImage(source, path, notes, problems);
   if (!grid) return std::nullopt;
-  BrickMesh mesh = MakeBrickMesh(std::move(*grid));
+  BrickMesh mesh = MakeBrickMesh(std::move(*grid), source.tools.stop);
   if (!Spend(static_cast<std::int64_t>(mesh.bricks.size()), "voxels", source.budget, path,
              "use a higher level, or a smaller region", problems)) {
     return std::nullopt;
@@ -163,7 +163,7 @@ std::string SourcePath(const v1::Mesh& mesh, const std::string& body_path) {
 }
 
 std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source, Method method, Problems& problems) {
-  const StageTimer timer(source.profile, "meshes");
+  const StageTimer timer(source.tools.profile, "meshes");
   const std::string path = JoinPath(source.path, "mesh");
   if (!NamesSource(source, "file, box, fusiform, torus, sphere", problems) ||
       !IsOfTetrahedra(source, method, problems)) {
@@ -173,7 +173,7 @@ std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source
                                             : TetrahedraOfShape(source, path, problems);
   if (!mesh) return std::nullopt;
   Problems own;
-  CheckMesh(*mesh, own);
+  CheckMesh(*mesh, own, source.tools.stop);
   problems.Append(SourcePath(source.wire.mesh(), source.path), own);
   if (!IsAddressable(*mesh)) return std::nullopt;
   return TranslatedTetrahedra{std::move(*mesh), own.empty()};
@@ -181,7 +181,7 @@ std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source
 
 std::optional<BrickMesh> TranslateBricks(const BodySource& source, std::vector<std::string>& notes,
                                          Problems& problems) {
-  const StageTimer timer(source.profile, "meshes");
+  const StageTimer timer(source.tools.profile, "meshes");
   const std::string path = JoinPath(source.path, "mesh");
   if (!NamesSource(source, "image, box", problems)) return std::nullopt;
   if (source.wire.mesh().has_image()) return BricksOfImage(source, JoinPath(path, "image"), notes, problems);
@@ -192,7 +192,7 @@ std::optional<BrickMesh> TranslateBricks(const BodySource& source, std::vector<s
 }
 
 std::optional<TriangleMesh> TranslateSurfaceFile(const BodySource& source, Problems& problems) {
-  const StageTimer timer(source.profile, "meshes");
+  const StageTimer timer(source.tools.profile, "meshes");
   const std::string path = JoinPath(source.path, "mesh");
   const std::string file_path = JoinPath(path, "surface");
   CheckUnit(source, "surface", problems);
@@ -201,7 +201,7 @@ std::optional<TriangleMesh> TranslateSurfaceFile(const BodySource& source, Probl
   const auto bytes = ReadFile(file, file_path, source.assets, problems);
   if (!bytes || file.path().empty()) return std::nullopt;
   Problems own;
-  auto surface = ReadSurface(file.path(), *bytes, own);
+  auto surface = ReadSurface(file.path(), *bytes, own, source.tools.stop);
   problems.Append(file_path, own);
   if (!surface || !Spend(static_cast<std::int64_t>(surface->triangles.size()), "triangles", source.budget, file_path,
                          "use a coarser surface", problems)) {

@@ -32,32 +32,39 @@ void Names::Add(const std::string& name, const std::string& path, Problems& prob
     problems.Add(path, "is missing", kSyntax);
   } else if (!IsName(name)) {
     problems.Add(path, "'" + Shortened(name) + "' is not a name", kSyntax);
-  } else if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
+  } else if (indices_.contains(name)) {
     problems.Add(path, "'" + name + "' is already the name of another " + what_,
                  "every " + what_ + " needs a unique name");
   }
+  indices_.try_emplace(name, names_.size());
   names_.push_back(name);
 }
 
 std::optional<std::size_t> Names::Find(const std::string& name, const std::string& path, Problems& problems) const {
-  const auto found = std::find(names_.begin(), names_.end(), name);
-  if (!name.empty() && found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
-  problems.Add(path, name.empty() ? "is missing" : "there is no " + what_ + " '" + Shortened(name) + "'", Hint(name));
+  const auto found = indices_.find(name);
+  if (!name.empty() && found != indices_.end()) return found->second;
+  problems.Add(path, name.empty() ? "is missing" : "there is no " + what_ + " '" + Shortened(name) + "'",
+               problems.count() < Problems::kMaxKept ? Hint(name) : std::string());
   return std::nullopt;
+}
+
+std::string Names::Nearest(const std::string& name) const {
+  constexpr std::size_t kMaxCompared = 1000;
+  std::string nearest;
+  std::size_t least = kMaxLength;
+  for (std::size_t i = 0; i < std::min(names_.size(), kMaxCompared) && !name.empty(); ++i) {
+    const std::size_t distance = EditDistance(name.substr(0, kMaxLength), Shortened(names_[i]));
+    if (distance >= least) continue;
+    least = distance;
+    nearest = names_[i];
+  }
+  return least <= std::max<std::size_t>(2, nearest.size() / 3) ? nearest : std::string();
 }
 
 std::string Names::Hint(const std::string& name) const {
   if (names_.empty()) return "there is no " + what_ + " at all";
   std::string hint;
-  const auto distance = [&](const std::string& known) {
-    return EditDistance(name.substr(0, kMaxLength), Shortened(known));
-  };
-  const auto nearest = std::min_element(names_.begin(), names_.end(), [&](const std::string& a, const std::string& b) {
-    return distance(a) < distance(b);
-  });
-  if (!name.empty() && !nearest->empty() && distance(*nearest) <= std::max<std::size_t>(2, nearest->size() / 3)) {
-    hint = "did you mean '" + *nearest + "'? ";
-  }
+  if (const std::string nearest = Nearest(name); !nearest.empty()) hint = "did you mean '" + nearest + "'? ";
   hint += "known: ";
   for (std::size_t i = 0; i < std::min(names_.size(), kMaxListed); ++i) {
     hint += (i > 0 ? ", '" : "'") + Shortened(names_[i]) + "'";

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "core/base/problems.h"
@@ -18,14 +19,18 @@ class Names {
 
   // Adds the name of the next entry, which is at `path`. Adds a problem if it is malformed or already used.
   void Add(const std::string& name, const std::string& path, Problems& problems);
-  // The entry to which the reference at `path` refers; a problem with the nearest name if there is none.
+  // The entry to which the reference at `path` refers; a problem with the nearest name if there is none. (Problems
+  // beyond those that are kept are counted without a hint, which takes long to find.)
   std::optional<std::size_t> Find(const std::string& name, const std::string& path, Problems& problems) const;
 
  private:
   std::string Hint(const std::string& name) const;
+  // What a misspelt name may mean; empty when none is similar.
+  std::string Nearest(const std::string& name) const;
 
   std::string what_;
   std::vector<std::string> names_;
+  std::unordered_map<std::string, std::size_t> indices_;  // of the first entry of each name
 };
 
 }  // namespace fascicle::server

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/base/stop.h"
 #include "core/geometry/bounds.h"
 #include "server/translate/values.h"
 
@@ -141,10 +142,12 @@ bool TranslateWithin(const v1::Region& region, const Names& names, std::size_t o
   return complete;
 }
 
-std::vector<Triangle> FacesOf(const TetMesh& mesh) { return BoundaryTriangles(mesh); }
-std::vector<Quad> FacesOf(const BrickMesh& mesh) { return BoundaryQuads(mesh); }
+std::vector<Triangle> FacesOf(const TetMesh& mesh, const std::stop_token& stop) {
+  return BoundaryTriangles(mesh, stop);
+}
+std::vector<Quad> FacesOf(const BrickMesh& mesh, const std::stop_token& stop) { return BoundaryQuads(mesh, stop); }
 // The surface as a mesh without elements.
-TetMesh FacesOf(const TriangleMesh& mesh) { return {mesh.nodes, {}, {}, {}, {}, {}, {}, {}}; }
+TetMesh FacesOf(const TriangleMesh& mesh, const std::stop_token&) { return {mesh.nodes, {}, {}, {}, {}, {}, {}, {}}; }
 
 template <class Mesh, class Faces>
 Region Select(const Mesh& mesh, const Faces& faces, const std::string& name, const Selector& selector) {
@@ -172,11 +175,12 @@ RegionSelectors TranslateRegions(const v1::Body& body, const std::string& body_p
 }
 
 template <class Mesh>
-std::vector<Region> SelectRegions(const RegionSelectors& selectors, const Mesh& mesh) {
+std::vector<Region> SelectRegions(const RegionSelectors& selectors, const Mesh& mesh, const std::stop_token& stop) {
   std::vector<Region> regions;
   if (selectors.entries.empty()) return regions;
-  const auto faces = FacesOf(mesh);
+  const auto faces = FacesOf(mesh, stop);
   for (const RegionSelectors::Entry& entry : selectors.entries) {
+    ThrowIfStopped(stop);
     Region region;
     region.name = entry.name;
     if (entry.selector) region = Select(mesh, faces, entry.name, *entry.selector);
@@ -185,9 +189,12 @@ std::vector<Region> SelectRegions(const RegionSelectors& selectors, const Mesh& 
   }
   return regions;
 }
-template std::vector<Region> SelectRegions(const RegionSelectors& selectors, const TetMesh& mesh);
-template std::vector<Region> SelectRegions(const RegionSelectors& selectors, const BrickMesh& mesh);
-template std::vector<Region> SelectRegions(const RegionSelectors& selectors, const TriangleMesh& mesh);
+template std::vector<Region> SelectRegions(const RegionSelectors& selectors, const TetMesh& mesh,
+                                           const std::stop_token& stop);
+template std::vector<Region> SelectRegions(const RegionSelectors& selectors, const BrickMesh& mesh,
+                                           const std::stop_token& stop);
+template std::vector<Region> SelectRegions(const RegionSelectors& selectors, const TriangleMesh& mesh,
+                                           const std::stop_token& stop);
 
 std::vector<Region> EmptyRegions(const RegionSelectors& selectors) {
   std::vector<Region> regions;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,9 @@ struct RegionSelectors {
 RegionSelectors TranslateRegions(const v1::Body& body, const std::string& body_path, Problems& problems);
 
 // The regions of a mesh (TetMesh, BrickMesh or TriangleMesh), one for each selector; without nodes where a selector is
-// invalid.
+// invalid. Throws Stopped after a stop request.
 template <class Mesh>
-std::vector<Region> SelectRegions(const RegionSelectors& selectors, const Mesh& mesh);
+std::vector<Region> SelectRegions(const RegionSelectors& selectors, const Mesh& mesh, const std::stop_token& stop);
 // The regions of a body without a mesh: names only.
 std::vector<Region> EmptyRegions(const RegionSelectors& selectors);
 

@@ -10,8 +10,8 @@ namespace fascicle::server {
 namespace {
 
 // The boundary of tetrahedra, with its nodes.
-TriangleMesh BoundaryOf(const TetMesh& mesh) {
-  TriangleMesh surface = {mesh.nodes, BoundaryTriangles(mesh)};
+TriangleMesh BoundaryOf(const TetMesh& mesh, const std::stop_token& stop) {
+  TriangleMesh surface = {mesh.nodes, BoundaryTriangles(mesh, stop)};
   DropUnusedNodes(surface.nodes, surface.triangles);
   return surface;
 }
@@ -39,7 +39,7 @@ bool TranslateFile(const BodySource& source, const RegionSelectors& selectors, B
   auto surface = TranslateSurfaceFile(source, structure);
   if (surface) {
     shape.mesh = std::move(*surface);
-    body.regions = SelectRegions(selectors, shape.mesh);
+    body.regions = SelectRegions(selectors, shape.mesh, source.tools.stop);
     CheckRegions(source.wire, source.path, selectors, body.regions, shape.mesh, structure);
   }
   if (source.wire.has_fibres()) {
@@ -57,7 +57,7 @@ bool TranslateBoundary(const BodySource& source, const RegionSelectors& selector
   auto tetrahedra = TranslateTetrahedra(source, Method::kEulerian, structure);
   std::vector<Region> of_filling = EmptyRegions(selectors);
   if (tetrahedra) {
-    of_filling = SelectRegions(selectors, tetrahedra->mesh);
+    of_filling = SelectRegions(selectors, tetrahedra->mesh, source.tools.stop);
     CheckRegions(source.wire, source.path, selectors, of_filling, tetrahedra->mesh, structure);
   }
   shape.fibres =
@@ -66,9 +66,9 @@ bool TranslateBoundary(const BodySource& source, const RegionSelectors& selector
   if (!tetrahedra->mesh.curved_edges.empty()) {
     body.notes.push_back(JoinPath(source.path, "mesh") + ": the surface ignores that edges of the mesh are curved");
   }
-  shape.mesh = BoundaryOf(tetrahedra->mesh);
+  shape.mesh = BoundaryOf(tetrahedra->mesh, source.tools.stop);
   shape.filling = std::move(tetrahedra->mesh);
-  body.regions = SelectRegions(selectors, shape.mesh);
+  body.regions = SelectRegions(selectors, shape.mesh, source.tools.stop);
   return true;
 }
 

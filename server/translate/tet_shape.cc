@@ -16,7 +16,7 @@ bool TranslateTetShape(const BodySource& source, const RegionSelectors& selector
   if (tetrahedra) {
     elements = tetrahedra->mesh.tetrahedra.size();
     nodes = tetrahedra->mesh.nodes.size();
-    body.regions = SelectRegions(selectors, tetrahedra->mesh);
+    body.regions = SelectRegions(selectors, tetrahedra->mesh, source.tools.stop);
     CheckRegions(source.wire, source.path, selectors, body.regions, tetrahedra->mesh, structure);
   } else {
     body.regions = EmptyRegions(selectors);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/stop.h"
 #include "core/eulerian/scene_body.h"
 #include "core/voxel/scene_body.h"
 #include "proto/rules/field_rules.h"
@@ -53,7 +54,7 @@ std::vector<std::string> AssetsOf(const v1::Scene& scene) {
 }
 
 std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetReader& assets, Problems& problems,
-                                            const TranslateLimits& limits, Profile* profile) {
+                                            const TranslateLimits& limits, const TranslateTools& tools) {
   Problems found;
   CheckRules(scene, found);
   v1::Scene filled = scene;
@@ -76,10 +77,11 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   std::vector<std::string> sources;  // of the surfaces of bodies
   std::int64_t budget = limits.max_elements;
   for (int i = 0; i < filled.bodies_size(); ++i) {
+    ThrowIfStopped(tools.stop);
     const std::string path = IndexPath("bodies", static_cast<std::size_t>(i));
     names.Add(filled.bodies(i).name(), JoinPath(path, "name"), found);
     TranslatedBody body =
-        TranslateBody({filled.bodies(i), path, filled.duration(), assets, budget, profile}, result->method, found);
+        TranslateBody({filled.bodies(i), path, filled.duration(), assets, budget, tools}, result->method, found);
     complete.push_back(body.complete);
     sources.push_back(SourcePath(filled.bodies(i).mesh(), path));
     AddCurvedEdgesNote(result->tet, path, body.body);
@@ -88,12 +90,13 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   result->output = TranslateOutput(filled, result->method, result->bodies, names, limits.max_frame_bytes, found);
 
   if (result->method == Method::kEulerian && result->eulerian.cell_size > 0) {
-    const StageTimer timer(profile, "surfaces");
+    const StageTimer timer(tools.profile, "surfaces");
     CheckEulerianBodies(*result, sources, limits.max_elements, found);
   }
   if (found.empty()) {
-    const StageTimer timer(profile, "checks");
-    CheckScene(*result, found);
+    const StageTimer timer(tools.profile, "checks");
+    CheckScene(*result, found, tools.stop);
+    ThrowIfStopped(tools.stop);
     if (found.empty()) CheckVoxelSupports(*result, found);
   }
   if (found.empty()) return result;

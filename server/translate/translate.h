@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@
 
 namespace fascicle::server {
 
+class ResultCache;
 struct RunProfile;
 
 // The only room that knows both the wire format and the core. Stateless and thread-safe.
@@ -35,18 +37,26 @@ struct TranslateLimits {
   std::int64_t max_frame_bytes = 1'000'000'000;  // a Protobuf message must stay below 2 GiB
 };
 
+// What a translation may use besides.
+struct TranslateTools {
+  Profile* profile = nullptr;      // its stages are timed there
+  ResultCache* results = nullptr;  // results of long stages are kept there; the scene does not depend on it
+  std::stop_token stop;            // ends it with Stopped
+};
+
 // Checks everything that can be checked without running (the proto's ranges, names, files, meshes, regions, CheckScene)
 // and adds every problem with its field path ("bodies[0].density"). Null if there is any.
 // Nothing large is built before its size is known to be within the limits.
-// Stages are timed in `profile`, which may be null.
 std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetReader& assets, Problems& problems,
-                                            const TranslateLimits& limits = {}, Profile* profile = nullptr);
+                                            const TranslateLimits& limits = {}, const TranslateTools& tools = {});
 
 // Conversion to the wire format. A frame's digest and numbers are copied bit by bit.
 v1::Geometry EncodeGeometry(const Scene& scene, const FrameLayout& layout);
 v1::Frame EncodeFrame(const Frame& frame);
 v1::Failure EncodeFailure(const Failure& failure);
-// The profile of a run, added to those of earlier runs.
+// The profile of a scene's check, before the first run.
+v1::Profile EncodeProfileOfCheck(const Profile& profile);
+// The profile of a run, added to those of the check and of earlier runs.
 v1::Profile EncodeProfile(const RunProfile& profile);
 
 }  // namespace fascicle::server

@@ -19,7 +19,7 @@ bool TranslateVoxelShape(const BodySource& source, const RegionSelectors& select
   std::optional<std::size_t> elements;
   if (bricks) {
     elements = bricks->bricks.size();
-    body.regions = SelectRegions(selectors, *bricks);
+    body.regions = SelectRegions(selectors, *bricks, source.tools.stop);
     CheckRegions(source.wire, source.path, selectors, body.regions, *bricks, structure);
   } else {
     body.regions = EmptyRegions(selectors);

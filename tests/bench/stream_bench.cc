@@ -203,7 +203,7 @@ void Run() {
   testing::TemporaryFolder folder;
   const auto store = OpenSqliteStore(folder.path());
   const std::string name = "jobs/" + PutJob(*store, frame);
-  JobManager jobs(*store, MakeJobCodec(), {});
+  JobManager jobs(*store, MakeJobCodec(nullptr), {});
   RpcServer ours("127.0.0.1:0", *store, jobs, std::make_shared<spdlog::logger>("bench"), {});
   const auto our_channel = ChannelTo(ours.port());
   const auto our_frames = v1::FrameService::NewStub(our_channel);

@@ -87,7 +87,7 @@ inline std::string EncodeProfile(const RunProfile& profile) {
 // Plain bytes. A test that needs more wraps these functions.
 inline JobCodec BoxCodec() {
   JobCodec codec;
-  codec.decode_scene = [](const std::string& bytes, AssetStore&, Profile*) {
+  codec.decode_scene = [](const std::string& bytes, AssetStore&, Profile*, const std::stop_token&) {
     BoxSpec spec;
     std::memcpy(&spec, bytes.data(), sizeof spec);
     if (spec.cannot_be_decoded) throw std::runtime_error("an asset was lost");

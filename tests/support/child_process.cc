@@ -68,6 +68,19 @@ void ChildProcess::Signal(int signal) const {
   if (!exit_code_) kill(pid_, signal);
 }
 
+bool ChildProcess::AwaitBlocked(int signal) const {
+  while (true) {
+    std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+    std::string line;
+    while (std::getline(status, line) && !line.starts_with("SigBlk:")) {
+      if (line.starts_with("State:") && line.find('Z') != std::string::npos) return false;
+    }
+    if (!status) return false;
+    if ((std::stoull(line.substr(7), nullptr, 16) >> (signal - 1) & 1) != 0) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
 std::optional<int> ChildProcess::Wait(std::chrono::milliseconds timeout) {
   const auto deadline = steady_clock::now() + timeout;
   while (!exit_code_) {

@@ -33,6 +33,8 @@ class ChildProcess {
   // The next line of its stdout; empty at the end, or if none arrives within `timeout`.
   std::string ReadLine(std::chrono::milliseconds timeout = std::chrono::seconds(30));
   void Signal(int signal) const;
+  // Waits until the program has blocked a signal, so that it handles it by itself; false if it ends before.
+  bool AwaitBlocked(int signal) const;
   // The exit code, or minus the signal that ended it; nothing if it still runs after `timeout`.
   std::optional<int> Wait(std::chrono::milliseconds timeout);
   // Waits for its end; `out` is the output that ReadLine has not returned.

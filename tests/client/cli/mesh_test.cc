@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -50,6 +51,19 @@ TEST_F(MeshTest, TellsAboutTheMesh) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path())) {
     EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
   }
+}
+
+// Minutes of work without the signal.
+TEST_F(MeshTest, CtrlCStopsItWithoutAFile) {
+  const std::string bar = File("bar.obj", kBar);
+  ChildProcess child({Program("fascicle"), "mesh", bar, "--out", folder_ / "bar.msh", "--tets", "20000000"});
+  ASSERT_TRUE(child.AwaitBlocked(SIGINT));
+  child.Signal(SIGINT);
+  const Finished finished = child.Wait();
+  EXPECT_EQ(finished.exit_code, 4) << finished.err;
+  EXPECT_THAT(finished.err, HasSubstr("interrupted"));
+  const auto files = fs::directory_iterator(folder_.path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "the surface only";
 }
 
 TEST_F(MeshTest, TheSameMeshForAnyNumberOfThreads) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -31,6 +32,25 @@ class SegmentTest : public FascicleTest {
                     bytes);
   }
 };
+
+// Minutes of work without the signal.
+TEST_F(SegmentTest, CtrlCStopsItWithoutAFile) {
+  const std::string arm = folder_ / "arm.mha";
+  ASSERT_EQ(Fascicle({"phantom", arm}).exit_code, 0);
+  for (const char* command : {"segment", "voxelize"}) {
+    std::vector<std::string> arguments = {Program("fascicle"), command, arm, "--seed", "98,119,35"};
+    for (int i = 0; i < 20; ++i) arguments.insert(arguments.end(), {"--filter", "curvature:100"});
+    arguments.insert(arguments.end(), {"--out", folder_ / "out.mha", "--picture", folder_ / "out.png"});
+    ChildProcess child(arguments);
+    ASSERT_TRUE(child.AwaitBlocked(SIGINT));
+    child.Signal(SIGINT);
+    const Finished finished = child.Wait();
+    EXPECT_EQ(finished.exit_code, 4) << finished.err;
+    EXPECT_THAT(finished.err, HasSubstr("interrupted"));
+    const auto files = fs::directory_iterator(folder_.path());
+    EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "the phantom only";
+  }
+}
 
 TEST_F(SegmentTest, ThePhantomsAnconeusIsFound) {
   const Finished made = Fascicle({"phantom", File("arm.mha"), "--truth", File("truth.mha")});

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/stop.h"
 #include "core/geometry/shapes.h"
 
 namespace fascicle {
@@ -32,6 +33,14 @@ TEST(CheckMeshTest, ReportsAGoodMesh) {
   EXPECT_EQ(report.components, 1);
   // The Kuhn split of a cube has 45, 60 and 90 degrees.
   EXPECT_NEAR(report.smallest_dihedral_angle, std::numbers::pi / 4, 1e-12);
+}
+
+TEST(CheckMeshTest, HeedsStopRequests) {
+  std::stop_source source;
+  source.request_stop();
+  Problems problems;
+  EXPECT_THROW(CheckMesh(GoodMesh(), problems, source.get_token()), Stopped);
+  EXPECT_THROW(BoundaryTriangles(GoodMesh(), source.get_token()), Stopped);
 }
 
 TEST(CheckMeshTest, DihedralAngleOfTheRegularTetrahedron) {

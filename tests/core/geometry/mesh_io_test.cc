@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/base/stop.h"
 #include "core/geometry/mesh_checks.h"
 #include "tests/support/mesh_samples.h"
 
@@ -35,6 +36,15 @@ TEST_P(EverySample, IsRead) {
   ExpectSampleMesh(*mesh, !sample.name.ends_with(".node"));
   Problems problems;
   EXPECT_EQ(CheckMesh(*mesh, problems).components, 1);
+  EXPECT_TRUE(problems.empty()) << problems.ToString();
+}
+
+TEST_P(EverySample, HeedsStopRequests) {
+  const MeshSample& sample = GetParam();
+  std::stop_source source;
+  source.request_stop();
+  Problems problems;
+  EXPECT_THROW(ReadMesh({sample.name, sample.bytes, sample.element_bytes}, problems, source.get_token()), Stopped);
   EXPECT_TRUE(problems.empty()) << problems.ToString();
 }
 

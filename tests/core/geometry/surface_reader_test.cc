@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <random>
 
+#include "core/base/stop.h"
 #include "surface_samples.h"
 #include "tests/support/files.h"
 #include "tests/support/paths.h"
@@ -50,6 +51,14 @@ TEST_P(EverySurface, IsRead) {
   EXPECT_EQ(surface->triangles, CornerSurface().triangles);
   EXPECT_DOUBLE_EQ(EnclosedVolume(*surface), 1.0 / 6);
   EXPECT_DOUBLE_EQ(Area(*surface), 1.5 + std::sqrt(3) / 2);
+}
+
+TEST_P(EverySurface, HeedsStopRequests) {
+  std::stop_source source;
+  source.request_stop();
+  Problems problems;
+  EXPECT_THROW(ReadSurface(GetParam().name, GetParam().bytes, problems, source.get_token()), Stopped);
+  EXPECT_TRUE(problems.empty()) << problems.ToString();
 }
 
 TEST_P(EverySurface, CutAnywhere) {

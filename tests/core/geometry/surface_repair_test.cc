@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "core/base/stop.h"
+#include "core/geometry/triangle_tree.h"
 #include "surface_samples.h"
 
 namespace fascicle {
@@ -38,6 +40,15 @@ TEST(SurfaceRepairTest, LeavesASoundSurfaceAlone) {
   EXPECT_EQ(report.removed_triangles + report.turned_triangles, 0);
   EXPECT_EQ(report.parts, 1);
   EXPECT_TRUE(report.holes.empty() && report.cuts.empty());
+}
+
+TEST(SurfaceRepairTest, HeedsStopRequests) {
+  TriangleMesh surface = Sphere();
+  std::stop_source source;
+  source.request_stop();
+  Problems problems;
+  EXPECT_THROW(RepairSurface(surface, 0.5, problems, source.get_token()), Stopped);
+  EXPECT_THROW(TriangleTree(surface).CuttingPairs(source.get_token()), Stopped);
 }
 
 // Every triangle with nodes of its own; some reversed, some duplicated, some degenerate.

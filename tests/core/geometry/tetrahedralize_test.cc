@@ -101,6 +101,30 @@ TEST(TetrahedralizeTest, ProgressGoesFromNothingToAll) {
   EXPECT_TRUE(std::is_sorted(parts.begin(), parts.end()));
 }
 
+TEST(TetrahedralizeTest, StopsAtEveryStage) {
+  const TriangleMesh surface = SurfaceOf(MakeSphere(1, 8));
+  ThreadTeam team(1);
+  Problems problems;
+  MeshingOptions options;
+  options.tetrahedra = 4000;
+  std::size_t stages = 0;
+  TriangleMesh copy = surface;
+  ASSERT_TRUE(Tetrahedralize(copy, options, team, problems, [&](double, const char*) { ++stages; }));
+  ASSERT_GE(stages, 5u);
+  for (std::size_t last = 1; last <= stages; ++last) {
+    std::stop_source source;
+    team.HeedStop(source.get_token());
+    std::size_t told = 0;
+    const auto stop_at_last = [&](double, const char*) {
+      if (++told == last) source.request_stop();
+    };
+    copy = surface;
+    EXPECT_THROW(Tetrahedralize(copy, options, team, problems, stop_at_last), Stopped);
+    EXPECT_EQ(told, last);
+  }
+  EXPECT_TRUE(problems.empty());
+}
+
 TEST(TetrahedralizeTest, CavitiesStayEmpty) {
   TriangleMesh small = SurfaceOf(MakeSphere(0.5, 16));
   const MeshingResult result = Mesh(Joined(SurfaceOf(MakeSphere(1, 24)), InsideOut(small)), 10000);

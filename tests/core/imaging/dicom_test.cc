@@ -76,6 +76,18 @@ TEST(Dicom, SlicesOfDifferentFoldersMayHaveTheSameName) {
   ExpectSagittal(ReadVolume(files, {}, problems), problems);
 }
 
+TEST(Dicom, HeedsStopRequests) {
+  const Folder folder;
+  const std::vector<path> paths = WriteAll(folder, Sagittal(5));
+  std::stop_source source;
+  source.request_stop();
+  VolumeReaderOptions options;
+  options.stop = source.get_token();
+  Problems problems;
+  EXPECT_THROW(ReadVolumeFiles(paths, options, problems), Stopped);
+  EXPECT_TRUE(problems.empty()) << problems.ToString();
+}
+
 TEST(Dicom, RescalesEachSliceByItself) {
   std::vector<DicomSlice> slices = Sagittal(3);
   slices[1].slope = "2";

@@ -59,6 +59,17 @@ TEST(Filters, AnythingGoesWithImagesOfOneVoxelAcross) {
 
 // The variance of a blurred voxel along each axis is that of the Gaussian [m^2] for any spacing; this also holds for
 // the discrete Gaussian [Lindeberg 1994].
+TEST(Filters, HeedStopRequests) {
+  const VolumeImage image = Noise({33, 20, 9}, 40);
+  std::stop_source source;
+  source.request_stop();
+  ThreadTeam team(2, source.get_token());
+  for (const ImageFilter& filter : {ImageFilter(GaussianFilter{2e-3}), ImageFilter(CurvatureFilter{}),
+                                    ImageFilter(WaveletFilter{}), ImageFilter(BiasFieldFilter{})}) {
+    EXPECT_THROW(ApplyFilter(image, filter, team), Stopped) << filter.index();
+  }
+}
+
 TEST(Gaussian, HasTheVarianceThatIsAskedForInMetres) {
   VolumeImage image = Empty({41, 31, 15}, {0.5e-3, 0.8e-3, 2e-3});
   const GridIndex middle = {20, 15, 7};

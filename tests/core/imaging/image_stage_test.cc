@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/stop.h"
 #include "core/imaging/image_stage.h"
 
 namespace fascicle::testing {
@@ -151,6 +152,30 @@ TEST(ImageStage, ProgressRises) {
     last = fraction;
   });
   EXPECT_EQ(last, 1);
+}
+
+TEST(ImageStage, StopsAtEveryStage) {
+  ImageStage stage = ClassStage(1);
+  stage.filters = {WaveletFilter{}, GaussianFilter{}};
+  stage.level = 1;
+  std::vector<std::string> stages;
+  ThreadTeam team(1);
+  Problems problems;
+  ASSERT_TRUE(
+      RunImageStage(TwoCubes(), stage, team, problems, [&](double, const char* next) { stages.emplace_back(next); }));
+  ASSERT_GT(stages.size(), 5u);
+  for (std::size_t last = 0; last < stages.size(); ++last) {
+    std::stop_source source;
+    team.HeedStop(source.get_token());
+    std::size_t told = 0;
+    const auto stop_at_last = [&](double, const char* next) {
+      EXPECT_EQ(next, stages[told]);
+      if (told++ == last) source.request_stop();
+    };
+    EXPECT_THROW(RunImageStage(TwoCubes(), stage, team, problems, stop_at_last), Stopped) << stages[last];
+    EXPECT_EQ(told, last + 1);
+  }
+  EXPECT_TRUE(problems.empty());
 }
 
 std::vector<std::string> PathsOf(const Problems& problems) {

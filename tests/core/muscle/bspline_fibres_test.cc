@@ -224,6 +224,17 @@ class FittedToASpindle : public ::testing::Test {
   Problems problems_;
 };
 
+TEST_F(FittedToASpindle, StopRequestsAreHeeded) {
+  const auto fit = FitMuscleSolid(mesh_, origin_, insertion_, {}, problems_);
+  ASSERT_TRUE(fit) << problems_.ToString();
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_THROW(FitMuscleSolid(mesh_, origin_, insertion_, {}, problems_, source.get_token()), Stopped);
+  ThreadTeam team(1, source.get_token());
+  EXPECT_THROW(BsplineFibres(mesh_, BsplineLocator(fit->solid), team, problems_), Stopped);
+  EXPECT_TRUE(problems_.empty());
+}
+
 // Curves of constant (u, v) keep their fraction of the radius: the fibre at radius r is ez + r R'(z) / R(z) er.
 TEST_F(FittedToASpindle, FibresKeepTheirShareOfTheRadius) {
   const auto fit = FitMuscleSolid(mesh_, origin_, insertion_, {}, problems_);

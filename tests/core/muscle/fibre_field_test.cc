@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/stop.h"
 #include "core/geometry/mesh_io.h"
 #include "core/geometry/region.h"
 #include "core/geometry/shapes.h"
@@ -225,6 +226,17 @@ TEST(HarmonicFibres, FillFlatPartsFromTheirNeighbours) {
   EXPECT_TRUE(problems.empty());
   ASSERT_THAT(fibres, SizeIs(box.tetrahedra.size()));
   for (const Vec3& a : fibres) EXPECT_LE((a - Vec3::UnitZ()).norm(), 1e-8);
+}
+
+TEST(HarmonicFibres, HeedStopRequests) {
+  const TetMesh box = MakeBox(Vec3::Zero(), Vec3::Ones(), {2, 2, 2});
+  const auto bottom = NodesWhere(box, [](const Vec3& X) { return X.z() < 0.1; });
+  const auto top = NodesWhere(box, [](const Vec3& X) { return X.z() > 0.9; });
+  std::stop_source source;
+  source.request_stop();
+  Problems problems;
+  EXPECT_THROW(HarmonicFibres(box, bottom, top, problems, source.get_token()), Stopped);
+  EXPECT_TRUE(problems.empty());
 }
 
 TEST(HarmonicFibres, ReportWhatIsWrongWithTheRegions) {

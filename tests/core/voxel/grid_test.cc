@@ -73,6 +73,19 @@ TEST(MakeHierarchy, CountsVoxelsAndNodesOfEachLevel) {
 }
 
 // By definition: there is a node wherever a solid voxel has a corner.
+TEST(VoxelGrid, StopRequestsAreHeeded) {
+  VoxelGrid grid = BoxGrid({4, 3, 2}, Vec3::Ones());
+  std::stop_source source;
+  source.request_stop();
+  const std::stop_token stop = source.get_token();
+  EXPECT_THROW(Coarsen(grid, 0.5, stop), Stopped);
+  EXPECT_THROW(CropToSolid(grid, stop), Stopped);
+  EXPECT_THROW(FindIslands(grid, stop), Stopped);
+  EXPECT_THROW(MakeHierarchy(grid, 0.5, 2, stop), Stopped);
+  EXPECT_THROW(KeepLargestIsland(grid, stop), Stopped);
+  EXPECT_EQ(grid.material, BoxGrid({4, 3, 2}, Vec3::Ones()).material);
+}
+
 TEST(VoxelMesh, NumbersCornersOfSolidVoxelsInOrder) {
   const VoxelGrid grid = SpongeGrid({9, 7, 6}, Vec3::Ones());
   const VoxelMesh mesh(grid);

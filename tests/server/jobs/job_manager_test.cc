@@ -10,7 +10,9 @@
 #include <random>
 #include <semaphore>
 #include <set>
+#include <thread>
 
+#include "core/base/stop.h"
 #include "tests/support/box_jobs.h"
 
 namespace fascicle::server {
@@ -84,10 +86,11 @@ TEST_F(JobManagerTest, TakesJobsInTheOrderOfTheirSubmission) {
   JobCodec codec = BoxCodec();
   std::vector<std::string> order;
   std::binary_semaphore go(0);
-  codec.decode_scene = [&, decode = codec.decode_scene](const std::string& spec, AssetStore& assets, Profile* profile) {
+  codec.decode_scene = [&, decode = codec.decode_scene](const std::string& spec, AssetStore& assets, Profile* profile,
+                                                        const std::stop_token& stop) {
     if (order.empty()) go.acquire();
     order.push_back(spec);
-    return decode(spec, assets, profile);
+    return decode(spec, assets, profile, stop);
   };
   JobManager manager(*store_, codec, Workers(1));
   std::vector<std::string> submitted, ids;
@@ -106,6 +109,93 @@ TEST_F(JobManagerTest, TakesJobsInTheOrderOfTheirSubmission) {
   go.release();
   WaitForEnd(manager, ids.back());
   EXPECT_EQ(order, submitted);
+}
+
+// Counts the scenes that workers decode.
+JobCodec Counting(std::atomic<int>& decoded) {
+  JobCodec codec = BoxCodec();
+  codec.decode_scene = [&decoded, decode = codec.decode_scene](const std::string& spec, AssetStore& assets,
+                                                               Profile* profile, const std::stop_token& stop) {
+    ++decoded;
+    return decode(spec, assets, profile, stop);
+  };
+  return codec;
+}
+
+TEST_F(JobManagerTest, AJobRunsTheSceneItWasSubmittedWith) {
+  std::atomic<int> decoded = 0;
+  JobManager manager(*store_, Counting(decoded), Workers(1));
+  const BoxSpec spec;
+  const JobView with = WaitForEnd(manager, manager.Submit(BoxJob(spec), nullptr, MakeScene(spec)).record.id);
+  EXPECT_EQ(decoded, 0);
+  const JobView without = WaitForEnd(manager, manager.Submit(BoxJob(spec), nullptr).record.id);
+  EXPECT_EQ(decoded, 1);
+  EXPECT_EQ(with.record.state, JobState::kSucceeded);
+  const auto a = manager.Frames(with.record.id), b = manager.Frames(without.record.id);
+  ASSERT_EQ(a->frame_count(), b->frame_count());
+  EXPECT_EQ(a->ListFrames(0, 1000).back().digest, b->ListFrames(0, 1000).back().digest);
+}
+
+TEST_F(JobManagerTest, AsManyWaitingJobsHaveTheirSceneAsThereAreWorkers) {
+  std::atomic<int> decoded = 0;
+  JobManager manager(*store_, Counting(decoded), Workers(1));
+  const std::string running = manager.Submit(BoxJob(Longest()), nullptr, MakeScene(Longest())).record.id;
+  EXPECT_TRUE(WaitForFrames(manager, running, 1));
+  const BoxSpec spec = {.duration = 0.01, .frame_interval = 0.01};
+  std::weak_ptr<const Scene> first, second;
+  std::vector<std::string> waiting;
+  for (std::weak_ptr<const Scene>* kept : {&first, &second}) {
+    const std::shared_ptr<const Scene> scene = MakeScene(spec);
+    *kept = scene;
+    waiting.push_back(manager.Submit(BoxJob(spec), nullptr, scene).record.id);
+  }
+  EXPECT_FALSE(first.expired());
+  EXPECT_TRUE(second.expired());
+  // What is cancelled makes room for the next.
+  manager.Cancel(waiting[0]);
+  EXPECT_TRUE(first.expired());
+  waiting.push_back(manager.Submit(BoxJob(spec), nullptr, MakeScene(spec)).record.id);
+  manager.Cancel(running);
+  EXPECT_EQ(WaitForEnd(manager, waiting[1]).record.state, JobState::kSucceeded);
+  EXPECT_EQ(WaitForEnd(manager, waiting[2]).record.state, JobState::kSucceeded);
+  EXPECT_EQ(decoded, 1);
+}
+
+// A scene that takes forever to be decoded.
+JobCodec Endless(std::binary_semaphore& begun) {
+  JobCodec codec = BoxCodec();
+  codec.decode_scene = [&](const std::string&, AssetStore&, Profile*,
+                           const std::stop_token& stop) -> std::shared_ptr<const Scene> {
+    begun.release();
+    while (true) {
+      ThrowIfStopped(stop);
+      std::this_thread::yield();
+    }
+  };
+  return codec;
+}
+
+TEST_F(JobManagerTest, CancelEndsThePreparation) {
+  std::binary_semaphore begun(0);
+  JobManager manager(*store_, Endless(begun), Workers(1));
+  const std::string id = manager.Submit(BoxJob({}), nullptr).record.id;
+  begun.acquire();
+  manager.Cancel(id);
+  EXPECT_EQ(WaitForEnd(manager, id).record.state, JobState::kCancelled);
+}
+
+TEST_F(JobManagerTest, DrainEndsThePreparationAndTheNextManagerTakesItUp) {
+  std::string id;
+  {
+    std::binary_semaphore begun(0);
+    JobManager manager(*store_, Endless(begun), Workers(1));
+    id = manager.Submit(BoxJob({}), nullptr).record.id;
+    begun.acquire();
+    manager.Drain();
+    EXPECT_EQ(store_->GetJob(id)->state, JobState::kQueued);
+  }
+  JobManager next(*store_, BoxCodec(), Workers(1));
+  EXPECT_EQ(WaitForEnd(next, id).record.state, JobState::kSucceeded);
 }
 
 TEST_F(JobManagerTest, TwoJobsRunAtOnceOnTwoWorkers) {

@@ -2,8 +2,12 @@
 #include <map>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include <google/protobuf/text_format.h>
+
+#include "tests/support/files.h"
 #include "tests/support/service_fixture.h"
 
 namespace fascicle::service_test {
@@ -34,6 +38,81 @@ TEST_F(JobsTest, AJobIsCreatedRunsAndCanBeLookedAt) {
   EXPECT_FALSE(job.has_failure());
 }
 
+// A part of the phantom around the anconeus. The pieces that its image takes long for:
+//   filters  text of an ImageShape
+v1::Scene PhantomScene(const std::string& filters) {
+  v1::Scene scene;
+  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(R"(
+    name: "anconeus" duration: 0.1 voxel {} output { frame_interval: 0.1 }
+    bodies {
+      name: "anconeus" unit: LENGTH_UNIT_MM
+      mesh {
+        image {
+          phantom {} )" + filters + R"( classes {} seeds { point: [49, 60, 17.75] } cleaning { opening: 0.6 } level: 2
+        }
+      }
+      material { linear_elastic { young_modulus: 1e4 } }
+      regions { name: "lower" plane { point: [0, 0, 12] normal: [0, 0, -1] } }
+      constraints { region: "lower" }
+    })",
+                                                            &scene));
+  return scene;
+}
+
+// How often the job's image was segmented, from its check to its last frame.
+std::int64_t Segmentations(const v1::Job& job) {
+  std::int64_t calls = 0;
+  for (const v1::Profile::Stage& stage : job.profile().stages()) {
+    if (stage.name().ends_with("/segmentation")) calls += stage.calls();
+  }
+  return calls;
+}
+
+TEST(PreparedScenes, AnImageIsSegmentedOnce) {
+  const testing::TemporaryFolder directory;
+  server::ServerOptions options;
+  options.data_directory = directory.path().string();
+  const v1::Scene scene = PhantomScene("region { first: [70, 90, 20] size: [60, 60, 30] } filters { wavelet {} }");
+  std::vector<std::string> digests;
+  std::vector<std::int64_t> segmentations;
+  const auto run = [&](const std::string& address) {
+    Stubs stubs(address);
+    const std::string name = stubs.Submit(scene);
+    ASSERT_TRUE(stubs.AwaitState(name, v1::Job::STATE_SUCCEEDED, 60s));
+    segmentations.push_back(Segmentations(stubs.Get(name)));
+    digests.push_back(stubs.List(name).back().digest());
+  };
+  for (const std::int64_t cache_size : {std::int64_t{1} << 30, std::int64_t{1} << 30, std::int64_t{0}}) {
+    options.cache_size = cache_size;
+    const auto server = server::EmbeddedServer::Start(options);
+    run(server->address());
+    run(server->address());
+  }
+  // Of the first job, and where nothing is kept.
+  EXPECT_EQ(segmentations, (std::vector<std::int64_t>{1, 0, 0, 0, 1, 1}));
+  EXPECT_EQ(std::set<std::string>(digests.begin(), digests.end()).size(), 1u);
+}
+
+// Each takes minutes to be checked, and there are two threads for that.
+TEST_F(JobsTest, TheCheckOfASceneEndsWithItsCall) {
+  std::string filters;
+  for (int i = 0; i < 8; ++i) filters += "filters { curvature { iterations: 100 } } ";
+  v1::CreateJobRequest request;
+  *request.mutable_job()->mutable_scene() = PhantomScene(filters);
+  std::vector<std::thread> calls;
+  grpc::ClientContext contexts[4];
+  for (grpc::ClientContext& context : contexts) {
+    calls.emplace_back([&] {
+      v1::Job job;
+      EXPECT_EQ(stubs_->jobs->CreateJob(&context, request, &job).error_code(), grpc::StatusCode::CANCELLED);
+    });
+  }
+  std::this_thread::sleep_for(300ms);
+  for (grpc::ClientContext& context : contexts) context.TryCancel();
+  for (std::thread& call : calls) call.join();
+  EXPECT_FALSE(stubs_->Submit(SwingingBox(0.01, 0.01)).empty());
+}
+
 TEST_F(JobsTest, AJobsProfileSaysWhereItsTimeWent) {
   const std::string name = stubs_->Submit(LargeSteps(400));
   ASSERT_TRUE(stubs_->AwaitState(name, v1::Job::STATE_SUCCEEDED, 60s));
@@ -52,7 +131,10 @@ TEST_F(JobsTest, AJobsProfileSaysWhereItsTimeWent) {
     return 1e6 * static_cast<double>(t.seconds()) + 1e-3 * t.nanos();
   };
   EXPECT_GT(profile.wall_seconds(), 0);
-  EXPECT_LE(profile.wall_seconds(), 1e-6 * (micros(job.end_time()) - micros(job.start_time())) + 0.01);
+  // The scene was checked before there was a job.
+  EXPECT_GT(stages["check"].seconds(), 0);
+  EXPECT_LE(profile.wall_seconds() - stages["check"].seconds(),
+            1e-6 * (micros(job.end_time()) - micros(job.start_time())) + 0.01);
   // All states except those that may pass between two polls; a busy machine may delay the worker by some milliseconds.
   constexpr double kBetween = 0.03;
   EXPECT_GT(whole, 0.97 * profile.wall_seconds() - kBetween) << profile.DebugString();

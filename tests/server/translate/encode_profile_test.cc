@@ -70,6 +70,22 @@ TEST(EncodeProfileTest, AddsUpAndPutsWhatIsNewBehindWhatItIsPartOf) {
   EXPECT_THAT(NamesOf(EncodeProfile(second)), NamesOf(sum));
 }
 
+TEST(EncodeProfileTest, TheCheckOfASceneComesBeforeItsFirstRun) {
+  Profile check;
+  Sleep(check, "check", "meshes");
+  check.NoteCpu(2);
+  const v1::Profile of_check = EncodeProfileOfCheck(check);
+  EXPECT_EQ(of_check.runs(), 0);
+  RunProfile run;
+  run.earlier = of_check.SerializeAsString();
+  Sleep(run.working, "step");
+  const v1::Profile sum = EncodeProfile(run);
+  EXPECT_THAT(NamesOf(sum), ElementsAre("check 1", "check/meshes 1", "step 1"));
+  EXPECT_EQ(sum.runs(), 1);
+  EXPECT_GE(sum.wall_seconds(), sum.stages(0).seconds() + sum.stages(2).seconds());
+  EXPECT_GE(sum.cpu_seconds(), 2);
+}
+
 TEST(EncodeProfileTest, WhatCannotBeReadIsLeftOut) {
   RunProfile run;
   run.earlier = "\xff\xff\xff";

@@ -20,9 +20,9 @@ TEST(JobCodec, DecodesTheSceneOfASpec) {
   body.mutable_mesh()->mutable_file()->set_path("two.msh");
   body.mutable_mesh()->mutable_file()->set_asset("assets/" + digest);
   body.mutable_regions(1)->set_physical_tag(7);
-  const JobCodec codec = MakeJobCodec();
+  const JobCodec codec = MakeJobCodec(nullptr);
   try {
-    codec.decode_scene(job.SerializeAsString(), *store, nullptr);
+    codec.decode_scene(job.SerializeAsString(), *store, nullptr, {});
     ADD_FAILURE() << "the asset is not there";
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("bodies[0].mesh.file"));
@@ -31,7 +31,7 @@ TEST(JobCodec, DecodesTheSceneOfASpec) {
   const auto upload = store->BeginUpload(digest, static_cast<std::int64_t>(sizeof(kTwoTets) - 1));
   upload->Write(kTwoTets);
   ASSERT_TRUE(upload->Commit());
-  const auto scene = codec.decode_scene(job.SerializeAsString(), *store, nullptr);
+  const auto scene = codec.decode_scene(job.SerializeAsString(), *store, nullptr, {});
   ASSERT_NE(scene, nullptr);
   EXPECT_EQ(scene->bodies[0].tet().mesh.tetrahedra.size(), 2u);
 
@@ -42,8 +42,8 @@ TEST(JobCodec, DecodesTheSceneOfASpec) {
 
 TEST(JobCodec, RefusesWhatIsNoJob) {
   const auto store = MakeMemoryStore();
-  EXPECT_THROW(MakeJobCodec().decode_scene("\xff\xff\xff", *store, nullptr), std::runtime_error);
-  EXPECT_THROW(MakeJobCodec().decode_scene("", *store, nullptr), std::runtime_error);
+  EXPECT_THROW(MakeJobCodec(nullptr).decode_scene("\xff\xff\xff", *store, nullptr, {}), std::runtime_error);
+  EXPECT_THROW(MakeJobCodec(nullptr).decode_scene("", *store, nullptr, {}), std::runtime_error);
 }
 
 }  // namespace

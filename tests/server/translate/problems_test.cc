@@ -71,6 +71,21 @@ TEST(Problems, ReferencesHintAtTheNearestName) {
               HasSubstr("did you mean 'box'?"));
 }
 
+// Hints take long to find: those of problems that are counted only are left out.
+TEST(Problems, ThousandsOfWrongReferencesAreCounted) {
+  v1::Scene scene = BoxScene();
+  constexpr int kMany = 20'000;
+  for (int i = 0; i < kMany; ++i) {
+    v1::Region& region = *scene.mutable_bodies(0)->add_regions();
+    region = scene.bodies(0).regions(0);
+    region.set_name("region_with_a_long_name_" + std::to_string(i));
+    scene.mutable_bodies(0)->add_constraints()->set_region("region_with_a_wrong_name_" + std::to_string(i));
+  }
+  const Problems problems = ProblemsOf(scene);
+  EXPECT_GE(problems.count(), static_cast<std::size_t>(kMany));
+  EXPECT_THAT(At(problems, "bodies[0].constraints[1].region"), HasSubstr("did you mean"));
+}
+
 TEST(Problems, ShapesThatContradictThemselves) {
   const auto with_mesh = [](const std::string& mesh) {
     v1::Scene scene = BoxScene();
