@@ -9,6 +9,7 @@
 #include <ctime>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/base/check.h"
@@ -41,6 +42,7 @@ struct ThreadTeam::Impl {
   static constexpr std::uint64_t kInside = kOpen - 1;
 
   int size = 1;
+  std::stop_token stop_request;
   std::vector<std::thread> threads;
   std::vector<double> terms;  // of RunSum
 
@@ -66,7 +68,7 @@ struct ThreadTeam::Impl {
   }
 
   void RunParts() {
-    for (;;) {
+    while (!stop_request.stop_requested()) {
       const std::size_t begin = next.fetch_add(part, std::memory_order_relaxed);
       if (begin >= count) return;
       call(body, begin, std::min(begin + part, count));
@@ -133,9 +135,10 @@ struct ThreadTeam::Impl {
   }
 };
 
-ThreadTeam::ThreadTeam(int threads) : impl_(std::make_unique<Impl>()) {
+ThreadTeam::ThreadTeam(int threads, std::stop_token stop) : impl_(std::make_unique<Impl>()) {
   FASCICLE_CHECK(threads >= 1 && threads < static_cast<int>(Impl::kInside), "a team has at least one thread");
   impl_->size = threads;
+  impl_->stop_request = std::move(stop);
   impl_->threads.reserve(threads - 1);
   for (int i = 1; i < threads; ++i) impl_->threads.emplace_back([impl = impl_.get()] { impl->Work(); });
 }
@@ -151,6 +154,10 @@ ThreadTeam::~ThreadTeam() {
 
 int ThreadTeam::size() const { return impl_->size; }
 
+void ThreadTeam::HeedStop(std::stop_token stop) { impl_->stop_request = std::move(stop); }
+
+void ThreadTeam::ThrowIfStopped() const { fascicle::ThrowIfStopped(impl_->stop_request); }
+
 double ThreadTeam::others_cpu_seconds() const {
   double sum = 0;
   for (std::thread& thread : impl_->threads) {
@@ -164,11 +171,19 @@ double ThreadTeam::others_cpu_seconds() const {
 
 void ThreadTeam::Run(std::size_t count, std::size_t grain, LoopBody call, const void* body) {
   if (count == 0) return;
+  ThrowIfStopped();
   Impl& impl = *impl_;
   const std::size_t parts = kPartsPerThread * static_cast<std::size_t>(impl.size);
   const std::size_t part = std::max({grain, std::size_t{1}, (count - 1) / parts + 1});
-  if (impl.size == 1 || part >= count) {
+  if (part >= count) {
     call(body, 0, count);
+    return;
+  }
+  if (impl.size == 1) {
+    for (std::size_t begin = 0; begin < count; begin += part) {
+      ThrowIfStopped();
+      call(body, begin, std::min(begin + part, count));
+    }
     return;
   }
   FASCICLE_CHECK(!impl.busy.exchange(true), "a team runs one loop at a time, and none inside another");
@@ -180,9 +195,11 @@ void ThreadTeam::Run(std::size_t count, std::size_t grain, LoopBody call, const 
   impl.RunParts();
   impl.CloseAndWait();
   impl.busy.store(false);
+  ThrowIfStopped();
 }
 
 double ThreadTeam::RunSum(std::size_t count, SumBody call, const void* body) {
+  ThrowIfStopped();
   const std::size_t blocks = count == 0 ? 0 : (count - 1) / kSumBlock + 1;
   const auto term = [&](std::size_t block) {
     return call(body, block * kSumBlock, std::min((block + 1) * kSumBlock, count));

@@ -3,27 +3,37 @@
 
 #include <cstddef>
 #include <memory>
+#include <stop_token>
 #include <type_traits>
+
+#include "core/base/stop.h"
 
 namespace fascicle {
 
 // A fixed set of threads that run loops together with the calling thread.
 // One loop at a time: member functions must not be called from two threads at once, nor from inside a loop.
+//
+// Loops are where work is interrupted: after a stop request, For and Sum throw Stopped in the calling thread, before
+// the loop or after leaving out parts of it.
 class ThreadTeam {
  public:
   // threads >= 1.
-  explicit ThreadTeam(int threads);
+  explicit ThreadTeam(int threads, std::stop_token stop = {});
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;
   ThreadTeam& operator=(const ThreadTeam&) = delete;
 
   int size() const;
+  // Whose requests are heeded from now on.
+  void HeedStop(std::stop_token stop);
+  // For long work between loops: throws Stopped after a request.
+  void ThrowIfStopped() const;
   // Processor time of all threads but the calling one since the team was created [s].
   double others_cpu_seconds() const;
 
   // Calls body(begin, end) on disjoint ranges that cover [0, count), each at least `grain` long where possible.
   // `body` may write only what belongs to its own indices; the result then does not depend on the number of threads.
-  // `body` must not throw. Allocates nothing.
+  // `body` must not throw. Allocates nothing. Throws Stopped after a stop request.
   template <class Body>
   void For(std::size_t count, std::size_t grain, const Body& body) {
     static_assert(std::is_invocable_v<const Body&, std::size_t, std::size_t>);
@@ -33,7 +43,7 @@ class ThreadTeam {
   }
 
   // Sum of body(begin, end) over blocks of fixed size, added in the order of the blocks: the same bits for any number
-  // of threads.
+  // of threads. Throws Stopped after a stop request.
   template <class Body>
   double Sum(std::size_t count, const Body& body) {
     static_assert(std::is_invocable_r_v<double, const Body&, std::size_t, std::size_t>);

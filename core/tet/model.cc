@@ -115,9 +115,8 @@ void TetModel::AddBody(const Body& body) {
   has_mass_damping_ |= entry.mass_damping != 0;
   has_strain_damping_ |= entry.HasStrainDamping();
 
-  entry.activation = activations_.size();
-  activations_.push_back(&body.activation);
-  for (const Curve& curve : body.tet().activations.more) activations_.push_back(&curve);
+  entry.activation = activations_;
+  activations_ += 1 + body.tet().activations.more.size();
 
   AddNodes(body, entry);
   AddElements(body, entry);
@@ -503,7 +502,6 @@ void TetModel::AddLoads(const Body& source, const TetBody& body) {
   for (const Load& load : source.loads) {
     const auto forces = NodalForcesOf(load, LoadedRegionIn(source.regions[load.region], body));
     NodalLoad& entry = loads_.emplace_back();
-    entry.scale = &load.scale;
     for (const auto& [n, force] : forces) {
       entry.nodes.push_back(n);
       entry.forces.push_back(force);
@@ -514,7 +512,6 @@ void TetModel::AddLoads(const Body& source, const TetBody& body) {
 void TetModel::AddSupports(const Body& source, std::int32_t body_index) {
   for (const Constraint& constraint : source.constraints) {
     Support& support = supports_.emplace_back();
-    support.source = &constraint;
     support.body = body_index;
     support.nodes = NodesOfRegion(source.regions[constraint.region], bodies_[body_index]);
     for (const std::int32_t n : support.nodes) {

@@ -5,9 +5,11 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <thread>
 
+#include "core/base/stop.h"
 #include "server/jobs/frame_writer.h"
 
 namespace fascicle::server {
@@ -38,13 +40,13 @@ void SetRunning(ActiveJob& job) {
 
 // At the stored checkpoint if it fits the scene and the stored frames, otherwise at rest.
 std::unique_ptr<Simulation> MakeSimulation(std::shared_ptr<const Scene> scene, int threads, FrameStore& frames,
-                                           Profile& profile) {
+                                           Profile& profile, const std::stop_token& stop) {
   const StageTimer timer(&profile, "model");
   if (const std::optional<std::string> checkpoint = frames.GetCheckpoint()) {
-    auto simulation = std::make_unique<Simulation>(scene, threads, &profile);
+    auto simulation = std::make_unique<Simulation>(scene, threads, &profile, stop);
     if (simulation->Restore(*checkpoint) && simulation->next_frame() <= frames.frame_count()) return simulation;
   }
-  return std::make_unique<Simulation>(std::move(scene), threads, &profile);
+  return std::make_unique<Simulation>(std::move(scene), threads, &profile, stop);
 }
 
 std::shared_ptr<const Scene> DecodeScene(const RunContext& context, const std::string& spec, Profile& profile) {
@@ -65,7 +67,7 @@ std::unique_ptr<Simulation> SetUp(const RunContext& context, ActiveJob& job, Pro
   job.SetFrames(frames);
 
   const int threads = record->threads > 0 ? record->threads : context.options.default_threads;
-  std::unique_ptr<Simulation> simulation = MakeSimulation(scene, threads, *frames, profile);
+  std::unique_ptr<Simulation> simulation = MakeSimulation(scene, threads, *frames, profile, job.stop_token());
   const StageTimer geometry(&profile, "geometry");
   frames->PutGeometry(context.codec.encode_geometry(*scene, simulation->layout()));
   SetRunning(job);
@@ -98,6 +100,8 @@ Outcome SimulateSafely(const RunContext& context, ActiveJob& job, RunProfile& pr
                        const std::function<void()>& notify) {
   try {
     return Simulate(context, job, profile, notify);
+  } catch (const Stopped&) {
+    return {Outcome::Kind::kCancelled, {}};
   } catch (const StoreError& error) {
     return Failed("STORAGE", error.what(), "check the free space and the health of the server's disk", job);
   } catch (const std::exception& error) {
