@@ -156,6 +156,8 @@ int ThreadTeam::size() const { return impl_->size; }
 
 void ThreadTeam::HeedStop(std::stop_token stop) { impl_->stop_request = std::move(stop); }
 
+const std::stop_token& ThreadTeam::stop() const { return impl_->stop_request; }
+
 void ThreadTeam::ThrowIfStopped() const { fascicle::ThrowIfStopped(impl_->stop_request); }
 
 double ThreadTeam::others_cpu_seconds() const {

@@ -14,7 +14,7 @@ namespace fascicle {
 // One loop at a time: member functions must not be called from two threads at once, nor from inside a loop.
 //
 // Loops are where work is interrupted: after a stop request, For and Sum throw Stopped in the calling thread, before
-// the loop or after leaving out parts of it.
+// the loop or after leaving out parts of it. So whatever runs in loops stops within the time of a part of one.
 class ThreadTeam {
  public:
   // threads >= 1.
@@ -28,12 +28,14 @@ class ThreadTeam {
   void HeedStop(std::stop_token stop);
   // For long work between loops: throws Stopped after a request.
   void ThrowIfStopped() const;
+  // For long work that runs without the team.
+  const std::stop_token& stop() const;
   // Processor time of all threads but the calling one since the team was created [s].
   double others_cpu_seconds() const;
 
-  // Calls body(begin, end) on disjoint ranges that cover [0, count), each at least `grain` long where possible.
-  // `body` may write only what belongs to its own indices; the result then does not depend on the number of threads.
-  // `body` must not throw. Allocates nothing. Throws Stopped after a stop request.
+  // Calls body(begin, end) on disjoint ranges that cover [0, count), each at least `grain` long where possible. `body`
+  // may write only what belongs to its own indices; the result then does not depend on the number of threads. `body`
+  // must not throw. Allocates nothing. Throws Stopped after a stop request.
   template <class Body>
   void For(std::size_t count, std::size_t grain, const Body& body) {
     static_assert(std::is_invocable_v<const Body&, std::size_t, std::size_t>);
@@ -62,6 +64,17 @@ class ThreadTeam {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+// Calls each(i) for all i in [0, count) as team.For does, and looks for a stop request before each: for long work on
+// few items.
+template <class Each>
+void ForEach(ThreadTeam& team, std::size_t count, std::size_t grain, const Each& each) {
+  const std::stop_token& stop = team.stop();
+  team.For(count, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) each(i);
+  });
+  team.ThrowIfStopped();
+}
 
 }  // namespace fascicle
 

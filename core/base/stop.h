@@ -1,7 +1,9 @@
 #ifndef FASCICLE_CORE_BASE_STOP_H_
 #define FASCICLE_CORE_BASE_STOP_H_
 
+#include <algorithm>
 #include <exception>
+#include <functional>
 #include <stop_token>
 
 namespace fascicle {
@@ -15,6 +17,15 @@ class Stopped : public std::exception {
 
 inline void ThrowIfStopped(const std::stop_token& stop) {
   if (stop.stop_requested()) throw Stopped();
+}
+
+// As std::sort. Throws Stopped after a stop request; the items are then in any order.
+template <class Items, class Less = std::less<>>
+void SortUnlessStopped(Items& items, const std::stop_token& stop, const Less& less = {}) {
+  std::sort(items.begin(), items.end(), [&](const auto& a, const auto& b) {
+    ThrowIfStopped(stop);
+    return less(a, b);
+  });
 }
 
 }  // namespace fascicle

@@ -17,7 +17,7 @@ struct StepLength {
 };
 
 // The stages of a step of one body on its grid [Fan 2013, algorithm 1], with their scratch; EulerianWorld calls them in
-// the order in which they are declared. The state is never changed: what is made is `made`. One thread at a time.
+// the order in which they are declared. The state is never changed: what is made is `made`. Not thread-safe.
 class BodyStepper {
  public:
   // Body and team must outlive it, and so must the profile, where stages are timed if there is one.

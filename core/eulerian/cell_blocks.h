@@ -21,7 +21,8 @@ struct CellBlocks {
   }
 };
 
-// The blocks of all cells that have any solid, by rising first cells. The same for any number of threads.
+// The blocks of all cells that have any solid, in ascending order of their first cells. The same for any number of
+// threads.
 CellBlocks MakeCellBlocks(const EulerianGrid& grid, const EulerianCells& cells, ThreadTeam& team);
 
 }  // namespace fascicle

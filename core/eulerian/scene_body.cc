@@ -50,7 +50,7 @@ std::vector<Vec3> ForcesOf(const Body& source, const Load& load) {
 }
 
 // Whether a support prescribes any node of the grid in the body at rest, or of a cell at its surface.
-bool HoldsNode(const EulerianGrid& grid, const RegionPoints& points, const TriangleTree& tree) {
+bool PrescribesNode(const EulerianGrid& grid, const RegionPoints& points, const TriangleTree& tree) {
   for (std::size_t n = 0; n < grid.node_count(); ++n) {
     const Vec3 x = grid.NodePosition(grid.NodeAt(n));
     if (points.Contain(x) && tree.SignedDistance(x) < grid.spacing) return true;
@@ -65,7 +65,7 @@ void CheckSupports(const EulerianGrid& grid, const Body& body, const std::string
   for (std::size_t k = 0; k < body.constraints.size(); ++k) {
     const std::int32_t region = body.constraints[k].region;
     if (region < 0 || region >= static_cast<std::int32_t>(body.regions.size())) continue;
-    if (HoldsNode(grid, SupportPoints(body, body.constraints[k], grid.spacing), tree)) continue;
+    if (PrescribesNode(grid, SupportPoints(body, body.constraints[k], grid.spacing), tree)) continue;
     problems.Add(JoinPath(path, IndexPath("constraints", k) + ".region"),
                  "region `" + body.regions[region].name + "` holds no node of the body's grid",
                  "supports hold what is within half a cell of their regions: make it larger, or take smaller cells");

@@ -38,7 +38,7 @@ class ElasticStiffness {
     std::array<double, kRows> weight;
   };
   struct Cell {
-    std::vector<Part> parts;  // by rising nodes, each once
+    std::vector<Part> parts;  // ascending in node, each once
     Mat9 gradient;            // of T to L, by columns [J s^2/kg m^2]
     Mat3 hourglass;           // of the force of a mode to its velocity
   };

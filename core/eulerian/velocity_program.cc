@@ -25,7 +25,7 @@ struct NodeFlux {
   std::size_t node;
   Vec3 flux;
 };
-using CellFluxes = std::vector<NodeFlux>;  // by rising nodes, each once
+using CellFluxes = std::vector<NodeFlux>;  // ascending in node, each once
 
 // The fluxes of blocks of cells, one block after the other.
 struct BlockFluxes {

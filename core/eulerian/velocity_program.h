@@ -15,7 +15,7 @@ namespace fascicle {
 //   where  sum over nodes of V grad N . v + eps L p = V (1 - J)/(dt J), or 0      for each block of cells
 //
 // and prescribed nodes move as their supports do. Blocks of cells (cell_blocks.h) share a pressure p. Each body has its
-// own columns, three for each free node, and its own rows; no row couples two bodies. One thread at a time; may end by
+// own columns, three for each free node, and its own rows; no row couples two bodies. Not thread-safe; may end by
 // Stopped.
 class VelocityProgram {
  public:

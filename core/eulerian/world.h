@@ -15,7 +15,7 @@ struct EulerianReport {
 
 // Steps solids on their grids together, all by the same time [Fan 2013, algorithm 1]: forces; velocities advected;
 // volumes and supports in one program of all bodies; the reference maps advected and continued into a band around the
-// solids; the surfaces; plastic flow. One thread at a time; the same bits for any number of threads, and of a state
+// solids; the surfaces; plastic flow. Not thread-safe; the same bits for any number of threads, and of a state
 // that was saved and loaded. All may end early by Stopped (core/base/stop.h); states are then as they were.
 class EulerianWorld {
  public:

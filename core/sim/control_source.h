@@ -5,7 +5,7 @@
 
 namespace fascicle {
 
-// The controls that a scene's curves ask for. One thread at a time.
+// The controls that a scene's curves ask for. Not thread-safe.
 class ControlSource {
  public:
   // The scene must have passed CheckScene and must outlive the source.

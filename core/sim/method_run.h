@@ -31,7 +31,7 @@ struct StepOutcome {
 
 // What Simulation asks of a method: its model of a scene, its solver, and the state of the run. Simulation has the
 // clock: it asks for a step's length, evaluates the controls at both ends, and has the step made, which takes all
-// bodies of the scene along. One thread at a time. All of it may end early by Stopped (core/base/stop.h), as the team
+// bodies of the scene along. Not thread-safe. All of it may end early by Stopped (core/base/stop.h), as the team
 // does; the state is then that after the last whole step.
 class MethodRun {
  public:

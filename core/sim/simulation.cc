@@ -27,7 +27,7 @@ struct ProblemText {
 ProblemText TextOf(StepProblem problem) {
   switch (problem) {
     case StepProblem::kInvertedElement:
-      return {"INVERTED_ELEMENT", "elements turn inside out, also with the step cut to a thousandth",
+      return {"INVERTED_ELEMENT", "elements are inverted, also with the step cut to a thousandth",
               "load, move or activate more slowly, use a smaller safety, a finer mesh where it bends, or a law that "
               "resists compression"};
     case StepProblem::kNotFinite:

@@ -57,7 +57,7 @@ class FrameSink {
 };
 
 // Runs a scene: clock, controls, output policy, cancel, checkpoints, digests. The frames do not depend on the number of
-// threads, nor on how often a run was interrupted and restored. One thread at a time.
+// threads, nor on how often a run was interrupted and restored. Not thread-safe.
 class Simulation {
  public:
   // The scene must have passed CheckScene. threads >= 1. What takes time is timed in `profile`, if there is one, which

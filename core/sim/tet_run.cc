@@ -12,7 +12,7 @@ namespace {
 class TetRun : public MethodRun {
  public:
   TetRun(const Scene& scene, ThreadTeam& team, Profile* profile)
-      : team_(team), model_(scene), solver_(model_, team, profile) {}
+      : team_(team), model_(scene, team.stop()), solver_(model_, team, profile) {}
 
   std::vector<SeriesInfo> Series() const override { return SeriesOf(model_); }
 

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <stop_token>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "core/base/stop.h"
 #include "core/linalg/nodal_vector.h"
 #include "core/scene/nodal_forces.h"
 #include "core/scene/scene.h"
@@ -73,8 +75,8 @@ struct ContactNode {
 // that neighbours in space are neighbours in memory. Immutable; may be shared between threads.
 class TetModel {
  public:
-  // CheckScene must have accepted the scene, which must outlive the model.
-  explicit TetModel(const Scene& scene);
+  // CheckScene must have accepted the scene, which must outlive the model. Throws Stopped after a request of `stop`.
+  explicit TetModel(const Scene& scene, std::stop_token stop = {});
 
   const Scene& scene() const { return *scene_; }
   const std::vector<TetBody>& bodies() const { return bodies_; }
@@ -217,7 +219,9 @@ class TetModel {
     std::vector<std::int32_t> activation_of;
     std::vector<double> activation_scale;
     std::vector<std::size_t> chunk_ends;  // in elements
+    std::stop_token stop;
   };
+  void HeedStop() const { ThrowIfStopped(building_.stop); }
   Building building_;
   std::vector<std::int32_t> source_tetrahedron_;
   std::vector<std::int32_t> law_of_;

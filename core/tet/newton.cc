@@ -32,7 +32,7 @@ bool AllUpright(const TetModel& model, const NodalVector& x) {
 }  // namespace
 
 NewtonSolver::NewtonSolver(const TetModel& model, ThreadTeam& team, Profile* profile)
-    : model_(model), team_(team), system_(model, profile) {}
+    : model_(model), team_(team), system_(model, profile, team.stop()) {}
 
 NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const NodalVector& target,
                                  const NewtonOptions& options, NodalVector& x, std::vector<double>& pressure) {

@@ -68,6 +68,7 @@ VoxelSolver::VoxelSolver(const Scene& scene, ThreadTeam& team, Profile* profile)
     : scene_(scene), team_(team), profile_(profile), steps_per_frame_(StepsPerFrame(scene)) {
   const StageTimer timer(profile_, "levels");
   for (const Body& body : scene.bodies) {
+    team.ThrowIfStopped();
     bodies_.push_back(std::make_unique<VoxelSceneBody>(scene, body));
     const VoxelSceneBody& made = *bodies_.back();
     static_solvers_.emplace_back();

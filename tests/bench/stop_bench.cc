@@ -6,9 +6,9 @@
 #include <future>
 #include <string>
 
+#include "ratio.h"
 #include "tests/support/brick_bodies.h"
 #include "tests/support/isometric_muscle.h"
-#include "ratio.h"
 #include "tests/support/solids.h"
 
 namespace fascicle::bench {
@@ -92,7 +92,8 @@ void Print(const char* name, const Scene& scene, double last) {
 
 int Main() {
   Print("eulerian ball, 64^3 cells", Ball(), 8);
-  Print("quasi-static muscle, 99,225 free components", testing::IsometricMuscle(testing::NearestMuscleGrid(100'000)), 30);
+  Print("quasi-static muscle, 99,225 free components", testing::IsometricMuscle(testing::NearestMuscleGrid(100'000)),
+        30);
   Print("voxel box, 343,000 voxels, static", VoxelBox(), 6);
   Print("explicit box, 998,250 tetrahedra", ManyTetrahedra(), 12);
   return EXIT_SUCCESS;

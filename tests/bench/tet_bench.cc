@@ -67,7 +67,8 @@ void TetStep(benchmark::State& state) {
   box.EvaluateForce();
   box.solver.Attempt(box.state, next_time, next);
   for (auto _ : state) {
-    if (box.solver.Attempt(box.state, next_time, next).problem != StepProblem::kNone) state.SkipWithError("a step failed");
+    if (box.solver.Attempt(box.state, next_time, next).problem != StepProblem::kNone)
+      state.SkipWithError("a step failed");
   }
   CountElements(state, box);
 }

@@ -139,8 +139,8 @@ TEST(EulerianVerification, WhatIsPlasticConvergesAndDoesNotSmear) {
   for (const double t : thickness) EXPECT_NEAR(t, thickness[2], 0.01);
 }
 
-// Crushed towards a plane [Fan 2013, eq. 6.1] for 1.2 s and let go: the volume stays, and the shape comes back. Nothing
-// keeps the cube from turning, on its edge it even lies lower in the field: its place is not what it was.
+// Crushed towards a plane [Fan 2013, eq. 6.1] for 1.2 s and released: the volume stays, and the shape comes back.
+// Nothing keeps the cube from turning, on its edge it even lies lower in the field: its place is not what it was.
 TEST(EulerianVerification, ACrushedCubeComesBackToItsShape) {
   ThreadTeam team(2);
   EulerianBody body = MakeSolid(33, false, 2000, 0.3, team, 24);

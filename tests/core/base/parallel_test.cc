@@ -157,7 +157,8 @@ TEST(ThreadTeamTest, StopsWithinALoop) {
     EXPECT_THROW(team.ThrowIfStopped(), Stopped);
     EXPECT_EQ(parts_begun, before);
     team.HeedStop({});
-    EXPECT_EQ(team.Sum(5000, [](std::size_t begin, std::size_t end) { return static_cast<double>(end - begin); }), 5000);
+    EXPECT_EQ(team.Sum(5000, [](std::size_t begin, std::size_t end) { return static_cast<double>(end - begin); }),
+              5000);
   }
 }
 

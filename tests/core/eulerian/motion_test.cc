@@ -47,8 +47,8 @@ TEST(EulerianMotion, FliesFreely) {
   EXPECT_LT((momentum() - first).norm(), 0.01 * first.norm());
 }
 
-// A ball stretched by 1.1 and let go, its volume kept: on the surface within 0.1 %. Cells gain and lose energy as the
-// solid moves through them, the less the finer they are.
+// A ball stretched by 1.1 and released, its volume preserved: on the surface within 0.1 %. Cells gain and lose energy
+// as the solid moves through them, the less the finer they are.
 TEST(EulerianMotion, AStretchedBallKeepsItsVolume) {
   ThreadTeam team(2);
   for (const auto& [cells, energy_bound] : {std::pair(20, 1.1), {32, 1.02}, {64, 1.005}}) {

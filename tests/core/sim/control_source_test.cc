@@ -5,9 +5,9 @@
 
 #include <functional>
 
-#include "tests/support/brick_bodies.h"
 #include "core/sim/method_run.h"
 #include "eulerian_scenes.h"
+#include "tests/support/brick_bodies.h"
 #include "tests/support/tet_scenes.h"
 
 namespace fascicle {

@@ -118,7 +118,7 @@ TEST(EulerianSimulationTest, SupportsMove) {
 
 TEST(EulerianSimulationTest, AnyThreadsAndRestartsGiveTheSameBits) {
   Scene scene = Held();
-  // Two bodies, which step by themselves; one flows, has fibres, and is squeezed with the other.
+  // Two bodies; one flows and has fibres, and a plane force field acts on both.
   Body second = EulerianCube("second");
   second.material = Muscle(std::array{1e3, 0.0, 1e5, 1e4, 1.0, 0.05, 6.6, 1.4, 0.0, 0.25, 1.4});
   second.surface().fibres = {Vec3::UnitX()};
@@ -164,10 +164,9 @@ TEST(EulerianSimulationTest, LeavingTheGridIsAFailureWithAdvice) {
   EXPECT_GE(run.frames.size(), 3u);
 }
 
-// Squeezed beyond its yield stress it keeps another shape, at the same volume; an elastic cube comes back.
+// Pressed together beyond its yield stress it keeps another shape, at the same volume; an elastic cube comes back.
 TEST(EulerianSimulationTest, PlasticFlowStays) {
-  // The mean distance between nodes that face each other: a cube that is squeezed may turn, for on its edge it is
-  // thinner.
+  // The mean distance between nodes that face each other: such a cube may rotate onto an edge, where it is thinner.
   const auto width = [](bool plastic) {
     Body body = EulerianCube();
     if (plastic) body.surface().plasticity = Plasticity{300, 0};
