@@ -16,11 +16,10 @@ enum class StepProblem {
   kNotConverged,  // the linear solve of the damping
   kUnstable,
   kStepTooSmall,
-  kNoEquilibrium,       // Newton's method of implicit and quasi-static steps
-  kNotSolved,           // the linear solve of voxels
-  kLeftGrid,            // a body has reached the boundary of its grid
-  kVelocitiesNotFound,  // the linear solve for volumes, supports and implicit elasticity on grids
-  kStopped              // a stop was requested
+  kNoEquilibrium,      // Newton's method of implicit and quasi-static steps
+  kNotSolved,          // the linear solve of voxels
+  kLeftGrid,           // a body has reached the boundary of its grid
+  kVelocitiesNotFound  // the linear solve for volumes, supports and implicit elasticity on grids
 };
 
 // Elements at which a step failed.
@@ -28,6 +27,14 @@ struct BadElements {
   std::size_t body = 0;
   std::vector<std::int64_t> elements;  // element numbers in the body's mesh; at most 16
   bool inverted = false;               // whether J <= 0 in any of them
+};
+
+// The next step that a method would make.
+struct StepProposal {
+  double time = 0;                           // where it ends [s]
+  double dt = 0;                             // its length [s]; `time` is the present one plus dt but for rounding
+  StepProblem problem = StepProblem::kNone;  // why there is none
+  BadElements bad;
 };
 
 }  // namespace fascicle

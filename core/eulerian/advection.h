@@ -8,7 +8,7 @@
 
 namespace fascicle {
 
-// What carries a field along: velocities, for how long, and which nodes are known.
+// What a field is advected by: velocities, for how long, and which nodes are known.
 struct Flow {
   const EulerianGrid* grid;
   const std::vector<std::uint8_t>* known;
@@ -17,11 +17,11 @@ struct Flow {
 };
 
 // result(x) = field(x - dt v(x - dt/2 v(x))) at the known nodes, by a midpoint step back along v [Fan 2013, 3.1; Stam
-// 1999]. Where that place is not among known nodes, what stands at the node stays.
+// 1999]. Where that place is not among known nodes, the node keeps its value.
 void Advect(const Flow& flow, const std::vector<Vec3>& field, ThreadTeam& team, std::vector<Vec3>& result);
 
-// The same, corrected by half of what a step there and back again changes, within the values around the place where
-// the step comes from [Selle et al. 2008, the unconditionally stable MacCormack method].
+// The same, corrected by half of the error that a step forth and back leaves, and limited to the values around the
+// place where the step comes from [Selle et al. 2008, An unconditionally stable MacCormack method, J. Sci. Comput. 35].
 void AdvectMacCormack(const Flow& flow, const std::vector<Vec3>& field, ThreadTeam& team, std::vector<Vec3>& result);
 
 }  // namespace fascicle

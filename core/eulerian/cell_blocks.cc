@@ -4,10 +4,10 @@ namespace fascicle {
 namespace {
 
 constexpr std::size_t kGrain = 64;
-// Cells that are solid by less join one that is more.
+// Cells with a smaller solid part join a cell with a larger one.
 constexpr double kWhole = 0.5;
 
-// The cell that one of little solid belongs to: the most solid one beside it, if that is solid enough; else itself.
+// The cell that a cell with little solid joins: the most solid one beside it, if that is solid enough; else itself.
 std::size_t RootOf(const EulerianGrid& grid, const EulerianCells& cells, std::size_t cell) {
   if (cells.inside[cell] >= kWhole) return cell;
   const GridIndex at = grid.CellAt(cell);

@@ -8,8 +8,8 @@
 
 namespace fascicle {
 
-// Cells whose volumes are kept together, block by block: one that is solid for the most part, then those beside it that
-// are less. Slivers can't be pushed each by itself: they share their pressure with one that is more.
+// Cells that share a pressure, block by block: one that is mostly solid, then those beside it that are less so. The
+// volume of a sliver can't be corrected by a pressure of its own.
 struct CellBlocks {
   std::vector<std::size_t> cells;
   std::vector<std::size_t> begin = {0};  // of each block, in `cells`, and the end
@@ -21,7 +21,8 @@ struct CellBlocks {
   }
 };
 
-// The blocks of all cells that have any solid, by rising first cells. The same for any number of threads.
+// The blocks of all cells that have any solid, in ascending order of their first cells. The same for any number of
+// threads.
 CellBlocks MakeCellBlocks(const EulerianGrid& grid, const EulerianCells& cells, ThreadTeam& team);
 
 }  // namespace fascicle

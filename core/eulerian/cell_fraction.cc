@@ -11,7 +11,7 @@ constexpr int kTets[6][4] = {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6,
 // How much of an edge from a, negative, to b, not negative, is negative.
 double Along(double a, double b) { return a / (a - b); }
 
-// Of a tetrahedron, corners by rising values.
+// Of a tetrahedron.
 double OfTetrahedron(std::array<double, 4> phi) {
   std::sort(phi.begin(), phi.end());
   const auto [a, b, c, d] = phi;

@@ -7,7 +7,7 @@
 namespace fascicle {
 namespace {
 
-// Less of a cell than that has neither mass nor force.
+// A smaller solid part of a cell has neither mass nor force.
 constexpr double kSliver = 1e-3;
 constexpr std::size_t kGrain = 256;
 

@@ -8,7 +8,7 @@
 
 namespace fascicle {
 
-// What the reference map says of each cell: scratch of a step, and what its frames show.
+// What follows from the reference map for each cell: scratch of a step, and of its frames.
 struct EulerianCells {
   std::vector<double> inside;      // part of it that is solid; 0 where that is less than a sliver [1]
   std::vector<Mat3> F;             // deformation gradient (dX/dx)^-1 at the centre; of solid cells

@@ -8,9 +8,9 @@
 namespace fascicle {
 namespace {
 
-constexpr int kReach = 2;        // [cells] along each axis
-constexpr int kSquareReach = 6;  // [cells^2]: at a cube's corner four nodes inside that are not in a plane
-constexpr double kHair = 1e-6;   // of the weights, against slopes that nothing tells
+constexpr int kReach = 2;                 // [cells] along each axis
+constexpr int kSquareReach = 6;           // [cells^2]: at a cube's corner four nodes inside that are not in a plane
+constexpr double kRegularization = 1e-6;  // of the weights, for slopes that the known nodes leave open
 
 // Calls body(number, offset) for the nodes of the grid within `reach` of one.
 template <class Body>
@@ -27,7 +27,7 @@ void ForNeighbours(const EulerianGrid& grid, const GridIndex& at, int reach, con
 }
 
 // The slope at a node of the linear function that fits the known values around it best, as columns by axes, per cell.
-// value(number, offset): what is fitted. Directions in which known nodes lie flat get none.
+// value(number, offset): what is fitted. Directions in which the known nodes are coplanar have slope zero.
 template <class IsKnown, class Value>
 Mat3 SlopeAt(const EulerianGrid& grid, const GridIndex& at, const IsKnown& is_known, const Value& value) {
   Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
@@ -40,11 +40,11 @@ Mat3 SlopeAt(const EulerianGrid& grid, const GridIndex& at, const IsKnown& is_kn
     b += weighted * value(number, offset).transpose();
   });
   const double total = A(0, 0);
-  for (int axis = 1; axis < 4; ++axis) A(axis, axis) += kHair * total;
+  for (int axis = 1; axis < 4; ++axis) A(axis, axis) += kRegularization * total;
   return A.ldlt().solve(b).bottomRows<3>().transpose();
 }
 
-// What find(k, found) finds for each k below `count`, in the order of k.
+// Collects what find(k, found) adds for each k below `count`, in the order of k.
 template <class Find>
 std::vector<std::size_t> Gather(std::size_t count, ThreadTeam& team, const Find& find) {
   constexpr std::size_t kBlock = 512;
@@ -77,7 +77,7 @@ std::vector<NodeWeight> ExtrapolationWeights(const EulerianGrid& grid, const Gri
     rows.push_back(row);
   });
   if (weights.empty()) return weights;
-  for (int axis = 1; axis < 4; ++axis) A(axis, axis) += kHair * total;
+  for (int axis = 1; axis < 4; ++axis) A(axis, axis) += kRegularization * total;
   const Eigen::Vector4d value = A.ldlt().solve(Eigen::Vector4d::Unit(0));
   for (std::size_t k = 0; k < weights.size(); ++k) weights[k].weight *= value.dot(rows[k]);
   return weights;
@@ -110,8 +110,8 @@ Band::Places Band::Front(ThreadTeam& team) const {
   });
 }
 
-// Nodes of no layer that are beside those of the one before. Who finds a node first is chance: so is their order, which
-// nothing depends on.
+// Nodes of no layer that are beside those of the one before. Threads race to claim nodes; results do not depend on the
+// order.
 Band::Places Band::Beside(const Places& before, int layer, ThreadTeam& team) {
   return Gather(before.size(), team, [&](std::size_t k, Places& found) {
     ForNeighbours(*grid_, grid_->NodeAt(before[k]), 1, [&](std::size_t other, const Vec3&) {

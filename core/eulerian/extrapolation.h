@@ -8,15 +8,15 @@
 
 namespace fascicle {
 
-// A node's part in a value that is fitted.
+// The weight of a node in a fitted value.
 struct NodeWeight {
   std::size_t node;
   double weight;
 };
 
-// What the value at a node is made of, of the linear function that fits the known nodes within two cells best, nearer
-// ones counting more; they add up to 1. Directions in which known nodes lie flat get no slope. Empty where none is
-// near.
+// The weights that extrapolate to a node: of the linear least squares fit to the known nodes within two cells, nearer
+// ones weighing more. They add up to 1. Directions in which the known nodes are coplanar have slope zero. Empty where
+// no known node is near.
 std::vector<NodeWeight> ExtrapolationWeights(const EulerianGrid& grid, const GridIndex& at,
                                              const std::vector<std::uint8_t>& known);
 
@@ -30,10 +30,10 @@ class Band {
   // Of each node, 1 where fields are known or in the first so many layers.
   std::vector<std::uint8_t> Known(int layers) const;
 
-  // Carries a field on into the first so many layers: each node takes the mean of what its neighbours of the layer
-  // before say by their slopes, and the mean of these slopes. The slopes of the first are those of linear functions
-  // that fit the known nodes within two cells of it best. So linear fields are continued exactly, and others do not
-  // grow faster than that however many layers there are. Directions in which known nodes lie flat have the slope
+  // Extrapolates a field into the first so many layers: each node takes the mean of what its neighbours of the layer
+  // before extrapolate by their slopes, and the mean of these slopes. The slopes of the first are those of linear least
+  // squares fits to the known nodes within two cells. So linear fields are continued exactly, and others grow no faster
+  // than linearly, however many layers there are. Directions in which the known nodes are coplanar have the slope
   // `slope`.
   //   slope  1 for the reference map, 0 for velocities
   void Extend(int layers, double slope, ThreadTeam& team, std::vector<Vec3>& field) const;

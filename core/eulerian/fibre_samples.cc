@@ -2,6 +2,9 @@
 
 #include <Eigen/LU>
 
+#include <atomic>
+#include <utility>
+
 namespace fascicle {
 namespace {
 
@@ -30,34 +33,40 @@ void ForNodesIn(const TetMesh& mesh, const Tetrahedron& tet, const EulerianGrid&
   }
 }
 
+// The mean direction of the neighbours that have one; zero where none does.
+Vec3 MeanOfNeighbours(const EulerianGrid& grid, const std::vector<Vec3>& direction, std::size_t n) {
+  const GridIndex at = grid.NodeAt(n);
+  Vec3 sum = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int side : {-1, 1}) {
+      GridIndex other = at;
+      other[axis] += side;
+      if (grid.HasNode(other)) sum += direction[grid.NodeNumber(other)];
+    }
+  }
+  return sum.norm() < kRoundOff ? Vec3(Vec3::Zero()) : Vec3(sum.normalized());
+}
+
 // Gives nodes without a direction that of neighbours with one, until all have one.
-void Spread(const EulerianGrid& grid, std::vector<Vec3>& direction) {
-  bool any = true;
+void Spread(const EulerianGrid& grid, ThreadTeam& team, std::vector<Vec3>& direction) {
+  std::atomic<bool> any = true;
   while (any) {
     any = false;
     std::vector<Vec3> next = direction;
-    for (std::size_t n = 0; n < direction.size(); ++n) {
-      if (!direction[n].isZero(0)) continue;
-      const GridIndex at = grid.NodeAt(n);
-      Vec3 sum = Vec3::Zero();
-      for (int axis = 0; axis < 3; ++axis) {
-        for (const int side : {-1, 1}) {
-          GridIndex other = at;
-          other[axis] += side;
-          if (grid.HasNode(other)) sum += direction[grid.NodeNumber(other)];
-        }
+    team.For(direction.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        if (!direction[n].isZero(0)) continue;
+        next[n] = MeanOfNeighbours(grid, direction, n);
+        if (!next[n].isZero(0)) any = true;
       }
-      if (sum.norm() < kRoundOff) continue;
-      next[n] = sum.normalized();
-      any = true;
-    }
+    });
     direction = std::move(next);
   }
 }
 
 }  // namespace
 
-FibreSamples::FibreSamples(const TetMesh& mesh, const FibreField& fibres, const EulerianGrid& samples)
+FibreSamples::FibreSamples(const TetMesh& mesh, const FibreField& fibres, const EulerianGrid& samples, ThreadTeam& team)
     : samples_(samples), direction_(samples.node_count(), Vec3::Zero()) {
   if (mesh.tetrahedra.empty()) {
     direction_.assign(direction_.size(), fibres.front());
@@ -66,7 +75,7 @@ FibreSamples::FibreSamples(const TetMesh& mesh, const FibreField& fibres, const 
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     ForNodesIn(mesh, mesh.tetrahedra[t], samples_, [&](std::size_t number) { direction_[number] = fibres[t]; });
   }
-  Spread(samples_, direction_);
+  Spread(samples_, team, direction_);
 }
 
 Vec3 FibreSamples::At(const Vec3& X) const {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/base/parallel.h"
 #include "core/eulerian/grid.h"
 #include "core/geometry/tet_mesh.h"
 #include "core/muscle/fibre_field.h"
@@ -15,7 +16,7 @@ class FibreSamples {
  public:
   // Nodes in a tetrahedron take its direction, others that of the nearest of these, layer by layer. One direction
   // without tetrahedra holds everywhere.
-  FibreSamples(const TetMesh& mesh, const FibreField& fibres, const EulerianGrid& samples);
+  FibreSamples(const TetMesh& mesh, const FibreField& fibres, const EulerianGrid& samples, ThreadTeam& team);
 
   // Unit; trilinear between nodes.
   Vec3 At(const Vec3& X) const;

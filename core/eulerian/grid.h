@@ -49,7 +49,7 @@ struct EulerianGrid {
     return NodeNumber({cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2)});
   }
 
-  // The cell that holds a point, moved inside the grid where the point is outside, and where in it, in [0, 1] there.
+  // The cell that a point is in, moved inside the grid where the point is outside, and where in it, in [0, 1] there.
   struct Place {
     GridIndex cell;
     Vec3 within;

@@ -14,8 +14,8 @@ double MassOf(const NodalForces& nodes, ThreadTeam& team);  // [kg]
 Resultant MomentumOf(const EulerianGrid& grid, const NodalForces& nodes, const std::vector<Vec3>& v, ThreadTeam& team);
 Resultant ForceOf(const EulerianGrid& grid, const NodalForces& nodes, ThreadTeam& team);
 
-// Adds the velocities of a rigid body to all known nodes, so that momentum and its moment are what they should be: what
-// advection and the passing of mass from node to node take of them, or add, would else turn a body that nothing turns.
+// Adds the velocities of a rigid body to all known nodes, so that momentum and its moment are the wanted ones.
+// Otherwise advection, and mass that passes from node to node, would add spurious momentum and angular momentum.
 void SetMomentum(const EulerianGrid& grid, const NodalForces& nodes, const Resultant& wanted,
                  const std::vector<std::uint8_t>& known, ThreadTeam& team, std::vector<Vec3>& v);
 

@@ -2,13 +2,10 @@
 
 #include <Eigen/Geometry>
 
-#include <memory>
 #include <string>
 
-#include "core/eulerian/fibre_samples.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/scene/nodal_forces.h"
-#include "core/scene/rigid_motion.h"
 
 namespace fascicle {
 namespace {
@@ -39,71 +36,21 @@ Material BesidePressure(const Material& material) {
       material);
 }
 
-// What a support holds: its region, and half a cell around it.
+// The points of the material that a support prescribes: its region, and half a cell around it.
 RegionPoints SupportPoints(const Body& body, const Constraint& constraint, double cell_size) {
   return {body.regions[constraint.region], body.nodes(), 0.5 * cell_size};
 }
 
-void SetSupports(const Body& source, double cell_size, EulerianBody& body) {
-  if (source.constraints.empty()) return;
-  std::vector<RegionPoints> points;
-  for (const Constraint& constraint : source.constraints) {
-    points.push_back(SupportPoints(source, constraint, cell_size));
-  }
-  body.supports = static_cast<int>(points.size());
-  body.support_of = [points](const Vec3& X) {
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      if (points[k].Contain(X)) return static_cast<int>(k);
-    }
-    return -1;
-  };
-  body.support_velocity = [&source](int support, const Vec3& X, double time, double dt) {
-    const Motion& motion = source.constraints[support].motion;
-    return Vec3((MotionAt(motion, time + dt).PositionOf(X) - MotionAt(motion, time).PositionOf(X)) / dt);
-  };
+// The force of a load on every vertex of the surface at scale 1 [N].
+std::vector<Vec3> ForcesOf(const Body& source, const Load& load) {
+  std::vector<Vec3> of_vertices(source.nodes().size(), Vec3::Zero());
+  const LoadedRegion region = LoadedRegionOf(source.regions[load.region], source.nodes());
+  for (const auto& [vertex, force] : NodalForcesOf(load, region)) of_vertices[vertex] += force;
+  return of_vertices;
 }
 
-void SetLoads(const Body& source, EulerianBody& body) {
-  if (source.loads.empty()) return;
-  std::vector<std::vector<Vec3>> of_loads;
-  for (const Load& load : source.loads) {
-    std::vector<Vec3>& of_vertices = of_loads.emplace_back(source.nodes().size(), Vec3::Zero());
-    const LoadedRegion region = LoadedRegionOf(source.regions[load.region], source.nodes());
-    for (const auto& [vertex, force] : NodalForcesOf(load, region)) of_vertices[vertex] += force;
-  }
-  body.vertex_forces = [of_loads, &source](double time, std::vector<Vec3>& forces) {
-    for (std::size_t k = 0; k < of_loads.size(); ++k) {
-      const double scale = source.loads[k].scale.At(time);
-      for (std::size_t v = 0; v < forces.size(); ++v) forces[v] += scale * of_loads[k][v];
-    }
-  };
-}
-
-void SetSqueezes(const Scene& scene, EulerianBody& body) {
-  if (scene.squeezes.empty()) return;
-  body.force = [&scene](const Vec3& x, double time) {
-    Vec3 sum = Vec3::Zero();
-    for (const PlaneForceField& field : scene.squeezes) {
-      const double away = (x - field.point).dot(field.normal);
-      const double part = field.width > 0 ? std::clamp(away / field.width, -1.0, 1.0) : away < 0 ? -1 : 1;
-      sum -= field.scale.At(time) * field.force_density * part * field.normal;
-    }
-    return sum;
-  };
-}
-
-void SetFibres(const Body& source, EulerianBody& body) {
-  const SurfaceShape& shape = source.surface();
-  if (shape.fibres.empty()) return;
-  const auto samples =
-      std::make_shared<const FibreSamples>(shape.filling, shape.fibres, body.shape.MaterialGrid(body.grid.spacing / 2));
-  body.fibre = [samples, &source](const Vec3& X, double time) {
-    return FibreState{samples->At(X), source.activation.At(time)};
-  };
-}
-
-// Whether a support holds a node of the grid in the body at rest, or of a cell at its surface.
-bool HoldsNode(const EulerianGrid& grid, const RegionPoints& points, const TriangleTree& tree) {
+// Whether a support prescribes any node of the grid in the body at rest, or of a cell at its surface.
+bool PrescribesNode(const EulerianGrid& grid, const RegionPoints& points, const TriangleTree& tree) {
   for (std::size_t n = 0; n < grid.node_count(); ++n) {
     const Vec3 x = grid.NodePosition(grid.NodeAt(n));
     if (points.Contain(x) && tree.SignedDistance(x) < grid.spacing) return true;
@@ -118,7 +65,7 @@ void CheckSupports(const EulerianGrid& grid, const Body& body, const std::string
   for (std::size_t k = 0; k < body.constraints.size(); ++k) {
     const std::int32_t region = body.constraints[k].region;
     if (region < 0 || region >= static_cast<std::int32_t>(body.regions.size())) continue;
-    if (HoldsNode(grid, SupportPoints(body, body.constraints[k], grid.spacing), tree)) continue;
+    if (PrescribesNode(grid, SupportPoints(body, body.constraints[k], grid.spacing), tree)) continue;
     problems.Add(JoinPath(path, IndexPath("constraints", k) + ".region"),
                  "region `" + body.regions[region].name + "` holds no node of the body's grid",
                  "supports hold what is within half a cell of their regions: make it larger, or take smaller cells");
@@ -159,17 +106,20 @@ EulerianBody MakeEulerianBody(const Scene& scene, const Body& source, ThreadTeam
   body.density = source.density;
   body.mass_damping = source.damping.mass_proportional;
   body.gravity = scene.gravity.acceleration;
-  body.gravity_scale = scene.gravity.scale;
   body.volume = method.volume;
   body.stabilization = method.stabilization;
   body.plasticity = shape.plasticity;
   body.implicit_elasticity = method.implicit_elasticity;
   body.maccormack = method.maccormack;
   body.time_step = method.time_step;
-  SetSupports(source, method.cell_size, body);
-  SetLoads(source, body);
-  SetSqueezes(scene, body);
-  SetFibres(source, body);
+  for (const Constraint& constraint : source.constraints) {
+    body.supports.push_back(SupportPoints(source, constraint, method.cell_size));
+  }
+  for (const Load& load : source.loads) body.loads.push_back(ForcesOf(source, load));
+  body.force_fields = scene.squeezes;
+  if (!shape.fibres.empty()) {
+    body.fibres.emplace(shape.filling, shape.fibres, body.shape.MaterialGrid(body.grid.spacing / 2), team);
+  }
   return body;
 }
 

@@ -14,7 +14,7 @@ namespace fascicle {
 // margin around the body at rest.
 EulerianGrid GridOf(const EulerianMethod& method, const TriangleMesh& surface);
 
-// The solid that a body of a scene is, with its supports, loads, fibres and activation. Scene and body must outlive it.
+// The solid that a body of a scene is, with its supports, loads and fibres.
 //   Where volumes are preserved, the law keeps no more of its bulk modulus than twice its shear modulus: pressure does
 //   the rest, and waves of pressure, which would shorten the step, are not there.
 EulerianBody MakeEulerianBody(const Scene& scene, const Body& body, ThreadTeam& team);

@@ -70,12 +70,12 @@ void CheckSolidSurface(const TriangleMesh& surface, double spacing, Problems& pr
     return;
   }
   if (EnclosedVolume(surface) <= 0) {
-    problems.Add("", "the surface is turned inside out", "triangles are counter-clockwise seen from outside");
+    problems.Add("", "the surface is inverted", "triangles are counter-clockwise seen from outside");
     return;
   }
   const std::size_t cuts = TriangleTree(surface).CuttingPairs().size();
   if (cuts > 0) {
-    problems.Add("", "the surface cuts through itself at " + std::to_string(cuts) + " pairs of triangles",
+    problems.Add("", "the surface intersects itself at " + std::to_string(cuts) + " pairs of triangles",
                  "repair it first");
   }
   const double across = BoundsOf(surface.nodes).extent().minCoeff() / spacing;

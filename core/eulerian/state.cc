@@ -1,5 +1,7 @@
 #include "core/eulerian/state.h"
 
+#include <span>
+
 namespace fascicle {
 namespace {
 
@@ -11,41 +13,61 @@ std::vector<Vec3> Columns(const std::vector<Mat3>& matrices) {
   return columns;
 }
 
+std::string PrefixOf(std::size_t body) { return "body" + std::to_string(body) + "/"; }
+
 }  // namespace
 
-void EulerianState::Save(ArchiveWriter& archive) const {
-  archive.PutDouble("time", time);
-  archive.PutInt("step", step);
-  archive.PutVectors("X", X);
-  archive.PutVectors("v", v);
+void EulerianState::Save(const std::string& prefix, ArchiveWriter& archive) const {
+  archive.PutVectors(prefix + "X", X);
+  archive.PutVectors(prefix + "v", v);
   const std::vector<std::int32_t> numbers(known.begin(), known.end());
-  archive.PutInts("known", numbers);
-  archive.PutVectors("surface", surface);
-  archive.PutDoubles("pressure", pressure);
-  archive.PutDouble("momentum_mass", momentum_mass);
-  archive.PutVectors("momentum", std::span(&momentum, 1));
-  archive.PutVectors("moment", std::span(&moment, 1));
-  archive.PutVectors("plastic", Columns(plastic));
-  archive.PutVectors("plastic_places", plastic_places);
+  archive.PutInts(prefix + "known", numbers);
+  archive.PutVectors(prefix + "surface", surface);
+  archive.PutDoubles(prefix + "pressure", pressure);
+  archive.PutDouble(prefix + "momentum_mass", momentum_mass);
+  archive.PutVectors(prefix + "momentum", std::span(&momentum, 1));
+  archive.PutVectors(prefix + "moment", std::span(&moment, 1));
+  archive.PutVectors(prefix + "plastic", Columns(plastic));
+  archive.PutVectors(prefix + "plastic_places", plastic_places);
+  archive.PutVectors(prefix + "reactions", reactions);
+  archive.PutVectors(prefix + "position", std::span(&pose.position, 1));
+  archive.PutDoubles(prefix + "quaternion", pose.quaternion);
 }
 
-void EulerianState::Load(ArchiveReader& archive) {
+void EulerianState::Load(const std::string& prefix, ArchiveReader& archive) {
+  archive.GetVectors(prefix + "X", std::span(X));
+  archive.GetVectors(prefix + "v", std::span(v));
+  std::vector<std::int32_t> numbers(known.begin(), known.end());
+  archive.GetInts(prefix + "known", std::span(numbers));
+  for (std::size_t n = 0; n < known.size(); ++n) known[n] = numbers[n] != 0 ? 1 : 0;
+  archive.GetVectors(prefix + "surface", std::span(surface));
+  archive.GetDoubles(prefix + "pressure", std::span(pressure));
+  momentum_mass = archive.GetDouble(prefix + "momentum_mass");
+  archive.GetVectors(prefix + "momentum", std::span(&momentum, 1));
+  archive.GetVectors(prefix + "moment", std::span(&moment, 1));
+  std::vector<Vec3> columns = Columns(plastic);
+  archive.GetVectors(prefix + "plastic", std::span(columns));
+  for (std::size_t k = 0; k < columns.size(); ++k) plastic[k / 3].col(static_cast<Eigen::Index>(k % 3)) = columns[k];
+  archive.GetVectors(prefix + "plastic_places", std::span(plastic_places));
+  archive.GetVectors(prefix + "reactions", std::span(reactions));
+  archive.GetVectors(prefix + "position", std::span(&pose.position, 1));
+  archive.GetDoubles(prefix + "quaternion", std::span(pose.quaternion));
+}
+
+void EulerianWorldState::Save(ArchiveWriter& archive) const {
+  archive.PutDouble("time", time);
+  archive.PutInt("step", step);
+  archive.PutDouble("time_step", time_step);
+  archive.PutInt("iterations", iterations);
+  for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].Save(PrefixOf(b), archive);
+}
+
+void EulerianWorldState::Load(ArchiveReader& archive) {
   time = archive.GetDouble("time");
   step = archive.GetInt("step");
-  archive.GetVectors("X", std::span(X));
-  archive.GetVectors("v", std::span(v));
-  std::vector<std::int32_t> numbers(known.begin(), known.end());
-  archive.GetInts("known", std::span(numbers));
-  for (std::size_t n = 0; n < known.size(); ++n) known[n] = numbers[n] != 0 ? 1 : 0;
-  archive.GetVectors("surface", std::span(surface));
-  archive.GetDoubles("pressure", std::span(pressure));
-  momentum_mass = archive.GetDouble("momentum_mass");
-  archive.GetVectors("momentum", std::span(&momentum, 1));
-  archive.GetVectors("moment", std::span(&moment, 1));
-  std::vector<Vec3> columns = Columns(plastic);
-  archive.GetVectors("plastic", std::span(columns));
-  for (std::size_t k = 0; k < columns.size(); ++k) plastic[k / 3].col(static_cast<Eigen::Index>(k % 3)) = columns[k];
-  archive.GetVectors("plastic_places", std::span(plastic_places));
+  time_step = archive.GetDouble("time_step");
+  iterations = archive.GetInt("iterations");
+  for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].Load(PrefixOf(b), archive);
 }
 
 }  // namespace fascicle

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/eulerian/elasticity.h"
 #include "core/materials/spd.h"
 
 namespace fascicle {
@@ -12,8 +13,9 @@ namespace {
 constexpr std::size_t kGrain = 64;
 
 // V/J (F x I) A (F^T x I) dt^2: of T by columns to L by columns.
-Mat9 SpatialTangent(const EulerianBody& body, const Mat3& Fe, const FibreState& fibre, double factor) {
-  const Mat9 A = NearestPositive(std::visit([&](const auto& law) { return law.Tangent(Fe, fibre); }, body.material));
+//   factor  dt^2 V/J
+Mat9 SpatialTangent(const Mat9& tangent, const Mat3& Fe, double factor) {
+  const Mat9 A = NearestPositive(tangent);
   Mat9 Q = Mat9::Zero();
   for (int row = 0; row < 3; ++row) {
     for (int col = 0; col < 3; ++col) Q.block<3, 3>(3 * row, 3 * col) = Fe(row, col) * Mat3::Identity();
@@ -23,35 +25,40 @@ Mat9 SpatialTangent(const EulerianBody& body, const Mat3& Fe, const FibreState& 
 
 }  // namespace
 
-ElasticStiffness::ElasticStiffness(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
-                                   const NodalForces& nodes, const std::vector<int>& number, double dt,
-                                   ThreadTeam& team)
-    : nodes_(&nodes), number_(&number), team_(&team), cells_(cells.solid.size()) {
-  team.For(cells_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      cells_[c] = MakeCell(body, state, cells, nodes, cells.solid[c], dt);
-    }
-  });
-  std::vector<int> held_number(number.size(), -1);
-  std::size_t unknown = 0;
+ElasticStiffness::ElasticStiffness(const EulerianBody& body, const EulerianState& state, const BodyControls& controls,
+                                   const EulerianCells& cells, const NodeRoles& roles, const std::vector<int>& number,
+                                   double dt, ThreadTeam& team)
+    : roles_(&roles), number_(&number), team_(&team), cells_(cells.solid.size()) {
+  std::visit(
+      [&](const auto& law) {
+        team.For(cells_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t c = begin; c < end; ++c) {
+            cells_[c] = MakeCell(law, body, state, controls, cells, cells.solid[c], dt);
+          }
+        });
+      },
+      body.material);
+  std::vector<int> prescribed_number(number.size(), -1);
+  std::size_t free = 0;
   for (std::size_t n = 0; n < number.size(); ++n) {
-    if (number[n] >= 0) ++unknown;
-    if (nodes.support[n] < 0) continue;
-    held_number[n] = static_cast<int>(held_.size());
-    held_.push_back({n, {}});
+    if (number[n] >= 0) ++free;
+    if (!roles.IsPrescribed(n)) continue;
+    prescribed_number[n] = static_cast<int>(prescribed_.size());
+    prescribed_.push_back({n, {}});
   }
-  places_.resize(unknown);
+  places_.resize(free);
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     for (std::size_t p = 0; p < cells_[c].parts.size(); ++p) {
       const std::size_t node = cells_[c].parts[p].node;
       if (number[node] >= 0) places_[number[node]].push_back({c, p});
-      if (held_number[node] >= 0) held_[held_number[node]].places.push_back({c, p});
+      if (prescribed_number[node] >= 0) prescribed_[prescribed_number[node]].places.push_back({c, p});
     }
   }
 }
 
-ElasticStiffness::Cell ElasticStiffness::MakeCell(const EulerianBody& body, const EulerianState& state,
-                                                  const EulerianCells& cells, const NodalForces& nodes,
+template <class Law>
+ElasticStiffness::Cell ElasticStiffness::MakeCell(const Law& law, const EulerianBody& body, const EulerianState& state,
+                                                  const BodyControls& controls, const EulerianCells& cells,
                                                   std::size_t cell, double dt) const {
   const GridIndex at = body.grid.CellAt(cell);
   Cell result;
@@ -59,8 +66,8 @@ ElasticStiffness::Cell ElasticStiffness::MakeCell(const EulerianBody& body, cons
     const Vec3 gradient = CornerGradient(c, body.grid.spacing);
     std::array<double, kRows> of_corner;
     for (int d = 0; d < 3; ++d) of_corner[d] = gradient[d];
-    for (int a = 0; a < kPatterns; ++a) of_corner[3 + a] = CornerPattern(a, c) / 8.0;
-    nodes.ForMovers(body.grid.Corner(at, c), [&](std::size_t node, double weight) {
+    for (int mode = 0; mode < kHourglassModes; ++mode) of_corner[3 + mode] = HourglassSign(mode, c) / 8.0;
+    roles_->ForRoots(body.grid.Corner(at, c), [&](std::size_t node, double weight) {
       Part part = {node, of_corner};
       for (double& w : part.weight) w *= weight;
       result.parts.push_back(part);
@@ -71,13 +78,15 @@ ElasticStiffness::Cell ElasticStiffness::MakeCell(const EulerianBody& body, cons
   });
   const double volume = cells.inside[cell] * std::pow(body.grid.spacing, 3);
   const Mat3 Fe = ElasticGradient(body, state, cells, cell);
-  result.gradient = SpatialTangent(body, Fe, FibreOf(body, state, at), dt * dt * volume / cells.J[cell]);
+  const Mat9 tangent = law.Tangent(Fe, FibreOf(body, state, controls, at));
+  result.gradient = SpatialTangent(tangent, Fe, dt * dt * volume / cells.J[cell]);
   const Mat3 inverse = cells.F[cell].inverse();
-  result.pattern = dt * dt * PatternStiffness(body, volume) * inverse.transpose() * inverse;
+  const double stiffness = HourglassStiffness(law.ShearModulus(), volume, body.grid.spacing);
+  result.hourglass = dt * dt * stiffness * inverse.transpose() * inverse;
   return result;
 }
 
-// What each cell pushes with, for its gradient and its patterns.
+// The force of each cell, for its gradient and its hourglass modes.
 template <class VelocityOf>
 std::vector<ElasticStiffness::CellForces> ElasticStiffness::ForcesOf(const VelocityOf& velocity_of) const {
   std::vector<CellForces> forces(cells_.size());
@@ -93,7 +102,7 @@ std::vector<ElasticStiffness::CellForces> ElasticStiffness::ForcesOf(const Veloc
       L << rates[0], rates[1], rates[2];
       const Eigen::Matrix<double, 9, 1> T = cells_[c].gradient * L;
       for (int d = 0; d < 3; ++d) forces[c][d] = T.segment<3>(3 * d);
-      for (int a = 3; a < kRows; ++a) forces[c][a] = cells_[c].pattern * rates[a];
+      for (int a = 3; a < kRows; ++a) forces[c][a] = cells_[c].hourglass * rates[a];
     }
   });
   return forces;
@@ -109,7 +118,7 @@ Vec3 ElasticStiffness::SumAt(const std::vector<Place>& places, const std::vector
 }
 
 template <class VelocityOf>
-void ElasticStiffness::Add(const VelocityOf& velocity_of, Eigen::VectorXd& product) const {
+void ElasticStiffness::Add(const VelocityOf& velocity_of, Eigen::Ref<Eigen::VectorXd> product) const {
   const std::vector<CellForces> forces = ForcesOf(velocity_of);
   team_->For(places_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
@@ -118,7 +127,8 @@ void ElasticStiffness::Add(const VelocityOf& velocity_of, Eigen::VectorXd& produ
   });
 }
 
-void ElasticStiffness::AddProduct(const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
+void ElasticStiffness::AddProduct(const Eigen::Ref<const Eigen::VectorXd>& v,
+                                  Eigen::Ref<Eigen::VectorXd> product) const {
   Add(
       [&](std::size_t node) {
         const int at = (*number_)[node];
@@ -127,16 +137,18 @@ void ElasticStiffness::AddProduct(const Eigen::VectorXd& v, Eigen::VectorXd& pro
       product);
 }
 
-Eigen::VectorXd ElasticStiffness::OfHeld(const std::vector<Vec3>& velocity) const {
+Eigen::VectorXd ElasticStiffness::OfPrescribed(const std::vector<Vec3>& velocity) const {
   Eigen::VectorXd product = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * places_.size()));
-  Add([&](std::size_t node) { return nodes_->support[node] >= 0 ? velocity[node] : Vec3(Vec3::Zero()); }, product);
+  Add([&](std::size_t node) { return roles_->IsPrescribed(node) ? velocity[node] : Vec3(Vec3::Zero()); }, product);
   return product;
 }
 
-void ElasticStiffness::AddHeldImpulses(const std::vector<Vec3>& velocity, std::vector<Vec3>& impulses) const {
-  if (held_.empty()) return;
+void ElasticStiffness::AddPrescribedImpulses(const std::vector<Vec3>& velocity, std::vector<Vec3>& impulses) const {
+  if (prescribed_.empty()) return;
   const std::vector<CellForces> forces = ForcesOf([&](std::size_t node) { return velocity[node]; });
-  for (const Held& held : held_) impulses[held.node] -= SumAt(held.places, forces);
+  for (const Prescribed& prescribed : prescribed_) {
+    impulses[prescribed.node] -= SumAt(prescribed.places, forces);
+  }
 }
 
 Eigen::VectorXd ElasticStiffness::Diagonal() const {
@@ -151,7 +163,7 @@ Eigen::VectorXd ElasticStiffness::Diagonal() const {
           for (int k = 0; k < 3; ++k) {
             for (int l = 0; l < 3; ++l) sum += weight[k] * weight[l] * cell.gradient(3 * k + i, 3 * l + i);
           }
-          for (int a = 3; a < kRows; ++a) sum += weight[a] * weight[a] * cell.pattern(i, i);
+          for (int a = 3; a < kRows; ++a) sum += weight[a] * weight[a] * cell.hourglass(i, i);
           diagonal[static_cast<Eigen::Index>(3 * n) + i] += sum;
         }
       }

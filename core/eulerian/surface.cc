@@ -12,7 +12,7 @@ constexpr double kEnough = 1e-8;  // of a cell
 
 }  // namespace
 
-double CarryPoint(const EulerianGrid& grid, const KnownField& map, const Vec3& X, Vec3& place) {
+double FindPoint(const EulerianGrid& grid, const KnownField& map, const Vec3& X, Vec3& place) {
   double left = std::numeric_limits<double>::infinity();
   Vec3 x = place;
   for (int k = 0; k < kMostIterations; ++k) {
@@ -26,12 +26,12 @@ double CarryPoint(const EulerianGrid& grid, const KnownField& map, const Vec3& X
   return left;
 }
 
-double CarrySurface(const EulerianBody& body, ThreadTeam& team, EulerianState& state) {
+double FindSurface(const EulerianBody& body, ThreadTeam& team, EulerianState& state) {
   const KnownField map = {&state.X, &state.known};
   const std::vector<Vec3>& X = body.shape.surface().nodes;
   std::vector<double> left(X.size());
   team.For(X.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) left[v] = CarryPoint(body.grid, map, X[v], state.surface[v]);
+    for (std::size_t v = begin; v < end; ++v) left[v] = FindPoint(body.grid, map, X[v], state.surface[v]);
   });
   return left.empty() ? 0 : *std::max_element(left.begin(), left.end());
 }

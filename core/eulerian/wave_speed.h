@@ -8,9 +8,10 @@ namespace fascicle {
 // The fastest small wave of the material at rest, without its fibres [m/s].
 double WaveSpeedAtRest(const EulerianBody& body);
 
-// The fastest one in any cell, as it is deformed [m/s]. Isotropic laws: that at rest times the largest stretch. Laws of
-// fibres: of the acoustic tensor along the fibre and along the axes.
-double FastestWave(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells, ThreadTeam& team);
+// The fastest wave in any cell, as it is deformed [m/s]. Isotropic laws: that at rest times the largest stretch. Laws
+// of fibres: of the acoustic tensor along the fibre and along the axes.
+double FastestWave(const EulerianBody& body, const EulerianState& state, const BodyControls& controls,
+                   const EulerianCells& cells, ThreadTeam& team);
 
 }  // namespace fascicle
 

@@ -1,10 +1,9 @@
 #ifndef FASCICLE_CORE_SIM_EULERIAN_MEASURE_H_
 #define FASCICLE_CORE_SIM_EULERIAN_MEASURE_H_
 
-#include <memory>
 #include <vector>
 
-#include "core/eulerian/solver.h"
+#include "core/eulerian/world.h"
 #include "core/sim/frame.h"
 
 // Turns states of the eulerian method into what a frame carries.
@@ -13,16 +12,16 @@ namespace fascicle {
 // The series of a scene of the eulerian method, in the order in which MeasureEulerianSeries gives their values.
 std::vector<SeriesInfo> EulerianSeriesOf(const Scene& scene);
 
-// iterations: of MINRES, since the frame before.
-std::vector<double> MeasureEulerianSeries(const Scene& scene, const std::vector<std::unique_ptr<EulerianBody>>& bodies,
-                                          const std::vector<EulerianState>& states,
-                                          const std::vector<EulerianSolver>& solvers, double time_step,
-                                          std::int64_t iterations, ThreadTeam& team);
+// now: the controls at the state's time. reactions: of each constraint of each body [N]. iterations_before: of MINRES
+// up to the frame before.
+std::vector<double> MeasureEulerianSeries(const Scene& scene, const std::vector<const EulerianBody*>& bodies,
+                                          const EulerianWorldState& state, const Controls& now,
+                                          const std::vector<Vec3>& reactions, std::int64_t iterations_before,
+                                          ThreadTeam& team);
 
-// Positions of the surface's vertices, and the fields that the scene asks for there: velocities interpolated, all
-// others the mean of the solid cells around a vertex.
+// Positions of the surface's vertices, and the fields that the scene asks for there.
 BodyFrame MeasureEulerianBody(const Scene& scene, const EulerianBody& body, const EulerianState& state,
-                              ThreadTeam& team);
+                              const BodyControls& now, ThreadTeam& team);
 
 }  // namespace fascicle
 

@@ -1,5 +1,6 @@
 #include "core/sim/method_run.h"
 
+#include "core/base/check.h"
 #include "core/sim/eulerian_run.h"
 #include "core/sim/tet_run.h"
 #include "core/sim/voxel_run.h"

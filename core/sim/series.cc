@@ -44,14 +44,15 @@ void AddBodySeries(const Body& body, std::vector<SeriesInfo>& series) {
   }
 }
 
-void AddBodyValues(const Body& body, double time, std::span<const Vec3> forces, std::vector<double>& values) {
+void AddBodyValues(const Body& body, const BodyControls& controls, std::span<const Vec3> forces,
+                   std::vector<double>& values) {
   for (const RegionReaction& reaction : RegionReactions(body)) {
     Vec3 sum = Vec3::Zero();
     for (const std::size_t k : reaction.constraints) sum += forces[k];
     values.insert(values.end(), sum.begin(), sum.end());
   }
-  for (const Load& load : body.loads) {
-    if (load.kept) values.push_back(load.scale.At(time));
+  for (std::size_t k = 0; k < body.loads.size(); ++k) {
+    if (body.loads[k].kept) values.push_back(controls.load_scales[k]);
   }
 }
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/scene/scene.h"
+#include "core/scene/controls.h"
 #include "core/sim/frame.h"
 
 // Series that all methods have in common: those of supports, loads and probes.
@@ -12,9 +12,10 @@ namespace fascicle {
 
 // Of a body: the force of the supports of each region, x, y and z, then the loads that are kept.
 void AddBodySeries(const Body& body, std::vector<SeriesInfo>& series);
-// Their values at a time.
+// Their values under the body's controls.
 //   forces  of the body's constraints on it, one each, in their order [N]
-void AddBodyValues(const Body& body, double time, std::span<const Vec3> forces, std::vector<double>& values);
+void AddBodyValues(const Body& body, const BodyControls& controls, std::span<const Vec3> forces,
+                   std::vector<double>& values);
 
 // The displacement of each probe, x, y and z.
 void AddProbeSeries(const Scene& scene, std::vector<SeriesInfo>& series);

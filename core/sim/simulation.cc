@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "core/base/archive.h"
+#include "core/base/stop.h"
 #include "core/scene/curves.h"
+#include "core/sim/control_source.h"
 #include "core/sim/fingerprint.h"
 #include "core/sim/floor_bodies.h"
 #include "core/sim/method_run.h"
@@ -15,7 +16,7 @@ namespace fascicle {
 namespace {
 
 constexpr const char* kCheckpointKind = "fascicle checkpoint";
-constexpr std::uint32_t kCheckpointVersion = 2;
+constexpr std::uint32_t kCheckpointVersion = 3;
 
 struct ProblemText {
   const char* reason;
@@ -26,7 +27,7 @@ struct ProblemText {
 ProblemText TextOf(StepProblem problem) {
   switch (problem) {
     case StepProblem::kInvertedElement:
-      return {"INVERTED_ELEMENT", "elements turn inside out, also with the step cut to a thousandth",
+      return {"INVERTED_ELEMENT", "elements are inverted, also with the step cut to a thousandth",
               "load, move or activate more slowly, use a smaller safety, a finer mesh where it bends, or a law that "
               "resists compression"};
     case StepProblem::kNotFinite:
@@ -52,20 +53,23 @@ ProblemText TextOf(StepProblem problem) {
     case StepProblem::kUnstable:
       return {"STEP_TOO_SMALL", "the motion gains energy, also with the step cut to a thousandth",
               "leave time_step out, so that a stable step is found, or use a smaller safety"};
-    default:
-      return {"STEP_TOO_SMALL", "the stable step has become too small to get on",
-              "the elements named are the thinnest: load or move more slowly, repair the mesh there, or use a lower "
-              "bulk modulus or a higher density"};
+    case StepProblem::kNone:
+    case StepProblem::kStepTooSmall:
+      break;
   }
+  return {"STEP_TOO_SMALL", "the stable step has become too small to get on",
+          "the elements named are the thinnest: load or move more slowly, repair the mesh there, or use a lower "
+          "bulk modulus or a higher density"};
 }
 
 }  // namespace
 
 struct Simulation::Impl {
-  Impl(std::shared_ptr<const Scene> s, int threads, Profile* p)
+  Impl(std::shared_ptr<const Scene> s, int threads, Profile* p, std::stop_token stop)
       : profile(p),
         scene(std::move(s)),
-        team(threads),
+        team(threads, std::move(stop)),
+        source(*scene),
         method(MakeMethodRun(*scene, team, p)),
         layout{FloorBodies(*scene), {}, method->Series()} {
     const double intervals = scene->duration / scene->output.frame_interval;
@@ -80,7 +84,8 @@ struct Simulation::Impl {
   }
 
   void Start() {
-    method->Start();
+    source.Evaluate(0, now);
+    method->Start(now);
     next_frame = 0;
     iterations_at_frame = 0;
     settled = false;
@@ -107,11 +112,12 @@ struct Simulation::Impl {
     frame.step = clock.step;
     {
       const StageTimer fields(profile, "fields");
-      frame.bodies = method->MeasureBodies();
+      frame.bodies = method->MeasureBodies(now);
     }
     {
       const StageTimer series_timer(profile, "series");
-      frame.series = method->MeasureSeries(iterations_at_frame);
+      source.Evaluate(clock.time + clock.time_step, next);
+      frame.series = method->MeasureSeries(now, method->Reactions(now, next), iterations_at_frame);
     }
     {
       const StageTimer digest(profile, "digest");
@@ -141,20 +147,55 @@ struct Simulation::Impl {
     iterations_at_frame = archive.GetInt("iterations_at_frame");
     settled = archive.GetInt("settled") != 0;
     method->Load(archive);
-    return archive.AtEnd();
+    if (!archive.AtEnd()) return false;
+    source.Evaluate(method->clock().time, now);
+    return true;
   }
 
-  StepOutcome Step(double end, const std::stop_token& stop) {
+  // Makes one step towards `end`: the one that the method proposes, or a shorter one where that can't be made.
+  StepOutcome Step(double end) {
     const StageTimer timer(profile, "step");
-    return method->Advance(end, stop);
+    team.ThrowIfStopped();
+    for (;;) {
+      const StepProposal step = method->ProposeStep(now, end);
+      if (step.problem != StepProblem::kNone) return {step.problem, step.bad};
+      {
+        const StageTimer controls(profile, "controls");
+        source.Evaluate(step.time, next);
+      }
+      StepOutcome outcome = method->Step(now, next, step.dt);
+      if (outcome.problem == StepProblem::kNone) std::swap(now, next);
+      if (!outcome.try_shorter) return outcome;
+    }
   }
 
-  // How the run ends with a step; not at all when it was made.
-  std::optional<Outcome> Ended(const StepOutcome& step) const {
-    if (step.problem == StepProblem::kNone) return std::nullopt;
-    if (step.problem == StepProblem::kStopped) return Outcome{Outcome::Kind::kCancelled, {}};
-    return Outcome{Outcome::Kind::kFailed, FailureOf(step)};
+  // From where the run is to its end.
+  Outcome Run(FrameSink& sink, std::chrono::milliseconds checkpoint_interval) {
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point last_checkpoint = Clock::now();
+    if (next_frame == 0) {
+      const StepOutcome start = method->SolveStart(now);
+      if (start.problem != StepProblem::kNone) return Failed(FailureOf(start));
+    }
+    while (!AtEnd()) {
+      const double frame_time = TimeOfFrame(next_frame);
+      while (method->clock().time < frame_time) {
+        const StepOutcome step = Step(frame_time);
+        if (step.problem != StepProblem::kNone) return Failed(FailureOf(step));
+        sink.PutProgress(ProgressNow());
+      }
+      Frame frame = TakeFrame();
+      std::string checkpoint;
+      if (AtEnd() || Clock::now() - last_checkpoint >= checkpoint_interval) {
+        checkpoint = Checkpoint();
+        last_checkpoint = Clock::now();
+      }
+      if (!Put(sink, std::move(frame), std::move(checkpoint))) return Failed(StorageFailure());
+    }
+    return {Outcome::Kind::kSucceeded, {}};
   }
+
+  static Outcome Failed(Failure failure) { return {Outcome::Kind::kFailed, std::move(failure)}; }
 
   bool Put(FrameSink& sink, Frame frame, std::string checkpoint) {
     const StageTimer timer(profile, "waiting for storage");
@@ -175,22 +216,36 @@ struct Simulation::Impl {
             outcome.bad.elements, text.advice};
   }
 
+  Failure StorageFailure() const {
+    const RunClock clock = method->clock();
+    return {"STORAGE",
+            "a frame could not be stored",
+            clock.step,
+            clock.time,
+            ObjectKind::kNone,
+            {},
+            {},
+            "make room where results are kept, then start the job again"};
+  }
+
   Profile* const profile;
   std::shared_ptr<const Scene> scene;
   ThreadTeam team;
+  ControlSource source;
   std::unique_ptr<MethodRun> method;
   FrameLayout layout;
   Digest fingerprint = FingerprintOf(*scene);
   const double curves_end = CurvesEnd(*scene);
   std::int64_t last_frame = 0;
 
+  Controls now, next;  // at the clock's time; scratch
   std::int64_t next_frame = 0;
   std::int64_t iterations_at_frame = 0;
   bool settled = false;
 };
 
-Simulation::Simulation(std::shared_ptr<const Scene> scene, int threads, Profile* profile)
-    : impl_(std::make_unique<Impl>(std::move(scene), threads, profile)) {
+Simulation::Simulation(std::shared_ptr<const Scene> scene, int threads, Profile* profile, std::stop_token stop)
+    : impl_(std::make_unique<Impl>(std::move(scene), threads, profile, std::move(stop))) {
   impl_->Start();
 }
 
@@ -207,38 +262,14 @@ bool Simulation::Restore(std::string_view checkpoint) {
 std::int64_t Simulation::next_frame() const { return impl_->next_frame; }
 
 Outcome Simulation::Run(FrameSink& sink, std::stop_token stop, std::chrono::milliseconds checkpoint_interval) {
-  using Clock = std::chrono::steady_clock;
-  Impl& run = *impl_;
-  Clock::time_point last_checkpoint = Clock::now();
-  if (run.next_frame == 0) {
-    if (const auto ended = run.Ended(run.method->SolveStart(stop))) return *ended;
+  Outcome outcome = {Outcome::Kind::kCancelled, {}};
+  impl_->team.HeedStop(std::move(stop));
+  try {
+    outcome = impl_->Run(sink, checkpoint_interval);
+  } catch (const Stopped&) {
   }
-  while (!run.AtEnd()) {
-    const double frame_time = run.TimeOfFrame(run.next_frame);
-    while (run.method->clock().time < frame_time) {
-      if (stop.stop_requested()) return {Outcome::Kind::kCancelled, {}};
-      if (const auto ended = run.Ended(run.Step(frame_time, stop))) return *ended;
-      sink.PutProgress(run.ProgressNow());
-    }
-    Frame frame = run.TakeFrame();
-    std::string checkpoint;
-    if (run.AtEnd() || Clock::now() - last_checkpoint >= checkpoint_interval) {
-      checkpoint = run.Checkpoint();
-      last_checkpoint = Clock::now();
-    }
-    if (!run.Put(sink, std::move(frame), std::move(checkpoint))) {
-      return {Outcome::Kind::kFailed,
-              {"STORAGE",
-               "a frame could not be stored",
-               run.method->clock().step,
-               run.method->clock().time,
-               ObjectKind::kNone,
-               {},
-               {},
-               "make room where results are kept, then start the job again"}};
-    }
-  }
-  return {Outcome::Kind::kSucceeded, {}};
+  impl_->team.HeedStop({});
+  return outcome;
 }
 
 }  // namespace fascicle

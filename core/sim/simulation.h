@@ -56,13 +56,14 @@ class FrameSink {
   virtual void PutProgress(const Progress& progress) = 0;
 };
 
-// Runs a scene: clock, output policy, cancel, checkpoints, digests. The frames do not depend on the number of threads,
-// nor on how often a run was interrupted and restored. One thread at a time.
+// Runs a scene: clock, controls, output policy, cancel, checkpoints, digests. The frames do not depend on the number of
+// threads, nor on how often a run was interrupted and restored. Not thread-safe.
 class Simulation {
  public:
   // The scene must have passed CheckScene. threads >= 1. What takes time is timed in `profile`, if there is one, which
-  // must outlive the simulation; that then ends in the thread that made it.
-  Simulation(std::shared_ptr<const Scene> scene, int threads, Profile* profile = nullptr);
+  // must outlive the simulation; that then ends in the thread that made it. Throws Stopped (core/base/stop.h) when
+  // `stop` asks for it while the model is set up.
+  Simulation(std::shared_ptr<const Scene> scene, int threads, Profile* profile = nullptr, std::stop_token stop = {});
   ~Simulation();
 
   // What every frame holds beside the bodies of the scene.
@@ -74,8 +75,9 @@ class Simulation {
   // Index of the next frame that Run will put: 0, or the one after the restored checkpoint.
   std::int64_t next_frame() const;
 
-  // Steps to the end of the scene. A stop request ends it between two steps with kCancelled. A checkpoint goes with
-  // the first frame after each `checkpoint_interval` of wall time, and with the last frame.
+  // Steps to the end of the scene. A stop request ends it with kCancelled, also within a step or a frame, which are
+  // then as if they had not been begun: it can be run on. A checkpoint goes with the first frame after each
+  // `checkpoint_interval` of wall time, and with the last frame.
   Outcome Run(FrameSink& sink, std::stop_token stop,
               std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2));
 

@@ -45,13 +45,12 @@ std::vector<SeriesInfo> SeriesOf(const TetModel& model) {
   return series;
 }
 
-std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, std::int64_t iterations_before,
+std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, const Controls& now,
+                                  const std::vector<Vec3>& reactions, std::int64_t iterations_before,
                                   ThreadTeam& team) {
-  TetControls controls;
-  controls.Set(model, state.time);
   double elastic = 0;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
-    elastic += ElasticEnergy(model, b, FibreDrive{controls.activation}, state.positions, team);
+    elastic += ElasticEnergy(model, b, FibreDrive{now.activations}, state.positions, team);
   }
   std::vector<double> values = {elastic,
                                 KineticEnergy(model, state.velocities, team),
@@ -63,14 +62,12 @@ std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, 
   for (const Vec3& force : FloorForces(model, state.positions)) {
     values.insert(values.end(), force.begin(), force.end());
   }
-  // One for each constraint, body by body.
-  const std::vector<Vec3> forces = Reactions(model, state, team);
-  auto of_body = forces.begin();
+  auto of_body = reactions.begin();
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const VolumeRatios ratios = VolumeRatiosOf(model, b, state.positions);
-    values.insert(values.end(), {ratios.total, ratios.smallest, controls.activation[model.bodies()[b].activation]});
+    values.insert(values.end(), {ratios.total, ratios.smallest, now.activations[model.bodies()[b].activation]});
     const std::size_t count = model.bodies()[b].source->constraints.size();
-    AddBodyValues(*model.bodies()[b].source, state.time, {of_body, count}, values);
+    AddBodyValues(*model.bodies()[b].source, ControlsOf(model.scene(), b, now), {of_body, count}, values);
     of_body += static_cast<std::ptrdiff_t>(count);
   }
   for (const Probe& probe : model.scene().output.probes) {
@@ -81,9 +78,8 @@ std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, 
   return values;
 }
 
-std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& state, ThreadTeam& team) {
-  TetControls controls;
-  controls.Set(model, state.time);
+std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& state, const Controls& now,
+                                     ThreadTeam& team) {
   std::vector<BodyFrame> frames(model.bodies().size());
   for (std::size_t b = 0; b < frames.size(); ++b) {
     const TetBody& body = model.bodies()[b];
@@ -91,7 +87,7 @@ std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& stat
                                state.positions.begin() + static_cast<std::ptrdiff_t>(body.mesh_node_end));
     for (const OutputField field : model.scene().output.fields) {
       frames[b].fields.push_back(
-          FieldOf(field, Method::kTet, FieldValuesOf(model, b, field, FibreDrive{controls.activation}, state, team)));
+          FieldOf(field, Method::kTet, FieldValuesOf(model, b, field, FibreDrive{now.activations}, state, team)));
     }
   }
   return frames;

@@ -12,12 +12,14 @@ namespace fascicle {
 // The series of a scene of the tet method, in the order in which MeasureSeries gives their values.
 std::vector<SeriesInfo> SeriesOf(const TetModel& model);
 
-// `iterations_before`: of the linear solves up to the frame before.
-std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, std::int64_t iterations_before,
-                                  ThreadTeam& team);
+// now: the controls at the state's time. reactions: of each constraint of each body [N]. iterations_before: of the
+// linear solves up to the frame before.
+std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, const Controls& now,
+                                  const std::vector<Vec3>& reactions, std::int64_t iterations_before, ThreadTeam& team);
 
 // Positions and the fields that the scene asks for, of every body.
-std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& state, ThreadTeam& team);
+std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& state, const Controls& now,
+                                     ThreadTeam& team);
 
 }  // namespace fascicle
 

@@ -12,23 +12,30 @@ namespace {
 class TetRun : public MethodRun {
  public:
   TetRun(const Scene& scene, ThreadTeam& team, Profile* profile)
-      : team_(team), model_(scene), solver_(model_, team, profile) {}
+      : team_(team), model_(scene, team.stop()), solver_(model_, team, profile) {}
 
   std::vector<SeriesInfo> Series() const override { return SeriesOf(model_); }
 
-  void Start() override { state_ = solver_.InitialState(); }
-  StepOutcome SolveStart(std::stop_token) override { return {}; }
+  void Start(const Controls& start) override { state_ = solver_.InitialState(start); }
+  StepOutcome SolveStart(const Controls&) override { return {}; }
   RunClock clock() const override { return {state_.time, state_.step, state_.time_step, state_.iterations}; }
-  StepOutcome Advance(double end, std::stop_token stop) override {
-    StepReport report = solver_.Advance(state_, end, std::move(stop));
-    return {report.problem, std::move(report.bad)};
+  StepProposal ProposeStep(const Controls& now, double end) override { return solver_.ProposeStep(state_, now, end); }
+  StepOutcome Step(const Controls& now, const Controls& next, double dt) override {
+    StepReport report = solver_.Step(state_, now, next, dt);
+    return {report.problem, std::move(report.bad), report.try_shorter};
   }
 
   double LargestSpeed() const override { return fascicle::LargestSpeed(state_.velocities); }
 
-  std::vector<BodyFrame> MeasureBodies() const override { return fascicle::MeasureBodies(model_, state_, team_); }
-  std::vector<double> MeasureSeries(std::int64_t iterations_before) const override {
-    return fascicle::MeasureSeries(model_, state_, iterations_before, team_);
+  std::vector<BodyFrame> MeasureBodies(const Controls& now) const override {
+    return fascicle::MeasureBodies(model_, state_, now, team_);
+  }
+  std::vector<Vec3> Reactions(const Controls& now, const Controls& later) const override {
+    return fascicle::Reactions(model_, state_, now, later, team_);
+  }
+  std::vector<double> MeasureSeries(const Controls& now, const std::vector<Vec3>& reactions,
+                                    std::int64_t iterations_before) const override {
+    return fascicle::MeasureSeries(model_, state_, now, reactions, iterations_before, team_);
   }
 
   void Save(ArchiveWriter& archive) const override { state_.Save(archive); }

@@ -103,12 +103,14 @@ std::vector<SeriesInfo> VoxelSeriesOf(const Scene& scene) {
 }
 
 std::vector<double> MeasureVoxelSeries(const Scene& scene, const VoxelSolver& solver, const VoxelSceneState& state,
+                                       const Controls& now, const std::vector<Vec3>& reactions,
                                        std::int64_t iterations_before) {
   double elastic = 0, kinetic = 0;
   for (const double energy : state.elastic) elastic += energy;
   for (const double energy : state.kinetic) kinetic += energy;
   std::vector<double> values = {elastic, kinetic, state.time_step,
                                 static_cast<double>(state.iterations - iterations_before)};
+  auto of_body = reactions.begin();
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     double sum = 0, smallest = INFINITY;
     const std::vector<Mat3> gradients = GradientsAtCentres(solver.bodies()[b]->model(), state.bodies[b].displacement);
@@ -118,7 +120,9 @@ std::vector<double> MeasureVoxelSeries(const Scene& scene, const VoxelSolver& so
       smallest = std::min(smallest, J);
     }
     values.insert(values.end(), {sum / static_cast<double>(gradients.size()), smallest});
-    AddBodyValues(scene.bodies[b], state.time, state.reactions[b], values);
+    const std::size_t count = scene.bodies[b].constraints.size();
+    AddBodyValues(scene.bodies[b], ControlsOf(scene, b, now), {of_body, count}, values);
+    of_body += static_cast<std::ptrdiff_t>(count);
   }
   for (const Probe& probe : scene.output.probes) {
     const auto b = static_cast<std::size_t>(probe.body);

@@ -16,13 +16,12 @@ class VoxelMethodRun : public MethodRun {
 
   std::vector<SeriesInfo> Series() const override { return VoxelSeriesOf(scene_); }
 
-  void Start() override { state_ = solver_.InitialState(); }
-  StepOutcome SolveStart(std::stop_token stop) override {
-    return OutcomeOf(solver_.SolveStart(state_, std::move(stop)));
-  }
+  void Start(const Controls&) override { state_ = solver_.InitialState(); }
+  StepOutcome SolveStart(const Controls& start) override { return OutcomeOf(solver_.SolveStart(state_, start)); }
   RunClock clock() const override { return {state_.time, state_.step, state_.time_step, state_.iterations}; }
-  StepOutcome Advance(double end, std::stop_token stop) override {
-    return OutcomeOf(solver_.Advance(state_, end, std::move(stop)));
+  StepProposal ProposeStep(const Controls&, double end) override { return solver_.ProposeStep(state_, end); }
+  StepOutcome Step(const Controls&, const Controls& next, double dt) override {
+    return OutcomeOf(solver_.Step(state_, next, dt));
   }
 
   double LargestSpeed() const override {
@@ -35,9 +34,19 @@ class VoxelMethodRun : public MethodRun {
     return state_.time_step > 0 ? largest / state_.time_step : 0;
   }
 
-  std::vector<BodyFrame> MeasureBodies() const override { return MeasureVoxelBodies(scene_, solver_, state_); }
-  std::vector<double> MeasureSeries(std::int64_t iterations_before) const override {
-    return MeasureVoxelSeries(scene_, solver_, state_, iterations_before);
+  std::vector<BodyFrame> MeasureBodies(const Controls&) const override {
+    return MeasureVoxelBodies(scene_, solver_, state_);
+  }
+  std::vector<Vec3> Reactions(const Controls&, const Controls&) const override {
+    std::vector<Vec3> reactions;
+    for (const std::vector<Vec3>& of_body : state_.reactions) {
+      reactions.insert(reactions.end(), of_body.begin(), of_body.end());
+    }
+    return reactions;
+  }
+  std::vector<double> MeasureSeries(const Controls& now, const std::vector<Vec3>& reactions,
+                                    std::int64_t iterations_before) const override {
+    return MeasureVoxelSeries(scene_, solver_, state_, now, reactions, iterations_before);
   }
 
   void Save(ArchiveWriter& archive) const override { state_.Save(archive); }

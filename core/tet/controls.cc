@@ -4,7 +4,7 @@ namespace fascicle {
 namespace {
 
 template <class ValueOf>
-void Prescribe(const TetModel& model, const TetControls& controls, const ValueOf& value_of, NodalVector& values) {
+void Prescribe(const TetModel& model, const Controls& controls, const ValueOf& value_of, NodalVector& values) {
   for (std::size_t s = 0; s < model.supports().size(); ++s) {
     const Support& support = model.supports()[s];
     for (std::size_t i = 0; i < support.nodes.size(); ++i) {
@@ -19,33 +19,24 @@ void Prescribe(const TetModel& model, const TetControls& controls, const ValueOf
 
 }  // namespace
 
-void TetControls::Set(const TetModel& model, double at_time) {
-  time = at_time;
-  activation.resize(model.activations().size());
-  for (std::size_t k = 0; k < activation.size(); ++k) activation[k] = model.activations()[k]->At(time);
-  load_scale.resize(model.loads().size());
-  for (std::size_t k = 0; k < load_scale.size(); ++k) load_scale[k] = model.loads()[k].scale->At(time);
-  gravity = model.scene().gravity.scale.At(time) * model.scene().gravity.acceleration;
-  motions.resize(model.supports().size());
-  for (std::size_t s = 0; s < motions.size(); ++s) motions[s] = MotionAt(model.supports()[s].source->motion, time);
-}
-
-void PrescribePositions(const TetModel& model, const TetControls& controls, NodalVector& positions) {
+void PrescribePositions(const TetModel& model, const Controls& controls, NodalVector& positions) {
   Prescribe(
       model, controls, [](const RigidMotion& motion, const Vec3& X) { return motion.PositionOf(X); }, positions);
 }
 
-void PrescribeVelocities(const TetModel& model, const TetControls& controls, NodalVector& velocities) {
+void PrescribeVelocities(const TetModel& model, const Controls& controls, NodalVector& velocities) {
   Prescribe(
       model, controls, [](const RigidMotion& motion, const Vec3& X) { return motion.VelocityOf(X); }, velocities);
 }
 
-void ExternalForce(const TetModel& model, const TetControls& controls, ThreadTeam& team, NodalVector& force) {
+void ExternalForce(const TetModel& model, const Controls& controls, ThreadTeam& team, NodalVector& force) {
+  const Vec3 gravity = controls.gravity_scale * model.scene().gravity.acceleration;
   force.resize(model.nodes());
-  ForNodes(team, model.nodes(), [&](std::size_t n) { force[n] = model.mass()[n] * controls.gravity; });
+  ForNodes(team, model.nodes(), [&](std::size_t n) { force[n] = model.mass()[n] * gravity; });
   for (std::size_t k = 0; k < model.loads().size(); ++k) {
     const NodalLoad& load = model.loads()[k];
-    for (std::size_t i = 0; i < load.nodes.size(); ++i) force[load.nodes[i]] += controls.load_scale[k] * load.forces[i];
+    for (std::size_t i = 0; i < load.nodes.size(); ++i)
+      force[load.nodes[i]] += controls.load_scales[k] * load.forces[i];
   }
 }
 

@@ -10,13 +10,11 @@ namespace fascicle {
 namespace {
 
 struct NodalForces {
-  TetControls controls;
   NodalVector elastic, viscous, external;
 
-  NodalForces(const TetModel& model, const TetState& state, ThreadTeam& team) {
+  NodalForces(const TetModel& model, const TetState& state, const Controls& controls, ThreadTeam& team) {
     ForceWorkspace workspace;
-    controls.Set(model, state.time);
-    FibreDrive drive{controls.activation};
+    FibreDrive drive{controls.activations};
     NodalVector previous;
     if (model.depends_on_rate() && state.time_step > 0) {
       previous = state.positions;
@@ -33,9 +31,9 @@ struct NodalForces {
 
 // Difference quotient from now to slightly later: at a point of a piecewise linear curve, the slope after the point
 // counts.
-Vec3 PrescribedAcceleration(const Motion& motion, const RigidMotion& now, double time, double interval, const Vec3& X) {
+Vec3 PrescribedAcceleration(const RigidMotion& now, const RigidMotion& later, double interval, const Vec3& X) {
   if (interval <= 0) return Vec3::Zero();
-  return (MotionAt(motion, time + interval).VelocityOf(X) - now.VelocityOf(X)) / interval;
+  return (later.VelocityOf(X) - now.VelocityOf(X)) / interval;
 }
 
 }  // namespace
@@ -64,15 +62,16 @@ VolumeRatios VolumeRatiosOf(const TetModel& model, std::size_t body_index, const
   return ratios;
 }
 
-std::vector<Vec3> Reactions(const TetModel& model, const TetState& state, ThreadTeam& team) {
-  const NodalForces forces(model, state, team);
+std::vector<Vec3> Reactions(const TetModel& model, const TetState& state, const Controls& now, const Controls& later,
+                            ThreadTeam& team) {
+  const NodalForces forces(model, state, now, team);
   std::vector<Vec3> reactions(model.supports().size(), Vec3::Zero());
   for (std::size_t s = 0; s < reactions.size(); ++s) {
     const Support& support = model.supports()[s];
     for (std::size_t i = 0; i < support.nodes.size(); ++i) {
       const std::int32_t n = support.nodes[i];
-      const Vec3 acceleration = PrescribedAcceleration(support.source->motion, forces.controls.motions[s], state.time,
-                                                       state.time_step, model.rest_positions()[n]);
+      const Vec3 acceleration =
+          PrescribedAcceleration(now.motions[s], later.motions[s], state.time_step, model.rest_positions()[n]);
       const Vec3 inertia = model.mass()[n] * (acceleration + model.mass_damping()[n] * state.velocities[n]);
       const Vec3 reaction = inertia - forces.elastic[n] - forces.viscous[n] - forces.external[n];
       for (int c = 0; c < 3; ++c) {
@@ -89,8 +88,8 @@ double LargestSpeed(const NodalVector& v) {
   return std::sqrt(largest);
 }
 
-double EquilibriumResidual(const TetModel& model, const TetState& state, ThreadTeam& team) {
-  const NodalForces forces(model, state, team);
+double EquilibriumResidual(const TetModel& model, const TetState& state, const Controls& now, ThreadTeam& team) {
+  const NodalForces forces(model, state, now, team);
   double residual = 0, largest = 0;
   for (std::size_t n = 0; n < model.nodes(); ++n) {
     const Vec3 free = model.mass()[n] * model.inverse_mass()[n];

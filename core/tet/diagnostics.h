@@ -22,14 +22,17 @@ VolumeRatios VolumeRatiosOf(const TetModel& model, std::size_t body, const Nodal
 // Reaction of each support, the force on its body [N]: m a - (elastic + viscous + mass damping + external force, floors
 // included) over the components that the support prescribes, where a is the prescribed acceleration. A component
 // prescribed by two supports counts for the first.
-std::vector<Vec3> Reactions(const TetModel& model, const TetState& state, ThreadTeam& team);
+//   now    the controls at the state's time
+//   later  those after another step as long as the last one: a is the difference of their velocities over that step
+std::vector<Vec3> Reactions(const TetModel& model, const TetState& state, const Controls& now, const Controls& later,
+                            ThreadTeam& team);
 
 // Largest speed of a node [m/s].
 double LargestSpeed(const NodalVector& v);
 
 // Largest sum of elastic, viscous and external forces on a free component, relative to the largest of these forces on
 // any node: 0 in equilibrium at rest [1].
-double EquilibriumResidual(const TetModel& model, const TetState& state, ThreadTeam& team);
+double EquilibriumResidual(const TetModel& model, const TetState& state, const Controls& now, ThreadTeam& team);
 
 }  // namespace fascicle
 

@@ -25,7 +25,7 @@ struct FibreDrive {
       : activation(of_curves), previous(positions_before), inverse_step(one_over_step) {}
   FibreDrive() = default;
 
-  std::span<const double> activation;     // value of each curve in TetModel::activations() [1]
+  std::span<const double> activation;     // Controls::activations [1]
   const NodalVector* previous = nullptr;  // positions one step ago [m], for laws that depend on rate; null: isometric
   double inverse_step = 0;                // inverse of that step's length [1/s]
 };

@@ -1,6 +1,7 @@
 // Implicit steps, which solve for the positions at their end: backward Euler, Newmark, BDF2 and quasi-static.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/tet/diagnostics.h"
 #include "core/tet/solver.h"
@@ -68,8 +69,6 @@ StepProblem ProblemOf(const NewtonResult& result) {
   switch (result.end) {
     case NewtonResult::End::kConverged:
       return StepProblem::kNone;
-    case NewtonResult::End::kStopped:
-      return StepProblem::kStopped;
     case NewtonResult::End::kInvalid:
       return StepProblem::kInvertedElement;
     case NewtonResult::End::kNotConverged:
@@ -80,34 +79,36 @@ StepProblem ProblemOf(const NewtonResult& result) {
 
 }  // namespace
 
-StepReport TetSolver::AdvanceImplicit(TetState& state, double end) {
-  for (;;) {
-    const double remaining = end - state.time;
-    double target = method_.time_step ? *method_.time_step : remaining;
-    if (state.next_step > 0) target = std::min(target, state.next_step);
-    const double steps = std::ceil(remaining / target * (1 - 1e-9));
-    const double next_time = steps <= 1 ? end : state.time + remaining / steps;
-    const StepReport report = Step(state, next_time, next_);
-    const double dt = next_time - state.time;
-    if (report.problem == StepProblem::kNone) {
-      next_.next_step = report.iterations <= kEasyIterations ? 2 * dt : dt;
-      std::swap(state, next_);
-      return report;
-    }
-    if (report.problem == StepProblem::kStopped) return report;
-    state.next_step = dt / 2;
-    if (dt / 2 < kShortestStep * model_.scene().duration) return Fail(state, report);
-  }
+StepProposal TetSolver::ProposeImplicit(const TetState& state, double end) const {
+  const double remaining = end - state.time;
+  double target = method_.time_step ? *method_.time_step : remaining;
+  if (state.next_step > 0) target = std::min(target, state.next_step);
+  const double steps = std::ceil(remaining / target * (1 - 1e-9));
+  StepProposal proposal;
+  proposal.time = steps <= 1 ? end : state.time + remaining / steps;
+  proposal.dt = proposal.time - state.time;
+  return proposal;
 }
 
-StepReport TetSolver::StepImplicit(const TetState& now, double dt, TetState& next) {
+void TetSolver::AcceptImplicit(TetState& state, const StepReport& report, double dt) {
+  next_.next_step = report.iterations <= kEasyIterations ? 2 * dt : dt;
+  std::swap(state, next_);
+}
+
+bool TetSolver::CutImplicit(TetState& state, double dt) const {
+  state.next_step = dt / 2;
+  return !(dt / 2 < kShortestStep * model_.scene().duration);
+}
+
+StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step, TetState& next) {
+  const double dt = step.dt;
   const bool is_static = method_.stepping == Stepping::kQuasiStatic;
   next.positions = now.positions;
   next.pressures = now.pressures;
   NodalVector target = now.positions;
-  PrescribePositions(model_, controls_next_, target);
+  PrescribePositions(model_, step.next, target);
 
-  potential_.drive = is_static ? FibreDrive{controls_next_.activation} : DriveOf(now, dt);
+  potential_.drive = is_static ? FibreDrive{step.next.activations} : DriveOf(now, step);
   potential_.load = &external_next_;
   potential_.previous = &now.positions;
   potential_.viscous_rate = is_static || !model_.has_strain_damping() ? 0 : 1 / dt;
@@ -130,8 +131,10 @@ StepReport TetSolver::StepImplicit(const TetState& now, double dt, TetState& nex
   }
   const NewtonResult result = [&] {
     const StageTimer timer(profile_, "Newton");
-    if (!is_static) newton_->StartNearer(potential_, continued, next.pressures, next.positions);
-    return newton_->Solve(potential_, target, {method_.newton_tolerance, 50, stop_}, next.positions, next.pressures);
+    NewtonOptions options;
+    options.tolerance = method_.newton_tolerance;
+    options.guess = is_static ? nullptr : &continued;
+    return newton_->Solve(potential_, target, options, next.positions, next.pressures);
   }();
 
   StepReport report;
@@ -152,7 +155,7 @@ StepReport TetSolver::StepImplicit(const TetState& now, double dt, TetState& nex
       const Vec3 free = model_.mass()[n] * model_.inverse_mass()[n];
       next.accelerations[n] = free.cwiseProduct(scheme.inertia * (next.positions[n] - scheme.a_centre[n]));
     }
-    PrescribeVelocities(model_, controls_next_, next.velocities);
+    PrescribeVelocities(model_, step.next, next.velocities);
   }
   next.force = now.force;
   next.stable = now.stable;

@@ -68,7 +68,8 @@ bool DependsOnRate(const Law& law) {
 
 }  // namespace
 
-TetModel::TetModel(const Scene& scene) : scene_(&scene) {
+TetModel::TetModel(const Scene& scene, std::stop_token stop) : scene_(&scene) {
+  building_.stop = std::move(stop);
   for (const Body& body : scene.bodies) AddBody(body);
   inverse_mass_.resize(nodes());
   for (std::size_t n = 0; n < nodes(); ++n) inverse_mass_[n].setConstant(1 / mass_[n]);
@@ -83,7 +84,9 @@ TetModel::TetModel(const Scene& scene) : scene_(&scene) {
       for (const std::int32_t n : NodesOf<Element>(e)) element_nodes.push_back(n);
     }
   });
+  HeedStop();
   Invert(element_nodes, nodes(), node_use_begin_, node_uses_);
+  HeedStop();
   if (order() == ElementOrder::kLinear) SetSmoothing();
   SetChunks();
   if (scene.tet.precision == Precision::kSingle) {
@@ -115,9 +118,8 @@ void TetModel::AddBody(const Body& body) {
   has_mass_damping_ |= entry.mass_damping != 0;
   has_strain_damping_ |= entry.HasStrainDamping();
 
-  entry.activation = activations_.size();
-  activations_.push_back(&body.activation);
-  for (const Curve& curve : body.tet().activations.more) activations_.push_back(&curve);
+  entry.activation = activations_;
+  activations_ += 1 + body.tet().activations.more.size();
 
   AddNodes(body, entry);
   AddElements(body, entry);
@@ -134,6 +136,7 @@ void TetModel::AddNodes(const Body& body, TetBody& entry) {
   if (order() == ElementOrder::kQuadratic) {
     const auto first = static_cast<std::int32_t>(entry.node_begin);
     for (const Tetrahedron& tet : mesh.tetrahedra) {
+      HeedStop();
       std::array<std::int32_t, 6>& edges = edge_nodes_.emplace_back();
       for (int k = 0; k < 6; ++k) {
         const std::int32_t i = first + tet[kTetEdges[k][0]], j = first + tet[kTetEdges[k][1]];
@@ -162,6 +165,7 @@ void TetModel::SortIntoChunks(const TetMesh& mesh, const TetBody& entry, const L
   std::vector<std::size_t> last_count(entry.node_end - entry.node_begin, 0);
   std::size_t counts = 0;
   const auto count_nodes = [&](std::span<const std::int32_t> elements) {
+    HeedStop();
     ++counts;
     std::size_t nodes = 0;
     const auto see = [&](std::size_t n) {
@@ -205,6 +209,7 @@ void TetModel::AddElements(const Body& body, TetBody& entry) {
   }
 
   for (const std::int32_t t : sorted) {
+    HeedStop();
     Tetrahedron shifted;
     for (int c = 0; c < 4; ++c) {
       shifted[c] = shape.mesh.tetrahedra[t][c] + static_cast<std::int32_t>(entry.node_begin);
@@ -245,6 +250,7 @@ void TetModel::FillGroup(const Body& body, TetGroup& group) {
     std::vector<Law> laws;
     std::vector<double> given_by_law;
     for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
+      HeedStop();
       const Material& material = MaterialOf(body, source_tetrahedron_[e]);
       const auto [place, is_new] = places.try_emplace(&material, static_cast<std::int32_t>(laws.size()));
       if (is_new) {
@@ -288,6 +294,7 @@ void TetModel::AddPatches(const TetGroup& group, std::span<const double> given) 
   std::map<std::int32_t, std::int32_t> patch_of_node;
   const std::size_t first = patches_.size();
   for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
+    HeedStop();
     const double modulus = given[e - group.tet_begin];
     if (modulus == 0) continue;
     for (int c = 0; c < 4; ++c) {
@@ -318,6 +325,7 @@ void TetModel::AddPatches(const TetGroup& group, std::span<const double> given) 
 void TetModel::SetSmoothing() {
   std::vector<std::map<std::int32_t, double>> rows(patches_.size());
   for (std::size_t e = 0; e < tetrahedra(); ++e) {
+    HeedStop();
     const VolumePatches::Corners& corners = patches_.of_element[e];
     if (corners[0] == VolumePatches::kNone) continue;
     for (const std::int32_t n : corners) {
@@ -326,6 +334,7 @@ void TetModel::SetSmoothing() {
   }
   patches_.row.push_back(0);
   for (const auto& row : rows) {
+    HeedStop();
     for (const auto& [m, weight] : row) {
       patches_.neighbour.push_back(m);
       patches_.weight.push_back(weight);
@@ -360,6 +369,7 @@ void TetModel::SetChunks() {
     std::vector<std::int32_t> local_of(nodes(), -1);
     std::size_t g = 0;
     for (const std::size_t chunk_end : building_.chunk_ends) {
+      HeedStop();
       Chunk chunk;
       if (!chunks_.chunks.empty()) {
         chunk.tet_begin = chunks_.chunks.back().tet_end;
@@ -400,6 +410,7 @@ void TetModel::SetBlocks() {
   arrays.points.resize(points * blocks);
   arrays.fibres.resize(blocks);
   for (const Chunk& chunk : chunks_.chunks) {
+    HeedStop();
     for (std::size_t slot = kBlock * chunk.block_begin; slot < kBlock * chunk.block_end; ++slot) {
       const std::size_t e = std::min(chunk.tet_begin + (slot - kBlock * chunk.block_begin), chunk.tet_end - 1);
       const std::size_t block = slot / kBlock, lane = slot % kBlock;
@@ -480,8 +491,8 @@ std::vector<std::int32_t> TetModel::NodesOfRegion(const Region& region, const Te
   return nodes;
 }
 
-// What loads on a region act on. With quadratic elements a face acts on its mid-edge nodes, because the corner functions
-// integrate to zero.
+// What loads on a region act on. With quadratic elements a face acts on its mid-edge nodes, because the corner
+// functions integrate to zero.
 LoadedRegion TetModel::LoadedRegionIn(const Region& region, const TetBody& body) const {
   const auto first = static_cast<std::int32_t>(body.node_begin);
   LoadedRegion loaded;
@@ -503,7 +514,6 @@ void TetModel::AddLoads(const Body& source, const TetBody& body) {
   for (const Load& load : source.loads) {
     const auto forces = NodalForcesOf(load, LoadedRegionIn(source.regions[load.region], body));
     NodalLoad& entry = loads_.emplace_back();
-    entry.scale = &load.scale;
     for (const auto& [n, force] : forces) {
       entry.nodes.push_back(n);
       entry.forces.push_back(force);
@@ -514,7 +524,6 @@ void TetModel::AddLoads(const Body& source, const TetBody& body) {
 void TetModel::AddSupports(const Body& source, std::int32_t body_index) {
   for (const Constraint& constraint : source.constraints) {
     Support& support = supports_.emplace_back();
-    support.source = &constraint;
     support.body = body_index;
     support.nodes = NodesOfRegion(source.regions[constraint.region], bodies_[body_index]);
     for (const std::int32_t n : support.nodes) {

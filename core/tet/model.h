@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <stop_token>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "core/base/stop.h"
 #include "core/linalg/nodal_vector.h"
 #include "core/scene/nodal_forces.h"
 #include "core/scene/scene.h"
@@ -32,7 +34,7 @@ struct TetBody {
   std::size_t node_begin = 0, node_end = 0;
   std::size_t mesh_node_end = 0;
   std::size_t tet_begin = 0, tet_end = 0;
-  std::size_t activation = 0;  // index of the body's own curve in activations()
+  std::size_t activation = 0;  // index of the body's own one in Controls::activations
   // Viscous stress S_v = 2 damping_mu Edot + damping_lambda tr(Edot) I [Pa s].
   double damping_mu = 0, damping_lambda = 0;
   double mass_damping = 0;  // [1/s]
@@ -49,14 +51,12 @@ struct TetGroup {
 
 // A load as nodal forces at scale 1.
 struct NodalLoad {
-  const Curve* scale = nullptr;
   std::vector<std::int32_t> nodes;  // ascending
   std::vector<Vec3> forces;         // [N]
 };
 
 // A region with prescribed motion.
 struct Support {
-  const Constraint* source = nullptr;
   std::int32_t body = 0;
   std::vector<std::int32_t> nodes;  // ascending
   // The components of each node that belong to this support. A component prescribed by two supports belongs to the
@@ -75,8 +75,8 @@ struct ContactNode {
 // that neighbours in space are neighbours in memory. Immutable; may be shared between threads.
 class TetModel {
  public:
-  // CheckScene must have accepted the scene, which must outlive the model.
-  explicit TetModel(const Scene& scene);
+  // CheckScene must have accepted the scene, which must outlive the model. Throws Stopped after a request of `stop`.
+  explicit TetModel(const Scene& scene, std::stop_token stop = {});
 
   const Scene& scene() const { return *scene_; }
   const std::vector<TetBody>& bodies() const { return bodies_; }
@@ -113,8 +113,7 @@ class TetModel {
   const std::vector<std::int32_t>& source_tetrahedron() const { return source_tetrahedron_; }
   const VolumePatches& patches() const { return patches_; }
 
-  // Activation curves of all bodies, and for each element its curve and factor.
-  const std::vector<const Curve*>& activations() const { return activations_; }
+  // The activation of an element: its own one of Controls::activations times its factor.
   double ActivationOf(std::size_t tet, std::span<const double> activations) const;
   // The elements in the layout of the loops over them.
   const ElementChunks& chunks() const { return chunks_; }
@@ -220,11 +219,13 @@ class TetModel {
     std::vector<std::int32_t> activation_of;
     std::vector<double> activation_scale;
     std::vector<std::size_t> chunk_ends;  // in elements
+    std::stop_token stop;
   };
+  void HeedStop() const { ThrowIfStopped(building_.stop); }
   Building building_;
   std::vector<std::int32_t> source_tetrahedron_;
   std::vector<std::int32_t> law_of_;
-  std::vector<const Curve*> activations_;
+  std::size_t activations_ = 0;  // of the bodies so far, with those of their parts
   VolumePatches patches_;
   ElementChunks chunks_;
   std::variant<BlockArrays<double>, BlockArrays<float>> blocks_;

@@ -32,12 +32,14 @@ bool AllUpright(const TetModel& model, const NodalVector& x) {
 }  // namespace
 
 NewtonSolver::NewtonSolver(const TetModel& model, ThreadTeam& team, Profile* profile)
-    : model_(model), team_(team), system_(model, profile) {}
+    : model_(model), team_(team), system_(model, profile, team.stop()) {}
 
 NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const NodalVector& target,
                                  const NewtonOptions& options, NodalVector& x, std::vector<double>& pressure) {
   NewtonResult result;
   pressure.resize(model_.patches().size());
+  is_evaluated_ = false;
+  if (options.guess != nullptr) StartNearer(potential, *options.guess, pressure, x);
   system_.StartStep();
   const NodalVector x_start = x;
   const std::vector<double> pressure_start = pressure;
@@ -52,15 +54,12 @@ NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const No
   // from rest.
   for (int attempt = 0; attempt < 2 && result.end == NewtonResult::End::kInvalid; ++attempt) {
     if (attempt == 1) x = model_.rest_positions();
-    const bool untangled = Untangle(target, options.stop, x, result);
-    if (result.end == NewtonResult::End::kStopped) break;
-    if (!untangled) continue;
+    if (!Untangle(target, x, result)) continue;
     pressure.assign(pressure.size(), 0.0);
     Iterate(potential, target, options, x, pressure, result);
     if (attempt == 0 && result.end == NewtonResult::End::kNotConverged) result.end = NewtonResult::End::kInvalid;
   }
   result.solves = system_.solves();
-  is_evaluated_ = false;
   return result;
 }
 
@@ -82,10 +81,6 @@ void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVec
   result.end = NewtonResult::End::kNotConverged;
   double projection = 0, norm_before = 0;
   for (int iteration = 0;; ++iteration) {
-    if (options.stop.stop_requested()) {
-      result.end = NewtonResult::End::kStopped;
-      return;
-    }
     const bool prescribed_move = FindRemaining(target, x);
     if (!is_evaluated_) now_ = system_.Evaluate(potential, x, pressure, team_, force_);
     is_evaluated_ = false;
@@ -119,8 +114,7 @@ void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVec
 
 // Moves prescribed components to their targets and gives all elements positive volume by projected Newton on
 // UntanglingLaw, whose energy decreases in every step. False if an element stays inverted.
-bool NewtonSolver::Untangle(const NodalVector& target, const std::stop_token& stop, NodalVector& x,
-                            NewtonResult& result) {
+bool NewtonSolver::Untangle(const NodalVector& target, NodalVector& x, NewtonResult& result) {
   IncrementalPotential potential;
   potential.untangling = true;
   const NodalVector no_load(x.size(), Vec3::Zero());
@@ -134,10 +128,6 @@ bool NewtonSolver::Untangle(const NodalVector& target, const std::stop_token& st
   PlacePrescribed(target, x);
   remaining_.assign(x.size(), Vec3::Zero());
   for (int i = 0; i < kMaxUntangling; ++i) {
-    if (stop.stop_requested()) {
-      result.end = NewtonResult::End::kStopped;
-      return false;
-    }
     potential.inertia_centre = x;
     const NewtonSystem::Evaluation now = system_.Evaluate(potential, x, no_pressure, team_, force_);
     now_ = now;

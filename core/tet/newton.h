@@ -2,7 +2,6 @@
 #define FASCICLE_CORE_TET_NEWTON_H_
 
 #include <memory>
-#include <stop_token>
 
 #include "core/tet/newton_system.h"
 
@@ -11,11 +10,12 @@ namespace fascicle {
 struct NewtonOptions {
   double tolerance = 1e-8;  // for the force, relative to the norm of all element forces
   int max_iterations = 50;
-  std::stop_token stop;  // checked before every iteration
+  // A start in place of x, taken if it is valid and has a smaller force; may be null.
+  const NodalVector* guess = nullptr;
 };
 
 struct NewtonResult {
-  enum class End { kConverged, kNotConverged, kInvalid, kStopped };
+  enum class End { kConverged, kNotConverged, kInvalid };
   End end = End::kNotConverged;
   int iterations = 0;    // factorizations
   double residual = 0;   // largest |force| on an unknown component over the norm of all element forces [1]
@@ -33,7 +33,7 @@ struct NewtonResult {
 // first. If its inertia is not that of a minimum, it is blended with the projected tangent, as little as necessary,
 // because the projected one is far stiffer and converges slowly. Prescribed components move in the first iterations;
 // the rest of the body follows by the linear system. A start with inverted elements, or a prescribed motion that
-// inverts some, is first repaired with UntanglingLaw. Not thread-safe.
+// inverts some, is first repaired with UntanglingLaw. Not thread-safe; may end early by Stopped (core/base/stop.h).
 class NewtonSolver {
  public:
   // Model, team and profile must outlive the solver. Stages are timed in `profile`, which may be null.
@@ -44,14 +44,12 @@ class NewtonSolver {
   NewtonResult Solve(const IncrementalPotential& potential, const NodalVector& target, const NewtonOptions& options,
                      NodalVector& x, std::vector<double>& pressure);
 
-  // Call before Solve: sets x to `guess` if the guess is valid and has a smaller force.
+ private:
   void StartNearer(const IncrementalPotential& potential, const NodalVector& guess, std::span<const double> pressure,
                    NodalVector& x);
-
- private:
   double TakeStep(const IncrementalPotential& potential, double projection, bool same_point, bool prescribed_move,
                   NodalVector& x, std::vector<double>& pressure);
-  bool Untangle(const NodalVector& target, const std::stop_token& stop, NodalVector& x, NewtonResult& result);
+  bool Untangle(const NodalVector& target, NodalVector& x, NewtonResult& result);
   void Iterate(const IncrementalPotential& potential, const NodalVector& target, const NewtonOptions& options,
                NodalVector& x, std::vector<double>& pressure, NewtonResult& result);
   void Move(const NodalVector& x, double part);

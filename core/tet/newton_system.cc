@@ -52,10 +52,10 @@ double ForceFloor(const TetModel& model) {
 
 }  // namespace
 
-NewtonSystem::NewtonSystem(const TetModel& model, Profile* profile)
+NewtonSystem::NewtonSystem(const TetModel& model, Profile* profile, const std::stop_token& stop)
     : model_(model),
       profile_(profile),
-      assembly_(model),
+      assembly_(model, stop),
       force_floor_(ForceFloor(model)),
       energy_rounding_(EnergyRounding(model)) {
   unknowns_ = model.patches().size();

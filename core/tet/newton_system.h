@@ -24,7 +24,7 @@ struct LinearSolves {
 class NewtonSystem {
  public:
   // Finds the sparsity pattern. Model and profile must outlive the system.
-  explicit NewtonSystem(const TetModel& model, Profile* profile = nullptr);
+  explicit NewtonSystem(const TetModel& model, Profile* profile = nullptr, const std::stop_token& stop = {});
 
   // Force f on all nodes (unknown and prescribed) and the terms of the merit function at x with pressures p.
   struct Evaluation {

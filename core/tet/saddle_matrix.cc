@@ -49,18 +49,20 @@ void SaddleMatrix::IsolatePrescribed(ThreadTeam& team) {
   }
 }
 
-SaddleAssembly::SaddleAssembly(const TetModel& model) : model_(model) {
+SaddleAssembly::SaddleAssembly(const TetModel& model, const std::stop_token& stop) : model_(model) {
   for (const Vec3& m : model.inverse_mass()) matrix_.free.push_back({m[0] != 0, m[1] != 0, m[2] != 0});
-  model.VisitElement([&]<class Element>(Element) { FindPattern<Element>(); });
+  model.VisitElement([&]<class Element>(Element) { FindPattern<Element>(stop); });
 }
 
 template <class Element>
-void SaddleAssembly::FindPattern() {
+void SaddleAssembly::FindPattern(const std::stop_token& stop) {
   constexpr int kNodes = Element::kNodes;
   const VolumePatches& patches = model_.patches();
-  matrix_.pattern =
-      PatternOfElements(model_.nodes(), model_.tetrahedra(), [&](std::size_t e) { return model_.NodesOf<Element>(e); });
-  layout_.emplace(model_, matrix_.pattern);
+  matrix_.pattern = PatternOfElements(model_.nodes(), model_.tetrahedra(), [&](std::size_t e) {
+    ThrowIfStopped(stop);
+    return model_.NodesOf<Element>(e);
+  });
+  layout_.emplace(model_, matrix_.pattern, stop);
   matrix_.A.resize(matrix_.pattern.blocks());
 
   matrix_.C.resize(patches.size());
@@ -80,6 +82,7 @@ void SaddleAssembly::FindPattern() {
   PatternBuilder raw;
   std::vector<std::int32_t> columns;
   for (std::size_t n = 0; n < patches.size(); ++n) {
+    ThrowIfStopped(stop);
     columns.clear();
     for (std::int32_t k = corner_begin_[n]; k < corner_begin_[n + 1]; ++k) {
       const auto nodes = model_.NodesOf<Element>(corners_[k] / 4);

@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_TET_SADDLE_MATRIX_H_
 
 #include <optional>
+#include <stop_token>
 
 #include "core/linalg/block_matrix.h"
 #include "core/tet/element_matrices.h"
@@ -43,7 +44,7 @@ struct SaddleMatrix {
 class SaddleAssembly {
  public:
   // Finds the sparsity pattern. The model must outlive the assembly.
-  explicit SaddleAssembly(const TetModel& model);
+  explicit SaddleAssembly(const TetModel& model, const std::stop_token& stop = {});
 
   // Assembles at positions x with acting pressures W p [Pa] and volume ratios theta of the patches. Exact tangents.
   void Assemble(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> acting,
@@ -59,7 +60,7 @@ class SaddleAssembly {
 
  private:
   template <class Element>
-  void FindPattern();
+  void FindPattern(const std::stop_token& stop);
   void FindSmoothedPattern();
   template <class Element>
   void AssembleVolumes(const NodalVector& x, ThreadTeam& team);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace fascicle {
 namespace {
@@ -35,10 +34,9 @@ TetSolver::TetSolver(const TetModel& model, ThreadTeam& team, Profile* profile)
   newton_ = std::make_unique<NewtonSolver>(model, team, profile);
 }
 
-TetState TetSolver::InitialState() {
+TetState TetSolver::InitialState(const Controls& start) {
   const StageTimer timer(profile_, "initial state");
   TetState state;
-  controls_next_.Set(model_, 0);
   state.positions = model_.InitialPositions();
   state.velocities.assign(model_.nodes(), Vec3::Zero());
   if (IsImplicit()) {
@@ -46,19 +44,19 @@ TetState TetSolver::InitialState() {
     state.previous_positions = state.positions;
     state.pressures.assign(model_.patches().size(), 0.0);
   }
-  PrescribePositions(model_, controls_next_, state.positions);
-  PrescribeVelocities(model_, controls_next_, state.velocities);
+  PrescribePositions(model_, start, state.positions);
+  PrescribeVelocities(model_, start, state.velocities);
   const ForceReport forces =
       UpdateForce(method_.stepping == Stepping::kExplicit && model_.has_strain_damping() ? &state.velocities : nullptr,
-                  FibreDrive{controls_next_.activation}, state);
-  if (method_.stepping == Stepping::kNewmark && forces.valid) SetFirstAcceleration(state);
-  state.stable.activation.assign(model_.activations().size(), 0.0);
+                  FibreDrive{start.activations}, state);
+  if (method_.stepping == Stepping::kNewmark && forces.valid) SetFirstAcceleration(start, state);
+  state.stable.activation.assign(start.activations.size(), 0.0);
   return state;
 }
 
 // a = M^-1 (f + loads) - a_m v. With a = 0 the first step of a released body would be of first order.
-void TetSolver::SetFirstAcceleration(TetState& state) {
-  ExternalForce(model_, controls_next_, team_, external_next_);
+void TetSolver::SetFirstAcceleration(const Controls& start, TetState& state) {
+  ExternalForce(model_, start, team_, external_next_);
   for (std::size_t n = 0; n < model_.nodes(); ++n) {
     const Vec3 damping = model_.mass_damping()[n] * state.velocities[n];
     state.accelerations[n] =
@@ -66,60 +64,69 @@ void TetSolver::SetFirstAcceleration(TetState& state) {
   }
 }
 
-StepReport TetSolver::Advance(TetState& state, double end, std::stop_token stop) {
-  stop_ = std::move(stop);
-  return IsImplicit() ? AdvanceImplicit(state, end) : AdvanceExplicit(state, end);
+StepProposal TetSolver::ProposeStep(TetState& state, const Controls& now, double end) {
+  return IsImplicit() ? ProposeImplicit(state, end) : ProposeExplicit(state, now, end);
 }
 
-StepReport TetSolver::AdvanceExplicit(TetState& state, double end) {
-  if (IsStableStepDue(state)) RefreshStableStep(state);
-  for (;;) {
-    const double target = TargetStep(state);
-    const double remaining = end - state.time;
-    // The tolerance prevents rounding from adding a step to a whole number of them.
-    const double steps = std::ceil(remaining / target * (1 - 1e-9));
-    if (!(steps < kMostSteps)) {
-      StepReport report;
-      report.problem = std::isnan(target) ? StepProblem::kNotFinite : StepProblem::kStepTooSmall;
-      return Fail(state, report);
-    }
-    const double next_time = steps <= 1 ? end : state.time + remaining / steps;
-    StepReport report = Step(state, next_time, next_);
-    if (report.problem == StepProblem::kNone) report.problem = Judge(state, next_, report);
-    if (report.problem == StepProblem::kNone) {
-      next_.peak_kinetic = std::max(state.peak_kinetic, report.kinetic);
-      Accept(state);
-      return report;
-    }
-    if (state.cuts >= kMaxCuts) return Fail(state, report);
-    ++state.cuts;
-    state.last_cut = state.step;
-    if (state.stable.found_at != state.step) RefreshStableStep(state);
+StepProposal TetSolver::ProposeExplicit(TetState& state, const Controls& now, double end) {
+  if (IsStableStepDue(state, now)) RefreshStableStep(state, now);
+  const double target = TargetStep(state);
+  const double remaining = end - state.time;
+  // The tolerance prevents rounding from adding a step to a whole number of them.
+  const double steps = std::ceil(remaining / target * (1 - 1e-9));
+  StepProposal proposal;
+  if (!(steps < kMostSteps)) {
+    proposal.problem = std::isnan(target) ? StepProblem::kNotFinite : StepProblem::kStepTooSmall;
+    proposal.bad = FindThinnestElement(model_, state.positions);
+    return proposal;
   }
+  proposal.time = steps <= 1 ? end : state.time + remaining / steps;
+  proposal.dt = proposal.time - state.time;
+  return proposal;
 }
 
-double TetSolver::StableStepAt(const TetState& state) {
+StepReport TetSolver::Step(TetState& state, const Controls& now, const Controls& next, double dt) {
+  StepReport report = Attempt(state, now, next, dt, next_);
+  if (report.problem == StepProblem::kNone && !IsImplicit()) report.problem = Judge(state, next_, report);
+  if (report.problem == StepProblem::kNone) {
+    IsImplicit() ? AcceptImplicit(state, report, dt) : AcceptExplicit(state, report);
+    return report;
+  }
+  report.try_shorter = CutStep(state, now, dt);
+  if (!report.try_shorter) FindWhere(state, next, report);
+  return report;
+}
+
+// Makes the next proposal shorter; false if it would be too short.
+bool TetSolver::CutStep(TetState& state, const Controls& now, double dt) {
+  if (IsImplicit()) return CutImplicit(state, dt);
+  if (state.cuts >= kMaxCuts) return false;
+  if (state.stable.found_at != state.step) RefreshStableStep(state, now);
+  ++state.cuts;
+  state.last_cut = state.step;
+  return true;
+}
+
+double TetSolver::StableStepAt(const TetState& state, const Controls& now) {
   const StageTimer timer(profile_, "stable step");
-  controls_now_.Set(model_, state.time);
-  return LargestStableStep(model_, FibreDrive{controls_now_.activation}, state.positions,
+  return LargestStableStep(model_, FibreDrive{now.activations}, state.positions,
                            method_.stepping == Stepping::kExplicit, team_, forces_, stable_step_);
 }
 
-bool TetSolver::IsStableStepDue(const TetState& state) {
+bool TetSolver::IsStableStepDue(const TetState& state, const Controls& now) const {
   const StableStep& stable = state.stable;
   if (stable.found_at < 0 || state.step >= stable.found_at + stable.interval) return true;
   if (state.smallest_ratio < kRatioChange * stable.smallest_ratio) return true;
-  for (std::size_t k = 0; k < model_.activations().size(); ++k) {
-    const double now = model_.activations()[k]->At(state.time);
-    if (std::abs(now - stable.activation[k]) > kActivationChange) return true;
+  for (std::size_t k = 0; k < now.activations.size(); ++k) {
+    if (std::abs(now.activations[k] - stable.activation[k]) > kActivationChange) return true;
   }
   return false;
 }
 
-void TetSolver::RefreshStableStep(TetState& state) {
+void TetSolver::RefreshStableStep(TetState& state, const Controls& now) {
   StableStep& stable = state.stable;
   const double before = stable.limit;
-  stable.limit = StableStepAt(state);
+  stable.limit = StableStepAt(state, now);
   if (stable.found_at < 0) {
     stable.interval = kFirstInterval;
   } else {
@@ -132,7 +139,7 @@ void TetSolver::RefreshStableStep(TetState& state) {
   }
   stable.found_at = state.step;
   stable.smallest_ratio = state.smallest_ratio;
-  stable.activation = controls_now_.activation;
+  stable.activation = now.activations;
 }
 
 // A fixed step that is not stable is halved until it is.
@@ -156,7 +163,8 @@ StepProblem TetSolver::Judge(const TetState& now, const TetState& next, const St
   return too_stiff ? StepProblem::kUnstable : StepProblem::kNone;
 }
 
-void TetSolver::Accept(TetState& state) {
+void TetSolver::AcceptExplicit(TetState& state, const StepReport& report) {
+  next_.peak_kinetic = std::max(state.peak_kinetic, report.kinetic);
   next_.stable = state.stable;
   next_.cuts = state.cuts;
   next_.last_cut = state.last_cut;
@@ -167,14 +175,13 @@ void TetSolver::Accept(TetState& state) {
   std::swap(state, next_);
 }
 
-// Adds where the step failed: the elements that it inverted, or else the thinnest element, which limits the step.
-StepReport TetSolver::Fail(const TetState& state, StepReport report) const {
+// Finds where a step failed: the elements that it inverted, or else the thinnest element, which limits the step.
+void TetSolver::FindWhere(const TetState& state, const Controls& next, StepReport& report) const {
   if (report.problem == StepProblem::kInvertedElement) {
-    report.bad = FindBadElements(model_, FibreDrive{controls_next_.activation}, next_.positions);
+    report.bad = FindBadElements(model_, FibreDrive{next.activations}, next_.positions);
     if (!report.bad.elements.empty() && !report.bad.inverted) report.problem = StepProblem::kNotFinite;
   }
   if (report.bad.elements.empty()) report.bad = FindThinnestElement(model_, state.positions);
-  return report;
 }
 
 }  // namespace fascicle

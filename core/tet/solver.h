@@ -2,7 +2,6 @@
 #define FASCICLE_CORE_TET_SOLVER_H_
 
 #include <memory>
-#include <stop_token>
 
 #include "core/base/profile.h"
 #include "core/base/step_problem.h"
@@ -18,8 +17,9 @@ namespace fascicle {
 
 struct StepReport {
   StepProblem problem = StepProblem::kNone;
-  int iterations = 0;   // of linear solves, or of Newton's method
-  LinearSolves solves;  // of Newton's method
+  bool try_shorter = false;  // the step failed, and ProposeStep has a shorter one
+  int iterations = 0;        // of linear solves, or of Newton's method
+  LinearSolves solves;       // of Newton's method
   // Kinetic energy of the free components at the half step [J].
   double kinetic = 0;
   // Curvature of the energy along this step's motion times dt^2: a Rayleigh quotient of M^-1 K. The central difference
@@ -28,48 +28,62 @@ struct StepReport {
   BadElements bad;  // where a step failed
 };
 
-// Steps a model in time by Lagrangian finite volumes [Teran 2003]. Not thread-safe.
+// Steps a model in time by Lagrangian finite volumes [Teran 2003]. Not thread-safe. All functions may end early by
+// Stopped (core/base/stop.h), which leaves states unchanged.
 class TetSolver {
  public:
   // Model, team and profile must outlive the solver. Stages of a step are timed in `profile`, which may be null.
   TetSolver(const TetModel& model, ThreadTeam& team, Profile* profile = nullptr);
 
-  // The state at time 0: at rest, with prescribed components at their values.
-  TetState InitialState();
+  // The state at time 0: at rest, with prescribed components at their values. start: the controls at time 0.
+  TetState InitialState(const Controls& start);
 
-  // Makes one step towards `end` [s], which it never passes and hits exactly. A step that inverts or crushes an
-  // element, gives non-finite values or gains energy from instability is repeated with half the length, up to kMaxCuts
-  // times. Implicit and quasi-static steps are as long as Newton's method allows: the first attempt goes to `end`; the
-  // length is halved when the iteration fails and doubled after an easy step. If a step fails, the state keeps its time
-  // and motion. Newton iterations end early when `stop` requests it.
-  StepReport Advance(TetState& state, double end, std::stop_token stop = {});
+  // The next step from `state`, under the controls at its time, towards `end` [s], which it never passes and hits
+  // exactly. Explicit and mixed steps are within the stable step, which is found again when it is due, and half as long
+  // after each failed attempt. Implicit and quasi-static steps are as long as Newton's method allows: the first one
+  // goes to `end`; the length is halved when the iteration fails and doubled after an easy step. Problems: kNotFinite,
+  // kStepTooSmall.
+  StepProposal ProposeStep(TetState& state, const Controls& now, double end);
 
-  // One attempt to step from `now` to `next_time`, without repetition. Sets all of `next` except for what Advance
-  // manages.
-  StepReport Step(const TetState& now, double next_time, TetState& next);
+  // Makes a step of dt [s] from the controls `now` to `next` and their time. A step that inverts or crushes an element,
+  // gives non-finite values, gains energy from instability or finds no equilibrium leaves time and motion unchanged;
+  // try_shorter then says whether ProposeStep has a shorter one (kMaxCuts times for explicit and mixed steps).
+  StepReport Step(TetState& state, const Controls& now, const Controls& next, double dt);
+
+  // One attempt to make a step. Sets all of `made` except for what ProposeStep and Step manage.
+  StepReport Attempt(const TetState& now, const Controls& controls_now, const Controls& controls_next, double dt,
+                     TetState& made);
 
   // The largest stable step at a state [s], see LargestStableStep.
-  double StableStepAt(const TetState& state);
+  double StableStepAt(const TetState& state, const Controls& now);
 
   static constexpr int kMaxCuts = 10;
 
  private:
+  // The controls at both ends of a step, and its length.
+  struct StepControls {
+    const Controls& now;
+    const Controls& next;
+    double dt;  // [s]
+  };
   // Central difference method in kick-drift-kick form; viscous forces use the velocity of the half step.
-  StepReport StepExplicit(const TetState& now, double dt, TetState& next);
+  StepReport StepExplicit(const TetState& now, const StepControls& step, TetState& next);
   // Explicit elastic forces, implicit damping [Teran 2003, 4.3].
-  StepReport StepMixed(const TetState& now, double dt, TetState& next);
+  StepReport StepMixed(const TetState& now, const StepControls& step, TetState& next);
 
   // Steppings that solve for the end of the step: implicit_step.cc.
-  StepReport StepImplicit(const TetState& now, double dt, TetState& next);
-  StepReport AdvanceExplicit(TetState& state, double end);
-  StepReport AdvanceImplicit(TetState& state, double end);
+  StepReport StepImplicit(const TetState& now, const StepControls& step, TetState& next);
+  StepProposal ProposeExplicit(TetState& state, const Controls& now, double end);
+  StepProposal ProposeImplicit(const TetState& state, double end) const;
+  void AcceptImplicit(TetState& state, const StepReport& report, double dt);
+  bool CutImplicit(TetState& state, double dt) const;
   bool IsImplicit() const { return method_.stepping != Stepping::kExplicit && method_.stepping != Stepping::kMixed; }
-  void SetFirstAcceleration(TetState& state);
+  void SetFirstAcceleration(const Controls& start, TetState& state);
   double SmallestRatio(const NodalVector& x) const;
-  FibreDrive DriveOf(const TetState& now, double dt) const;
+  FibreDrive DriveOf(const TetState& now, const StepControls& step) const;
 
-  void UpdateControls(double now, double next);
-  void Drift(const TetState& now, double dt, TetState& next);
+  void UpdateExternalForces(const StepControls& step);
+  void Drift(const TetState& now, const StepControls& step, TetState& next);
   CgResult SolveDamping(const NodalVector& x, const NodalVector& internal, const NodalVector& external,
                         double half_step, TetState& next);
   ForceReport UpdateForce(const NodalVector* viscous_velocity, const FibreDrive& drive, TetState& next);
@@ -77,20 +91,19 @@ class TetSolver {
   void MeasureMotion(const TetState& now, const TetState& next, StepReport& report) const;
   void AddExternalWork(const TetState& now, TetState& next) const;
 
-  bool IsStableStepDue(const TetState& state);
-  void RefreshStableStep(TetState& state);
+  bool IsStableStepDue(const TetState& state, const Controls& now) const;
+  void RefreshStableStep(TetState& state, const Controls& now);
   double TargetStep(const TetState& state) const;
   StepProblem Judge(const TetState& now, const TetState& next, const StepReport& report) const;
-  void Accept(TetState& state);
-  StepReport Fail(const TetState& state, StepReport report) const;
+  void AcceptExplicit(TetState& state, const StepReport& report);
+  bool CutStep(TetState& state, const Controls& now, double dt);
+  void FindWhere(const TetState& state, const Controls& next, StepReport& report) const;
 
   const TetModel& model_;
   ThreadTeam& team_;
   Profile* const profile_;
   const TetMethod& method_;
   // Scratch memory: nothing here outlives a step.
-  std::stop_token stop_;
-  TetControls controls_now_, controls_next_;
   NodalVector external_now_, external_next_;
   NodalVector right_side_, inverse_diagonal_;
   ForceWorkspace forces_;

@@ -14,36 +14,32 @@ StepProblem ProblemOf(const ForceReport& report, const CgResult& solve = {true, 
 
 }  // namespace
 
-StepReport TetSolver::Step(const TetState& now, double next_time, TetState& next) {
-  const double dt = next_time - now.time;
-  next.time = next_time;
-  next.step = now.step + 1;
-  next.time_step = dt;
-  next.dissipated = now.dissipated;
-  next.iterations = now.iterations;
-  UpdateControls(now.time, next_time);
-  const StepReport report = IsImplicit()                              ? StepImplicit(now, dt, next)
-                            : method_.stepping == Stepping::kExplicit ? StepExplicit(now, dt, next)
-                                                                      : StepMixed(now, dt, next);
-  AddExternalWork(now, next);
+StepReport TetSolver::Attempt(const TetState& now, const Controls& controls_now, const Controls& controls_next,
+                              double dt, TetState& made) {
+  const StepControls step = {controls_now, controls_next, dt};
+  made.time = controls_next.time;
+  made.step = now.step + 1;
+  made.time_step = dt;
+  made.dissipated = now.dissipated;
+  made.iterations = now.iterations;
+  UpdateExternalForces(step);
+  const StepReport report = IsImplicit()                              ? StepImplicit(now, step, made)
+                            : method_.stepping == Stepping::kExplicit ? StepExplicit(now, step, made)
+                                                                      : StepMixed(now, step, made);
+  AddExternalWork(now, made);
   return report;
 }
 
-// Evaluates controls and external forces at both ends of the step.
-void TetSolver::UpdateControls(double now, double next) {
-  {
-    const StageTimer timer(profile_, "controls");
-    controls_now_.Set(model_, now);
-    controls_next_.Set(model_, next);
-  }
+// Loads and gravity at both ends of the step.
+void TetSolver::UpdateExternalForces(const StepControls& step) {
   const StageTimer timer(profile_, "external force");
-  ExternalForce(model_, controls_now_, team_, external_now_);
-  ExternalForce(model_, controls_next_, team_, external_next_);
+  ExternalForce(model_, step.now, team_, external_now_);
+  ExternalForce(model_, step.next, team_, external_next_);
 }
 
-StepReport TetSolver::StepExplicit(const TetState& now, double dt, TetState& next) {
+StepReport TetSolver::StepExplicit(const TetState& now, const StepControls& step, TetState& next) {
   StepReport report;
-  const double h = dt / 2;
+  const double dt = step.dt, h = dt / 2;
   const NodalVector& inverse_mass = model_.inverse_mass();
   const std::vector<double>& a = model_.mass_damping();
 
@@ -57,10 +53,10 @@ StepReport TetSolver::StepExplicit(const TetState& now, double dt, TetState& nex
     });
   }
   // x' = x + dt v_half
-  Drift(now, dt, next);
+  Drift(now, step, next);
   // f' = f(x', v_half)
   const ForceReport forces =
-      UpdateForce(model_.has_strain_damping() ? &next.velocities : nullptr, DriveOf(now, dt), next);
+      UpdateForce(model_.has_strain_damping() ? &next.velocities : nullptr, DriveOf(now, step), next);
   MeasureMotion(now, next, report);
   next.dissipated += dt * forces.dissipated_power;
   if (model_.has_mass_damping()) {
@@ -75,21 +71,22 @@ StepReport TetSolver::StepExplicit(const TetState& now, double dt, TetState& nex
       next.velocities[n] =
           (next.velocities[n] + h * inverse_mass[n].cwiseProduct(next.force[n] + external_next_[n])) / (1 + h * a[n]);
     });
-    PrescribeVelocities(model_, controls_next_, next.velocities);
+    PrescribeVelocities(model_, step.next, next.velocities);
   }
   report.problem = ProblemOf(forces);
   return report;
 }
 
-StepReport TetSolver::StepMixed(const TetState& now, double dt, TetState& next) {
+StepReport TetSolver::StepMixed(const TetState& now, const StepControls& step, TetState& next) {
   StepReport report;
+  const double dt = step.dt;
   // (M - dt/2 D) v_half = M v + dt/2 f(x)
   next.velocities = now.velocities;
   const CgResult first = SolveDamping(now.positions, now.force, external_now_, dt / 2, next);
   // x' = x + dt v_half
-  Drift(now, dt, next);
+  Drift(now, step, next);
   // f' = f(x')
-  const ForceReport forces = UpdateForce(nullptr, DriveOf(now, dt), next);
+  const ForceReport forces = UpdateForce(nullptr, DriveOf(now, step), next);
   MeasureMotion(now, next, report);
   report.problem = ProblemOf(forces, first);
   report.iterations = first.iterations;
@@ -103,12 +100,13 @@ StepReport TetSolver::StepMixed(const TetState& now, double dt, TetState& next) 
 }
 
 // x' = x + dt v_half; prescribed components get their target position and, in v_half, the velocity that leads there.
-void TetSolver::Drift(const TetState& now, double dt, TetState& next) {
+void TetSolver::Drift(const TetState& now, const StepControls& step, TetState& next) {
   const StageTimer timer(profile_, "positions");
+  const double dt = step.dt;
   next.positions.resize(model_.nodes());
   ForNodes(team_, model_.nodes(),
            [&](std::size_t n) { next.positions[n] = now.positions[n] + dt * next.velocities[n]; });
-  PrescribePositions(model_, controls_next_, next.positions);
+  PrescribePositions(model_, step.next, next.positions);
   for (const Support& support : model_.supports()) {
     for (std::size_t i = 0; i < support.nodes.size(); ++i) {
       const std::int32_t n = support.nodes[i];
@@ -120,8 +118,8 @@ void TetSolver::Drift(const TetState& now, double dt, TetState& next) {
 }
 
 // The fibre drive at the end of a step.
-FibreDrive TetSolver::DriveOf(const TetState& now, double dt) const {
-  return {controls_next_.activation, &now.positions, 1 / dt};
+FibreDrive TetSolver::DriveOf(const TetState& now, const StepControls& step) const {
+  return {step.next.activations, &now.positions, 1 / step.dt};
 }
 
 ForceReport TetSolver::UpdateForce(const NodalVector* viscous_velocity, const FibreDrive& drive, TetState& next) {

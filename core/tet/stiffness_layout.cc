@@ -6,12 +6,12 @@
 
 namespace fascicle {
 
-StiffnessLayout::StiffnessLayout(const TetModel& model, const BlockPattern& pattern) {
-  model.VisitElement([&]<class Element>(Element) { SetPlaces<Element>(model, pattern); });
+StiffnessLayout::StiffnessLayout(const TetModel& model, const BlockPattern& pattern, const std::stop_token& stop) {
+  model.VisitElement([&]<class Element>(Element) { SetPlaces<Element>(model, pattern, stop); });
 }
 
 template <class Element>
-void StiffnessLayout::SetPlaces(const TetModel& model, const BlockPattern& pattern) {
+void StiffnessLayout::SetPlaces(const TetModel& model, const BlockPattern& pattern, const std::stop_token& stop) {
   pairs_ = Element::kNodes * (Element::kNodes + 1) / 2;
   const ElementChunks& chunks = model.chunks();
   const std::size_t blocks = chunks.chunks.empty() ? 0 : chunks.chunks.back().block_end;
@@ -19,6 +19,7 @@ void StiffnessLayout::SetPlaces(const TetModel& model, const BlockPattern& patte
   turned_.resize(pairs_ * blocks);
   std::vector<std::int32_t> local_of(pattern.blocks(), -1), all, of_chunk, of_pair;
   for (const Chunk& chunk : chunks.chunks) {
+    ThrowIfStopped(stop);
     of_chunk.clear();
     of_pair.clear();
     for (std::size_t e = chunk.tet_begin; e < chunk.tet_end; ++e) {

@@ -12,7 +12,7 @@ namespace fascicle {
 class StiffnessLayout {
  public:
   // The pattern couples all nodes of each element.
-  StiffnessLayout(const TetModel& model, const BlockPattern& pattern);
+  StiffnessLayout(const TetModel& model, const BlockPattern& pattern, const std::stop_token& stop = {});
 
   // Places of a block and its transpose in the pattern; if several chunks share the block, low = ~slot.
   struct Target {
@@ -34,7 +34,7 @@ class StiffnessLayout {
 
  private:
   template <class Element>
-  void SetPlaces(const TetModel& model, const BlockPattern& pattern);
+  void SetPlaces(const TetModel& model, const BlockPattern& pattern, const std::stop_token& stop);
   void SetTargets(const BlockPattern& pattern, std::span<const std::int32_t> blocks);
 
   std::size_t pairs_ = 0;  // number of node pairs of an element

@@ -2,7 +2,6 @@
 #define FASCICLE_CORE_VOXEL_CONJUGATE_GRADIENT_H_
 
 #include <cmath>
-#include <stop_token>
 
 #include "core/voxel/multigrid.h"
 
@@ -21,12 +20,11 @@ struct VoxelCgResult {
 //   r            b - A x, zero at prescribed components; on return the final residual
 template <class Apply>
 VoxelCgResult ConjugateGradient(ThreadTeam& team, const Apply& apply, VoxelMultigrid& multigrid, double goal,
-                                int max_iterations, const std::stop_token& stop, VoxelField<double>& r,
-                                VoxelField<double>& x) {
+                                int max_iterations, VoxelField<double>& r, VoxelField<double>& x) {
   VoxelField<double> p(r.nodes()), q(r.nodes());
   double size = std::sqrt(Dot(team, r, r)), rz = 0;
   VoxelCgResult result;
-  while (size > goal && result.iterations < max_iterations && !stop.stop_requested()) {
+  while (size > goal && result.iterations < max_iterations) {
     // The cycle works in single precision on r / |r|.
     VoxelField<float>& side = multigrid.side();
     const double inverse = 1 / size;

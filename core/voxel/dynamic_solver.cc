@@ -61,7 +61,7 @@ VoxelState VoxelDynamicSolver::InitialState(const VoxelField<double>* displaceme
 }
 
 VoxelStepReport VoxelDynamicSolver::Step(const VoxelField<double>& force, const VoxelField<double>& prescribed,
-                                         VoxelState& state, std::stop_token stop) {
+                                         VoxelState& state) {
   const double dt = settings_.time_step;
   const double of_now = 2 / (dt * dt), of_previous = 1 / (dt * dt) - settings_.mass_damping / (2 * dt);
   ForNodes(*team_, mass_.size(), [&](std::size_t n) {
@@ -74,8 +74,7 @@ VoxelStepReport VoxelDynamicSolver::Step(const VoxelField<double>& force, const 
   equilibrium_.prescribed().Copy(prescribed, next_);
   VoxelStepReport report;
   report.iterations = equilibrium_.Solve(
-      force, &inertia_, {.tolerance = settings_.tolerance, .max_iterations = settings_.max_iterations, .stop = stop},
-      next_);
+      force, &inertia_, {.tolerance = settings_.tolerance, .max_iterations = settings_.max_iterations}, next_);
   state.iterations += report.iterations.iterations;
   if (!report.iterations.converged) return report;
   report.elastic = equilibrium_.InternalForces(next_, inertia_);

@@ -1,7 +1,6 @@
 #ifndef FASCICLE_CORE_VOXEL_DYNAMIC_SOLVER_H_
 #define FASCICLE_CORE_VOXEL_DYNAMIC_SOLVER_H_
 
-#include <stop_token>
 #include <vector>
 
 #include "core/voxel/equilibrium.h"
@@ -46,8 +45,7 @@ class VoxelDynamicSolver {
 
   // Makes one step under the nodal forces [N] at its end (AddForces), with prescribed components as in `prescribed` [m]
   // at its end (other components are not read). A step that does not converge leaves the state unchanged.
-  VoxelStepReport Step(const VoxelField<double>& force, const VoxelField<double>& prescribed, VoxelState& state,
-                       std::stop_token stop = {});
+  VoxelStepReport Step(const VoxelField<double>& force, const VoxelField<double>& prescribed, VoxelState& state);
 
   // The force [N] that balances the scheme in a step from `before` to `now` under `force`: the reactions in prescribed
   // components, and the residual elsewhere.

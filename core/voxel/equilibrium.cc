@@ -98,8 +98,8 @@ EquilibriumResult VoxelEquilibrium::SolveLinear(const VoxelField<double>& f, con
     AddShifted(*team_, shift_, x, y);
     prescribed_.Clear(y);
   };
-  const VoxelCgResult cg = ConjugateGradient(*team_, apply, *multigrid_, settings.tolerance * scale,
-                                             settings.max_iterations, settings.stop, r, u);
+  const VoxelCgResult cg =
+      ConjugateGradient(*team_, apply, *multigrid_, settings.tolerance * scale, settings.max_iterations, r, u);
   return {cg.converged, cg.iterations, 1, scale > 0 ? cg.residual / scale : 0};
 }
 
@@ -179,7 +179,7 @@ EquilibriumResult VoxelEquilibrium::SolveRotated(const VoxelField<double>& f, co
     const double goal = std::max(settings.tolerance * scale, rounding);
     result.residual = scale > 0 ? size / scale : 0;
     result.converged = size <= goal;
-    if (result.converged || settings.stop.stop_requested() || !std::isfinite(size)) break;
+    if (result.converged || !std::isfinite(size)) break;
     if (result.iterations >= settings.max_iterations) break;
     if (LargestAngle(now.R, of_levels) > most_turned) {
       of_levels = now.R;
@@ -192,7 +192,7 @@ EquilibriumResult VoxelEquilibrium::SolveRotated(const VoxelField<double>& f, co
     r = now.r;
     const VoxelCgResult cg =
         ConjugateGradient(*team_, apply, turned ? *turned : *multigrid_, std::max(0.5 * goal, part * size),
-                          settings.max_iterations - result.iterations, settings.stop, r, step);
+                          settings.max_iterations - result.iterations, r, step);
     result.iterations += cg.iterations;
     ++result.newton_iterations;
     if (!Move(f, b, step, now, next)) break;

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <optional>
-#include <stop_token>
 #include <vector>
 
 #include "core/voxel/model.h"
@@ -18,7 +17,6 @@ struct EquilibriumSettings {
   // of loads and brick forces (dynamics, large rotation), whatever the start.
   double tolerance = 1e-8;
   int max_iterations = 1000;  // of conjugate gradients, in total
-  std::stop_token stop = {};  // ends the iteration early, as not converged
 };
 
 struct EquilibriumResult {

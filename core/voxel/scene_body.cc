@@ -125,7 +125,7 @@ std::vector<Vec3> VoxelSceneBody::SumOverSupports(const VoxelField<double>& reac
 void VoxelSceneBody::AddLoads() {
   for (const Load& load : source_->loads) {
     const auto forces = NodalForcesOf(load, LoadedRegionOf(source_->regions[load.region], source_->nodes()));
-    NodalLoad nodal = {&load.scale, {}, {}};
+    NodalLoad nodal;
     for (const auto& [node, force] : forces) {
       nodal.nodes.push_back(node);
       nodal.forces.push_back(direction().transpose() * force);
@@ -134,22 +134,23 @@ void VoxelSceneBody::AddLoads() {
   }
 }
 
-void VoxelSceneBody::ForceAt(double time, VoxelField<double>& force) const {
+void VoxelSceneBody::SetForces(const BodyControls& controls, VoxelField<double>& force) const {
   std::fill_n(force.data(), force.size(), 0.0);
   if (!gravity_share_.empty()) {
-    const Vec3 gravity = scene_->gravity.scale.At(time) * (direction().transpose() * scene_->gravity.acceleration);
+    const Vec3 gravity = controls.gravity_scale * (direction().transpose() * scene_->gravity.acceleration);
     for (std::int32_t n = 0; n < force.nodes(); ++n)
       force.Add(n, gravity_share_[static_cast<std::size_t>(n)] * gravity);
   }
-  for (const NodalLoad& load : loads_) {
-    const double scale = load.scale->At(time);
+  for (std::size_t l = 0; l < loads_.size(); ++l) {
+    const NodalLoad& load = loads_[l];
+    const double scale = controls.load_scales[l];
     for (std::size_t k = 0; k < load.nodes.size(); ++k) force.Add(load.nodes[k], scale * load.forces[k]);
   }
 }
 
-void VoxelSceneBody::PrescribeAt(double time, VoxelField<double>& displacement) const {
+void VoxelSceneBody::Prescribe(const BodyControls& controls, VoxelField<double>& displacement) const {
   for (std::size_t s = 0; s < supports_.size(); ++s) {
-    const RigidMotion motion = MotionAt(source_->constraints[s].motion, time);
+    const RigidMotion& motion = controls.motions[s];
     for (const std::int32_t node : source_->regions[source_->constraints[s].region].nodes) {
       const Vec3& X = source_->nodes()[static_cast<std::size_t>(node)];
       const Vec3 along_grid = direction().transpose() * (motion.PositionOf(X) - X);

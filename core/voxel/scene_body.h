@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "core/base/problems.h"
-#include "core/scene/rigid_motion.h"
-#include "core/scene/scene.h"
+#include "core/scene/controls.h"
 #include "core/voxel/model.h"
 
 namespace fascicle {
@@ -23,10 +22,10 @@ class VoxelSceneBody {
   // One for each constraint.
   const std::vector<VoxelSupport>& supports() const { return supports_; }
 
-  // Loads and gravity at a time [N].
-  void ForceAt(double time, VoxelField<double>& force) const;
-  // Displacements prescribed at a time [m]; other components are left unchanged.
-  void PrescribeAt(double time, VoxelField<double>& displacement) const;
+  // Loads and gravity under the controls of the body [N].
+  void SetForces(const BodyControls& controls, VoxelField<double>& force) const;
+  // Prescribed displacements [m]; other components are left unchanged.
+  void Prescribe(const BodyControls& controls, VoxelField<double>& displacement) const;
 
   // The force of each support on the body [N], along the world axes, where `reaction` is the force on every node [N]. A
   // component shared by two supports counts for the first.
@@ -40,7 +39,6 @@ class VoxelSceneBody {
  private:
   // A load as nodal forces at scale 1, along the axes of the grid.
   struct NodalLoad {
-    const Curve* scale;
     std::vector<std::int32_t> nodes;
     std::vector<Vec3> forces;  // [N]
   };

@@ -18,20 +18,19 @@ std::int64_t StepsPerFrame(const Scene& scene) {
                                 static_cast<std::int64_t>(std::ceil(interval / *scene.voxel.time_step * (1 - 1e-12))));
 }
 
-StepProblem ProblemOf(const EquilibriumResult& result, const std::stop_token& stop) {
-  if (result.converged) return StepProblem::kNone;
-  return stop.stop_requested() ? StepProblem::kStopped : StepProblem::kNotSolved;
+StepProblem ProblemOf(const EquilibriumResult& result) {
+  return result.converged ? StepProblem::kNone : StepProblem::kNotSolved;
 }
 
-// The external actions on a body at a time: forces [N] and prescribed displacements [m].
+// The external actions on a body: forces [N] and prescribed displacements [m].
 struct Acting {
   VoxelField<double> force, prescribed;
 };
-Acting ActingAt(const VoxelSceneBody& body, double time) {
+Acting ActingOn(const VoxelSceneBody& body, const BodyControls& controls) {
   const std::int32_t nodes = body.model().mesh().nodes();
   Acting acting = {VoxelField<double>(nodes), VoxelField<double>(nodes)};
-  body.ForceAt(time, acting.force);
-  body.PrescribeAt(time, acting.prescribed);
+  body.SetForces(controls, acting.force);
+  body.Prescribe(controls, acting.prescribed);
   return acting;
 }
 
@@ -69,6 +68,7 @@ VoxelSolver::VoxelSolver(const Scene& scene, ThreadTeam& team, Profile* profile)
     : scene_(scene), team_(team), profile_(profile), steps_per_frame_(StepsPerFrame(scene)) {
   const StageTimer timer(profile_, "levels");
   for (const Body& body : scene.bodies) {
+    team.ThrowIfStopped();
     bodies_.push_back(std::make_unique<VoxelSceneBody>(scene, body));
     const VoxelSceneBody& made = *bodies_.back();
     static_solvers_.emplace_back();
@@ -105,16 +105,17 @@ VoxelSceneState VoxelSolver::InitialState() const {
   return state;
 }
 
-VoxelSolveReport VoxelSolver::SolveStart(VoxelSceneState& state, std::stop_token stop) {
+VoxelSolveReport VoxelSolver::SolveStart(VoxelSceneState& state, const Controls& start) {
   if (scene_.voxel.stepping == VoxelStepping::kDynamic && !scene_.voxel.start_loaded) {
     // The motion of supports starts at their position at time 0.
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      bodies_[b]->PrescribeAt(0, state.bodies[b].displacement);
-      bodies_[b]->PrescribeAt(0, state.bodies[b].previous);
+      const BodyControls controls = ControlsOf(scene_, b, start);
+      bodies_[b]->Prescribe(controls, state.bodies[b].displacement);
+      bodies_[b]->Prescribe(controls, state.bodies[b].previous);
     }
     return {};
   }
-  VoxelSolveReport report = SolveStatic(state, 0, stop);
+  VoxelSolveReport report = SolveStatic(state, start);
   if (report.problem == StepProblem::kNone && scene_.voxel.stepping == VoxelStepping::kDynamic) {
     static_solvers_.clear();  // its levels are not needed any more
     static_solvers_.resize(bodies_.size());
@@ -122,55 +123,55 @@ VoxelSolveReport VoxelSolver::SolveStart(VoxelSceneState& state, std::stop_token
   return report;
 }
 
-VoxelSolveReport VoxelSolver::SolveStatic(VoxelSceneState& state, double time, const std::stop_token& stop) {
-  VoxelSceneState next = state;
+VoxelSolveReport VoxelSolver::SolveStatic(VoxelSceneState& state, const Controls& next) {
+  VoxelSceneState made = state;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const VoxelSceneBody& body = *bodies_[b];
-    const auto [force, prescribed] = ActingAt(body, time);
+    const auto [force, prescribed] = ActingOn(body, ControlsOf(scene_, b, next));
     VoxelStaticSolver& solver = StaticSolverOf(b);
     const StageTimer timer(profile_, "static solve");
-    StaticSolution solution = solver.Solve(force, prescribed, {.tolerance = scene_.voxel.tolerance, .stop = stop},
-                                           &state.bodies[b].displacement);
-    if (const StepProblem problem = ProblemOf(solution.iterations, stop); problem != StepProblem::kNone) {
-      return {problem, b};
-    }
-    next.reactions[b] = body.SumOverSupports(solution.reaction);
-    next.elastic[b] = solution.energy;
-    next.iterations += solution.iterations.iterations;
-    next.bodies[b].displacement = std::move(solution.displacement);
-    next.bodies[b].previous = next.bodies[b].displacement;
+    StaticSolution solution =
+        solver.Solve(force, prescribed, {.tolerance = scene_.voxel.tolerance}, &state.bodies[b].displacement);
+    if (const StepProblem problem = ProblemOf(solution.iterations); problem != StepProblem::kNone) return {problem, b};
+    made.reactions[b] = body.SumOverSupports(solution.reaction);
+    made.elastic[b] = solution.energy;
+    made.iterations += solution.iterations.iterations;
+    made.bodies[b].displacement = std::move(solution.displacement);
+    made.bodies[b].previous = made.bodies[b].displacement;
   }
-  state = std::move(next);
+  state = std::move(made);
   return {};
 }
 
-VoxelSolveReport VoxelSolver::StepDynamic(VoxelSceneState& state, double time, const std::stop_token& stop) {
-  VoxelSceneState next = state;
+VoxelSolveReport VoxelSolver::StepDynamic(VoxelSceneState& state, const Controls& next) {
+  VoxelSceneState made = state;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const VoxelSceneBody& body = *bodies_[b];
-    const auto [force, prescribed] = ActingAt(body, time);
+    const auto [force, prescribed] = ActingOn(body, ControlsOf(scene_, b, next));
     const StageTimer timer(profile_, "dynamic solve");
-    const VoxelStepReport report = dynamic_solvers_[b]->Step(force, prescribed, next.bodies[b], stop);
-    if (const StepProblem problem = ProblemOf(report.iterations, stop); problem != StepProblem::kNone) {
-      return {problem, b};
-    }
-    next.elastic[b] = report.elastic;
-    next.kinetic[b] = report.kinetic;
-    next.iterations += report.iterations.iterations;
-    next.reactions[b] = body.SumOverSupports(dynamic_solvers_[b]->Reaction(force, state.bodies[b], next.bodies[b]));
+    const VoxelStepReport report = dynamic_solvers_[b]->Step(force, prescribed, made.bodies[b]);
+    if (const StepProblem problem = ProblemOf(report.iterations); problem != StepProblem::kNone) return {problem, b};
+    made.elastic[b] = report.elastic;
+    made.kinetic[b] = report.kinetic;
+    made.iterations += report.iterations.iterations;
+    made.reactions[b] = body.SumOverSupports(dynamic_solvers_[b]->Reaction(force, state.bodies[b], made.bodies[b]));
   }
-  state = std::move(next);
+  state = std::move(made);
   return {};
 }
 
-VoxelSolveReport VoxelSolver::Advance(VoxelSceneState& state, double end, std::stop_token stop) {
-  const bool is_static = scene_.voxel.stepping == VoxelStepping::kStatic;
+StepProposal VoxelSolver::ProposeStep(const VoxelSceneState& state, double end) const {
+  if (scene_.voxel.stepping == VoxelStepping::kStatic) return {end, end - state.time, StepProblem::kNone, {}};
   const std::int64_t left = steps_per_frame_ - state.step % steps_per_frame_;
-  const double dt = is_static ? end - state.time : scene_.output.frame_interval / static_cast<double>(steps_per_frame_);
-  const double time = left == 1 ? end : end - static_cast<double>(left - 1) * dt;
-  const VoxelSolveReport report = is_static ? SolveStatic(state, time, stop) : StepDynamic(state, time, stop);
+  const double dt = scene_.output.frame_interval / static_cast<double>(steps_per_frame_);
+  return {left == 1 ? end : end - static_cast<double>(left - 1) * dt, dt, StepProblem::kNone, {}};
+}
+
+VoxelSolveReport VoxelSolver::Step(VoxelSceneState& state, const Controls& next, double dt) {
+  const bool is_static = scene_.voxel.stepping == VoxelStepping::kStatic;
+  const VoxelSolveReport report = is_static ? SolveStatic(state, next) : StepDynamic(state, next);
   if (report.problem != StepProblem::kNone) return report;
-  state.time = time;
+  state.time = next.time;
   state.time_step = dt;
   ++state.step;
   return report;

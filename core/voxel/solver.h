@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <stop_token>
 #include <vector>
 
 #include "core/base/archive.h"
@@ -36,7 +35,8 @@ struct VoxelSolveReport {
   std::size_t body = 0;  // the body with the problem
 };
 
-// Steps the bodies of a scene by the voxel method [Zhu, Chen & Kaufman 1998]. Not thread-safe.
+// Steps the bodies of a scene by the voxel method [Zhu, Chen & Kaufman 1998]. Not thread-safe. All functions may end
+// early by Stopped (core/base/stop.h), which leaves states unchanged.
 class VoxelSolver {
  public:
   // CheckScene and CheckVoxelSupports must have accepted the scene. Scene, team and profile must outlive the solver.
@@ -47,16 +47,20 @@ class VoxelSolver {
   // The state at time 0, at rest. Call SolveStart next.
   VoxelSceneState InitialState() const;
 
-  // Finds the equilibrium at time 0 if the scene asks for it (statics, `start_loaded`).
-  VoxelSolveReport SolveStart(VoxelSceneState& state, std::stop_token stop = {});
+  // Finds the equilibrium at time 0 if the scene asks for it (statics, `start_loaded`). start: the controls at time 0.
+  VoxelSolveReport SolveStart(VoxelSceneState& state, const Controls& start);
 
-  // Makes one step towards `end` [s], the time of the next frame. Static: the whole interval. Dynamic: an equal part of
-  // the frame interval that is no longer than the scene's time step. If it fails, the state is unchanged.
-  VoxelSolveReport Advance(VoxelSceneState& state, double end, std::stop_token stop = {});
+  // The next step towards `end` [s], the time of the next frame. Static: the whole interval. Dynamic: an equal part of
+  // the frame interval that is no longer than the scene's time step.
+  StepProposal ProposeStep(const VoxelSceneState& state, double end) const;
+
+  // Makes a step of dt [s] to the time of `next`. dt must be that of ProposeStep: the levels of the dynamic method are
+  // made for one length. If it fails, the state is unchanged.
+  VoxelSolveReport Step(VoxelSceneState& state, const Controls& next, double dt);
 
  private:
-  VoxelSolveReport SolveStatic(VoxelSceneState& state, double time, const std::stop_token& stop);
-  VoxelSolveReport StepDynamic(VoxelSceneState& state, double time, const std::stop_token& stop);
+  VoxelSolveReport SolveStatic(VoxelSceneState& state, const Controls& next);
+  VoxelSolveReport StepDynamic(VoxelSceneState& state, const Controls& next);
   VoxelStaticSolver& StaticSolverOf(std::size_t body);
 
   const Scene& scene_;

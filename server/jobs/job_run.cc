@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -39,13 +40,13 @@ void SetRunning(ActiveJob& job) {
 
 // At the stored checkpoint if it fits the scene and the stored frames, otherwise at rest.
 std::unique_ptr<Simulation> MakeSimulation(std::shared_ptr<const Scene> scene, int threads, FrameStore& frames,
-                                           Profile& profile) {
+                                           Profile& profile, const std::stop_token& stop) {
   const StageTimer timer(&profile, "model");
   if (const std::optional<std::string> checkpoint = frames.GetCheckpoint()) {
-    auto simulation = std::make_unique<Simulation>(scene, threads, &profile);
+    auto simulation = std::make_unique<Simulation>(scene, threads, &profile, stop);
     if (simulation->Restore(*checkpoint) && simulation->next_frame() <= frames.frame_count()) return simulation;
   }
-  return std::make_unique<Simulation>(std::move(scene), threads, &profile);
+  return std::make_unique<Simulation>(std::move(scene), threads, &profile, stop);
 }
 
 // As whoever submitted the job has left it, or from the specification.
@@ -70,7 +71,7 @@ std::unique_ptr<Simulation> SetUp(const RunContext& context, ActiveJob& job, Pro
   job.SetFrames(frames);
 
   const int threads = record->threads > 0 ? record->threads : context.options.default_threads;
-  std::unique_ptr<Simulation> simulation = MakeSimulation(scene, threads, *frames, profile);
+  std::unique_ptr<Simulation> simulation = MakeSimulation(scene, threads, *frames, profile, job.stop_token());
   const StageTimer geometry(&profile, "geometry");
   frames->PutGeometry(context.codec.encode_geometry(*scene, simulation->layout()));
   SetRunning(job);

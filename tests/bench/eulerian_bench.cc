@@ -15,17 +15,18 @@ constexpr int kSteps = 3;
 class Ball {
  public:
   Ball(int cells, int threads)
-      : team_(threads), body_(MakeSolid(cells, true, 2e4, 0.3, team_)), solver_(body_, team_, &profile_) {
+      : team_(threads), body_(MakeSolid(cells, true, 2e4, 0.3, team_)), run_(body_, team_, &profile_) {
     body_.volume = VolumeTreatment::kPreserved;
     const Vec3 stretch(1.1, 1 / std::sqrt(1.1), 1 / std::sqrt(1.1));
-    start_ = solver_.InitialState([&](const Vec3& x) { return Vec3(x.cwiseQuotient(stretch)); });
+    run_.Begin(0, [&](const Vec3& x) { return Vec3(x.cwiseQuotient(stretch)); });
+    start_ = run_.state;
   }
   void Run() {
-    EulerianState state = start_;
+    run_.state = start_;
     for (int k = 0; k < kSteps; ++k) {
-      const EulerianReport report = solver_.Step(1, state);
-      if (report.problem != StepProblem::kNone) std::abort();
-      iterations_ = report.minres_iterations;
+      const std::int64_t before = run_.state.iterations;
+      if (run_.Step(1).problem != StepProblem::kNone) std::abort();
+      iterations_ = run_.state.iterations - before;
     }
   }
   // Wall time of each stage of a step [ms].
@@ -36,17 +37,17 @@ class Ball {
     for (const ProfileStage& stage : profile_.Stages()) {
       std::printf(" %s %.1f;", stage.name.c_str(), 1e3 * stage.seconds / static_cast<double>(steps));
     }
-    std::printf(" MINRES iterations %d\n", iterations_);
+    std::printf(" MINRES iterations %lld\n", static_cast<long long>(iterations_));
   }
   double Kilocells() const { return 1e-3 * kSteps * static_cast<double>(body_.grid.cell_count()); }
 
  private:
   Profile profile_;
   ThreadTeam team_;
-  int iterations_ = 0;
+  std::int64_t iterations_ = 0;
   EulerianBody body_;
-  EulerianSolver solver_;
-  EulerianState start_;
+  testing::SolidRun run_;
+  EulerianWorldState start_;
 };
 
 int Main() {

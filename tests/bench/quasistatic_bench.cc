@@ -56,7 +56,7 @@ void RunMuscle(const MuscleGrid& grid, const Options& options, Report& report) {
   const double before_model = passed();
   const TetModel model(scene);
   ThreadTeam team(options.threads);
-  TetSolver solver(model, team);
+  TetStepper solver(model, team);
   TetState state = solver.InitialState();
   report.setup = passed() - before_model;
   for (int step = 1; step <= options.steps && !report.failed; ++step) {
@@ -68,7 +68,7 @@ void RunMuscle(const MuscleGrid& grid, const Options& options, Report& report) {
       ++report.steps;
     }
   }
-  report.force = Reactions(model, state, team).at(1)[2];
+  report.force = solver.Reactions(state).at(1)[2];
   report.wall = passed();
 }
 

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "core/tet/solver.h"
 #include "tests/support/tet_box.h"
+#include "tests/support/tet_stepper.h"
 
 namespace fascicle {
 namespace {
@@ -34,7 +34,7 @@ struct Box {
   Scene scene;
   TetModel model;
   ThreadTeam team;
-  TetSolver solver;
+  TetStepper solver;
   TetState state;
   ForceWorkspace corners;
   std::array<double, 1> activation = {kActivation};
@@ -65,9 +65,10 @@ void TetStep(benchmark::State& state) {
   const double next_time = 0.9 * box.solver.StableStepAt(box.state);
   TetState next;
   box.EvaluateForce();
-  box.solver.Step(box.state, next_time, next);
+  box.solver.Attempt(box.state, next_time, next);
   for (auto _ : state) {
-    if (box.solver.Step(box.state, next_time, next).problem != StepProblem::kNone) state.SkipWithError("a step failed");
+    if (box.solver.Attempt(box.state, next_time, next).problem != StepProblem::kNone)
+      state.SkipWithError("a step failed");
   }
   CountElements(state, box);
 }

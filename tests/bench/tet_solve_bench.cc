@@ -39,11 +39,11 @@ void CompareImplicit(const std::string& row) {
   const double dt = *scene.tet.time_step;
   const TetModel model(scene);
   ThreadTeam team(1);
-  TetSolver solver(model, team);
+  TetStepper solver(model, team);
   TetState now = solver.InitialState(), next;
   for (int i = 1; i <= 3; ++i) solver.Advance(now, i * dt);
   const auto step = [&] {
-    if (solver.Step(now, now.time + dt, next).problem != StepProblem::kNone) std::abort();
+    if (solver.Attempt(now, now.time + dt, next).problem != StepProblem::kNone) std::abort();
   };
   step();
 

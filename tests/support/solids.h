@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
-#include "core/eulerian/solver.h"
 #include "core/eulerian/surface.h"
+#include "core/eulerian/world.h"
 
 namespace fascicle::testing {
 
@@ -69,10 +69,78 @@ inline EulerianBody MakeSolid(int n, bool round, double young, double poisson, T
 
 // Fixes the material above a height.
 inline void HoldAbove(double z, EulerianBody& body) {
-  body.supports = 1;
-  body.support_of = [z](const Vec3& X) { return X[2] > z ? 0 : -1; };
-  body.support_velocity = [](int, const Vec3&, double, double) { return Vec3(Vec3::Zero()); };
+  Region above;
+  above.selectors = {PlaneSelector{Vec3(0, 0, z), Vec3::UnitZ()}};
+  body.supports = {RegionPoints(above, {}, 0)};
 }
+
+// A force per volume towards the plane x = 0, within a width proportional to the distance.
+inline PlaneForceField TowardsMiddle(double force_density, double width) {
+  PlaneForceField field;
+  field.force_density = force_density;
+  field.width = width;
+  return field;
+}
+
+// Solids that are stepped together. Loads and force fields act at scale 1 and supports rest, until a test sets
+// `controls` for the steps to come.
+class SolidRun {
+ public:
+  using Field = std::function<Vec3(const Vec3&)>;
+
+  SolidRun(const std::vector<const EulerianBody*>& bodies, ThreadTeam& team, Profile* profile = nullptr)
+      : scene_(SceneOf(bodies)), world(scene_, bodies, team, profile), state(world.InitialState()) {
+    for (const EulerianBody* body : bodies) {
+      controls.activations.push_back(0);
+      controls.load_scales.insert(controls.load_scales.end(), body->loads.size(), 1.0);
+      controls.motions.resize(controls.motions.size() + body->supports.size());
+    }
+    controls.force_field_scales.assign(bodies[0]->force_fields.size(), 1.0);
+  }
+  SolidRun(const EulerianBody& body, ThreadTeam& team, Profile* profile = nullptr)
+      : SolidRun(std::vector{&body}, team, profile) {}
+
+  // Starts a solid with X(x) = map(x) and v(x) = velocity(x); null: x, 0.
+  void Begin(std::size_t number, const Field& map, const Field& velocity = nullptr) {
+    state.bodies[number] = world.body(number).InitialState(map, velocity);
+  }
+
+  // The step that would be made, or why there is none.
+  StepProposal Propose(double end) {
+    controls.time = state.time;
+    return world.ProposeStep(state, controls, end);
+  }
+  // Makes a step towards `end` [s].
+  EulerianReport Step(double end) {
+    StepProposal step = Propose(end);
+    if (step.problem != StepProblem::kNone) return {step.problem, std::move(step.bad)};
+    Controls next = controls;
+    next.time = step.time;
+    return world.Step(state, controls, next, step.dt);
+  }
+
+  // Of the first solid.
+  EulerianState& solid() { return state.bodies[0]; }
+  const NodalForces& forces() const { return world.body(0).forces(); }
+
+ private:
+  // Of the scene nothing is looked at but how many controls each body has.
+  static Scene SceneOf(const std::vector<const EulerianBody*>& bodies) {
+    Scene scene;
+    for (const EulerianBody* solid : bodies) {
+      Body& body = scene.bodies.emplace_back();
+      body.loads.resize(solid->loads.size());
+      body.constraints.resize(solid->supports.size());
+    }
+    return scene;
+  }
+  Scene scene_;
+
+ public:
+  EulerianWorld world;
+  EulerianWorldState state;
+  Controls controls;
+};
 
 // The volume inside of the surface, relative to that at rest.
 inline double VolumeRatio(const EulerianBody& body, const EulerianState& state) {

@@ -1,8 +1,8 @@
 #ifndef FASCICLE_TESTS_SUPPORT_STATIC_RUN_H_
 #define FASCICLE_TESTS_SUPPORT_STATIC_RUN_H_
 
-#include "core/tet/diagnostics.h"
 #include "tests/support/tet_scenes.h"
+#include "tests/support/tet_stepper.h"
 
 namespace fascicle::testing {
 
@@ -34,12 +34,12 @@ struct SteppedRun {
   Vec3 Displacement(std::size_t node) const { return state.positions[node] - model.rest_positions()[node]; }
   Vec3 DisplacementAt(const Vec3& X) const { return Displacement(NodeAt(X)); }
   // Force of a support on the body [N].
-  Vec3 Reaction(std::size_t support) { return Reactions(model, state, team).at(support); }
+  Vec3 Reaction(std::size_t support) { return solver.Reactions(state).at(support); }
 
   const Scene scene;
   const TetModel model;
   ThreadTeam team{1};
-  TetSolver solver;
+  TetStepper solver;
   TetState state;
 };
 

@@ -5,6 +5,7 @@
 
 #include "core/tet/diagnostics.h"
 #include "tests/support/tet_scenes.h"
+#include "tests/support/tet_stepper.h"
 
 namespace fascicle {
 namespace {
@@ -21,7 +22,7 @@ TEST_P(TorusEnergy, DriftStaysBelowOnePercent) {
       laws[GetParam()]));
   const TetModel model(scene);
   ThreadTeam team(1);
-  TetSolver solver(model, team);
+  TetStepper solver(model, team);
   TetState state = solver.InitialState();
   for (std::size_t n = 0; n < model.nodes(); ++n) {
     const Vec3& X = model.rest_positions()[n];

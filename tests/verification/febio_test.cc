@@ -42,10 +42,9 @@ TEST(FebioTest, CantileverNodeByNode) {
   // Consistent nodal forces, as in the reference.
   const TetModel model(scene);
   ThreadTeam team(1);
-  TetControls controls;
-  controls.Set(model, 1);
+  ControlSource source(scene);
   NodalVector external;
-  ExternalForce(model, controls, team, external);
+  ExternalForce(model, source.At(1), team, external);
   for (const auto& row : field.at("nodal_forces_final")) {
     const Vec3 force(row[1], row[2], row[3]);
     EXPECT_LT((external[row[0].get<std::size_t>()] - force).norm(), 1e-12);
@@ -65,7 +64,7 @@ TEST(FebioTest, CantileverNodeByNode) {
   state.time = run.frames.back().time;
   state.positions = run.frames.back().bodies[0].positions;
   state.velocities.assign(model.nodes(), Vec3::Zero());
-  const double residual = EquilibriumResidual(model, state, team);
+  const double residual = EquilibriumResidual(model, state, source.At(state.time), team);
   std::printf("FEBio a_tet4_20: tip %.6g mm, largest difference of a node %.3g %% of it, residual %.2g, %lld steps\n",
               1e3 * tip, 100 * largest / tip, residual, static_cast<long long>(run.frames.back().step));
   EXPECT_LT(largest, 0.005 * tip);

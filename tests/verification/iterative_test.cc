@@ -53,10 +53,10 @@ TEST_P(IterativeTest, SameBitsForAnyThreadsAndAfterARestart) {
   const TetModel model(scene);
   const auto run = [&](int threads, bool restart) {
     ThreadTeam team(threads);
-    auto solver = std::make_unique<TetSolver>(model, team);
+    auto solver = std::make_unique<TetStepper>(model, team);
     TetState state = solver->InitialState();
     for (const double end : {0.3, 0.6, 1.0}) {
-      if (restart) solver = std::make_unique<TetSolver>(model, team);
+      if (restart) solver = std::make_unique<TetStepper>(model, team);
       while (state.time < end) {
         if (solver->Advance(state, end).problem != StepProblem::kNone) {
           ADD_FAILURE() << "stopped at " << state.time;
@@ -113,10 +113,10 @@ TEST_P(IterativeTest, ConjugateGradientsGiveTheSameBitsForAnyThreadsAndAfterARes
   const TetModel model(scene);
   const auto run = [&](int threads, bool restart) {
     ThreadTeam team(threads);
-    auto solver = std::make_unique<TetSolver>(model, team);
+    auto solver = std::make_unique<TetStepper>(model, team);
     TetState state = solver->InitialState();
     for (int i = 1; i <= 3; ++i) {
-      if (restart) solver = std::make_unique<TetSolver>(model, team);
+      if (restart) solver = std::make_unique<TetStepper>(model, team);
       EXPECT_EQ(solver->Advance(state, 0.01 * i).problem, StepProblem::kNone);
     }
     return state.positions;

@@ -24,7 +24,7 @@ class RobustnessTest : public ::testing::TestWithParam<ElementOrder> {
                 NameOf(run.model.order()).c_str(), static_cast<long long>(run.state.step),
                 static_cast<long long>(run.state.iterations), run.state.smallest_ratio, arrived ? "" : ": FAILED");
     ASSERT_TRUE(arrived) << what << " stopped at " << run.state.time;
-    EXPECT_LT(EquilibriumResidual(run.model, run.state, run.team), 1e-6) << what;
+    EXPECT_LT(run.solver.EquilibriumResidual(run.state), 1e-6) << what;
     EXPECT_GT(run.state.smallest_ratio, 0) << what;
   }
 };

@@ -3,6 +3,7 @@
 
 #include "core/tet/diagnostics.h"
 #include "tests/support/tet_scenes.h"
+#include "tests/support/tet_stepper.h"
 
 namespace fascicle {
 namespace {
@@ -42,7 +43,7 @@ TEST_P(TangledTest, FiftyStartsRecoverToRest) {
     const Scene scene = TangledBlock(seed, GetParam());
     const TetModel model(scene);
     ThreadTeam team(1);
-    TetSolver solver(model, team);
+    TetStepper solver(model, team);
     TetState state = solver.InitialState();
     least_inverted = std::min(least_inverted, InvertedElements(model, state.positions));
     const StepReport report = solver.Advance(state, scene.duration);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <stop_token>
 #include <thread>
 #include <vector>
 
@@ -134,6 +135,31 @@ TEST(ThreadTeamDeathTest, NestedLoopsAreABug) {
         team.For(100, 1, [&](std::size_t, std::size_t) { team.For(100, 1, [](std::size_t, std::size_t) {}); });
       },
       "one loop at a time");
+}
+
+// After a request no part of a loop begins any more, the caller hears of it, and the team is as good as before.
+TEST(ThreadTeamTest, StopsWithinALoop) {
+  for (const int threads : {1, 2, 4}) {
+    std::stop_source source;
+    ThreadTeam team(threads, source.get_token());
+    std::atomic<int> parts_begun = 0;
+    EXPECT_THROW(team.For(10000, 1,
+                          [&](std::size_t, std::size_t) {
+                            ++parts_begun;
+                            source.request_stop();
+                          }),
+                 Stopped);
+    EXPECT_GE(parts_begun, 1);
+    EXPECT_LE(parts_begun, threads) << "each thread was in one part at most";
+    const int before = parts_begun;
+    EXPECT_THROW(team.For(1, 1, [&](std::size_t, std::size_t) { ++parts_begun; }), Stopped);
+    EXPECT_THROW(team.Sum(5000, [&](std::size_t, std::size_t) { return 1.0 * ++parts_begun; }), Stopped);
+    EXPECT_THROW(team.ThrowIfStopped(), Stopped);
+    EXPECT_EQ(parts_begun, before);
+    team.HeedStop({});
+    EXPECT_EQ(team.Sum(5000, [](std::size_t begin, std::size_t end) { return static_cast<double>(end - begin); }),
+              5000);
+  }
 }
 
 }  // namespace

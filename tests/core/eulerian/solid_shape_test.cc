@@ -32,11 +32,11 @@ TEST(SolidShape, RefusesWhatBoundsNoSolid) {
   open.triangles.pop_back();
   EXPECT_THAT(Refusal(open, 0.01), ::testing::HasSubstr("3 edges of the surface lack a triangle"));
   for (auto& triangle : turned.triangles) std::swap(triangle[0], triangle[1]);
-  EXPECT_THAT(Refusal(turned, 0.01), ::testing::HasSubstr("inside out"));
+  EXPECT_THAT(Refusal(turned, 0.01), ::testing::HasSubstr("is inverted"));
   for (const Vec3& node : good.nodes) both.nodes.push_back(node + Vec3(0.031, 0.017, 0.023));
   const auto count = static_cast<std::int32_t>(good.nodes.size());
   for (const auto& [a, b, c] : good.triangles) both.triangles.push_back({a + count, b + count, c + count});
-  EXPECT_THAT(Refusal(both, 0.01), ::testing::HasSubstr("cuts through itself"));
+  EXPECT_THAT(Refusal(both, 0.01), ::testing::HasSubstr("intersects itself"));
   EXPECT_THAT(Refusal(good, 0.05), ::testing::HasSubstr("cells across"));
   EXPECT_THAT(Refusal({}, 0.05), ::testing::HasSubstr("no triangles"));
 }

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/eulerian/scene_body.h"
-#include "core/eulerian/solver.h"
-#include "core/geometry/shapes.h"
+#include "core/eulerian/world.h"
 #include "core/scene/rigid_motion.h"
+#include "eulerian_scenes.h"
 #include "same_bits.h"
 #include "tests/support/tet_scenes.h"
 
@@ -16,59 +16,12 @@ namespace {
 
 using namespace fascicle::testing;
 
-constexpr double kCell = 0.01;  // [m]
-
-// The boundary of a box from the origin on, with its nodes alone.
-TriangleMesh BoxSurface(const Vec3& origin, const Vec3& size, int divisions) {
-  const TetMesh mesh = MakeBox(origin, size, {divisions, divisions, divisions});
-  TriangleMesh surface;
-  std::vector<std::int32_t> number(mesh.nodes.size(), -1);
-  for (Triangle triangle : BoundaryTriangles(mesh)) {
-    for (std::int32_t& node : triangle) {
-      if (number[node] < 0) {
-        number[node] = static_cast<std::int32_t>(surface.nodes.size());
-        surface.nodes.push_back(mesh.nodes[node]);
-      }
-      node = number[node];
-    }
-    surface.triangles.push_back(triangle);
-  }
-  return surface;
-}
-
-// A cube of 5 cm, off the nodes of the grid, with the regions `low` (its layer of 1 cm at the lowest z) and `high`
-// (the nodes of its upper side).
-Body Cube(const std::string& name = "cube") {
-  Body body;
-  body.name = name;
-  body.shape = SurfaceShape{BoxSurface(Vec3::Constant(0.003), Vec3::Constant(0.05), 5), {}, {}, {}};
-  body.density = 1000;
-  body.material = NeoHookean(std::array{5e3, 0.3});
-  TetMesh nodes;
-  nodes.nodes = body.surface().mesh.nodes;
-  body.regions = {
-      SelectRegion(nodes, body.surface().mesh.triangles, "low", BoxSelector{Vec3::Zero(), Vec3(1, 1, 0.013)}),
-      SelectRegion(nodes, body.surface().mesh.triangles, "high", SideSelector{Vec3::UnitZ(), 0.1, 0})};
-  return body;
-}
-
-Scene SceneOf(std::vector<Body> bodies) {
-  Scene scene;
-  scene.bodies = std::move(bodies);
-  scene.method = Method::kEulerian;
-  scene.eulerian.cell_size = kCell;
-  scene.eulerian.margin = 0.6;
-  scene.duration = 0.02;
-  scene.output.frame_interval = 0.005;
-  return scene;
-}
-
 // Held below, pressed from above, pulled aside by gravity.
 Scene Held() {
-  Body body = Cube();
+  Body body = EulerianCube();
   body.constraints = {{0, {true, true, true}, {}}};
   body.loads.push_back({1, Traction{Vec3(0, 0, -100)}, Curve{{0, 0.01}, {0, 1}}});
-  Scene scene = SceneOf({std::move(body)});
+  Scene scene = EulerianScene({std::move(body)});
   scene.gravity.acceleration = Vec3(5, 0, 0);
   scene.output.fields = {OutputField::kVelocity, OutputField::kCauchyStress, OutputField::kVonMisesStress,
                          OutputField::kPressure, OutputField::kVolumeRatio};
@@ -121,7 +74,7 @@ double MassOnGrid(const Scene& scene) {
   ThreadTeam team(1);
   const EulerianBody body = MakeEulerianBody(scene, scene.bodies[0], team);
   EulerianCells cells;
-  UpdateCells(body, EulerianSolver(body, team).InitialState(), team, cells);
+  UpdateCells(body, BodyStepper(body, team, nullptr).InitialState(), team, cells);
   return scene.bodies[0].density * SolidVolume(body, cells);
 }
 
@@ -144,13 +97,13 @@ TEST(EulerianSimulationTest, SupportsBearTheLoads) {
 
 // A support that turns takes what it holds with it, and the rest follows.
 TEST(EulerianSimulationTest, SupportsMove) {
-  Body body = Cube();
+  Body body = EulerianCube();
   Constraint low = {0, {true, true, true}, {}};
   low.motion.translation[0] = Curve{{0, 0.1}, {0, 0.01}};
   low.motion.rotation = Rotation{Vec3(0.028, 0.028, 0), Vec3::UnitZ(), Curve{{0, 0.1}, {0, 0.3}}};
   body.constraints = {low};
   body.damping.mass_proportional = 100;
-  Scene scene = SceneOf({body});
+  Scene scene = EulerianScene({body});
   scene.duration = 0.3;
   scene.output.frame_interval = 0.1;
   const RunResult run = RunScene(scene);
@@ -165,8 +118,8 @@ TEST(EulerianSimulationTest, SupportsMove) {
 
 TEST(EulerianSimulationTest, AnyThreadsAndRestartsGiveTheSameBits) {
   Scene scene = Held();
-  // Two bodies, which step by themselves; one flows, has fibres, and is squeezed with the other.
-  Body second = Cube("second");
+  // Two bodies; one flows and has fibres, and a plane force field acts on both.
+  Body second = EulerianCube("second");
   second.material = Muscle(std::array{1e3, 0.0, 1e5, 1e4, 1.0, 0.05, 6.6, 1.4, 0.0, 0.25, 1.4});
   second.surface().fibres = {Vec3::UnitX()};
   second.activation = Curve{{0, 0.02}, {0, 0.5}};
@@ -199,7 +152,7 @@ TEST(EulerianSimulationTest, CheckpointsFitTheirSceneOnly) {
 
 // What comes to the side of its grid ends there, and says what to do.
 TEST(EulerianSimulationTest, LeavingTheGridIsAFailureWithAdvice) {
-  Scene scene = SceneOf({Cube()});
+  Scene scene = EulerianScene({EulerianCube()});
   scene.gravity.acceleration = Vec3(0, 0, -50);
   scene.duration = 0.2;
   const RunResult run = RunScene(scene);
@@ -211,15 +164,14 @@ TEST(EulerianSimulationTest, LeavingTheGridIsAFailureWithAdvice) {
   EXPECT_GE(run.frames.size(), 3u);
 }
 
-// Squeezed beyond its yield stress it keeps another shape, at the same volume; an elastic cube comes back.
+// Pressed together beyond its yield stress it keeps another shape, at the same volume; an elastic cube comes back.
 TEST(EulerianSimulationTest, PlasticFlowStays) {
-  // The mean distance between nodes that face each other: a cube that is squeezed may turn, for on its edge it is
-  // thinner.
+  // The mean distance between nodes that face each other: such a cube may rotate onto an edge, where it is thinner.
   const auto width = [](bool plastic) {
-    Body body = Cube();
+    Body body = EulerianCube();
     if (plastic) body.surface().plasticity = Plasticity{300, 0};
     body.damping.mass_proportional = 30;
-    Scene scene = SceneOf({std::move(body)});
+    Scene scene = EulerianScene({std::move(body)});
     scene.squeezes.push_back({Vec3::Constant(0.028), Vec3::UnitX(), 6e4, 0.01, Curve{{0.08, 0.09}, {1, 0}}});
     scene.duration = 0.3;
     scene.output.frame_interval = 0.1;
@@ -268,7 +220,7 @@ TEST(EulerianSimulationTest, StiffBodiesTakeLongStepsImplicitly) {
 }
 
 TEST(EulerianSimulationTest, TheRunEndsWhereNothingMoves) {
-  Scene scene = SceneOf({Cube()});
+  Scene scene = EulerianScene({EulerianCube()});
   scene.output.settle_speed = 1e-6;
   const RunResult run = RunScene(scene);
   ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded);

@@ -5,10 +5,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "brick_bodies.h"
 #include "core/voxel/dynamic_solver.h"
 #include "core/voxel/scene_body.h"
 #include "same_bits.h"
+#include "tests/support/brick_bodies.h"
 #include "tests/support/tet_scenes.h"
 
 namespace fascicle {

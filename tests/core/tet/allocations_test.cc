@@ -7,6 +7,7 @@
 
 #include "allocation_count.h"
 #include "tests/support/tet_box.h"
+#include "tests/support/tet_stepper.h"
 
 namespace fascicle {
 namespace {
@@ -46,7 +47,7 @@ TEST_P(AllocationsTest, NoneAfterTheFirstStep) {
   const TetModel model(scene);
   ThreadTeam team(threads);
   Profile profile;
-  TetSolver solver(model, team, &profile);
+  TetStepper solver(model, team, &profile);
   TetState state = solver.InitialState();
   ASSERT_EQ(solver.Advance(state, scene.duration).problem, StepProblem::kNone);
 
@@ -81,7 +82,7 @@ TEST(MemoryTest, LessThan400BytesForATetrahedron) {
     const std::size_t before = BytesInUse();
     const TetModel model(scene);
     ThreadTeam team(1);
-    TetSolver solver(model, team);
+    TetStepper solver(model, team);
     TetState state = solver.InitialState();
     ASSERT_EQ(solver.Advance(state, scene.duration).problem, StepProblem::kNone);
     const double bytes = static_cast<double>(BytesInUse() - before) / static_cast<double>(model.tetrahedra());

@@ -169,10 +169,8 @@ TEST(LoadTest, TractionIsConsistent) {
   scene.bodies[0].loads.push_back({kX1, NodalForce{Vec3(3, 0, 0)}, Curve::Constant(2)});
   const TetModel model(scene);
   ThreadTeam team(1);
-  TetControls controls;
-  controls.Set(model, 0);
   NodalVector force;
-  ExternalForce(model, controls, team, force);
+  ExternalForce(model, ControlSource(scene).At(0), team, force);
   Vec3 sum = Vec3::Zero();
   for (const Vec3& f : force) sum += f;
   EXPECT_NEAR(sum[2], -50 * kSize[1] * kSize[2], 1e-15);

@@ -10,6 +10,7 @@
 #include "core/tet/potential.h"
 #include "core/tet/stable_step.h"
 #include "mixed_scene.h"
+#include "tests/support/tet_stepper.h"
 
 namespace fascicle {
 namespace {
@@ -210,7 +211,7 @@ TEST(SingleTest, ContractionFollowsDouble) {
     scene.tet.precision = precision;
     const TetModel model(scene);
     ThreadTeam team(1);
-    TetSolver solver(model, team);
+    TetStepper solver(model, team);
     TetState state = solver.InitialState();
     while (state.time < 0.03) EXPECT_EQ(solver.Advance(state, 0.03).problem, StepProblem::kNone);
     NodalVector displacement = state.positions;

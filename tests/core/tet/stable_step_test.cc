@@ -6,6 +6,7 @@
 
 #include "core/tet/diagnostics.h"
 #include "tests/support/tet_scenes.h"
+#include "tests/support/tet_stepper.h"
 
 namespace fascicle {
 namespace {
@@ -70,18 +71,17 @@ TEST_P(StableStepTest, IsTheInverseOfTheLargestFrequency) {
 TEST_P(StableStepTest, SeparatesStableFromUnstable) {
   scene_.bodies[0].activation = Curve::Constant(0);  // rest is then an equilibrium
   const TetModel model(scene_);
-  TetSolver solver(model, team_);
+  TetStepper solver(model, team_);
   const double limit = solver.StableStepAt(solver.InitialState());
   const auto growth = [&](double factor) {
     TetState state = solver.InitialState(), next;
     state.positions = Shaken(model.rest_positions(), 1e-9, 4);
-    TetControls controls;
-    controls.Set(model, 0);
+    const Controls controls = ControlSource(scene_).At(0);
     PrescribePositions(model, controls, state.positions);
     ForceWorkspace corners;
-    ElasticForce(model, controls.activation, state.positions, team_, corners, state.force);
+    ElasticForce(model, controls.activations, state.positions, team_, corners, state.force);
     for (int i = 0; i < 600; ++i) {
-      if (solver.Step(state, state.time + factor * limit, next).problem != StepProblem::kNone) return 1e9;
+      if (solver.Attempt(state, state.time + factor * limit, next).problem != StepProblem::kNone) return 1e9;
       std::swap(state, next);
     }
     return LargestDifference(state.positions, model.rest_positions()) / 1e-9;

@@ -170,7 +170,7 @@ TEST(EulerianScene, SurfacesThatBoundNoSolid) {
   std::vector<std::string> turned;
   for (const std::string& face : kFaces) turned.push_back({face[0], ' ', face[4], ' ', face[2]});
   EXPECT_THAT(At(ProblemsOf(SurfaceScene(files, Cube(turned)), files), "bodies[0].mesh.surface"),
-              HasSubstr("inside out"));
+              HasSubstr("is inverted"));
   v1::Scene coarse = SurfaceScene(files);
   coarse.mutable_eulerian()->set_cell_size(0.02);
   EXPECT_THAT(At(ProblemsOf(coarse, files), "bodies[0].mesh.surface"), HasSubstr("4 are needed"));

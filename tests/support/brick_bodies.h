@@ -1,5 +1,5 @@
-#ifndef FASCICLE_TESTS_CORE_SIM_BRICK_BODIES_H_
-#define FASCICLE_TESTS_CORE_SIM_BRICK_BODIES_H_
+#ifndef FASCICLE_TESTS_SUPPORT_BRICK_BODIES_H_
+#define FASCICLE_TESTS_SUPPORT_BRICK_BODIES_H_
 
 #include <algorithm>
 #include <array>
@@ -36,4 +36,4 @@ inline Scene VoxelScene(Body body) {
 
 }  // namespace fascicle::testing
 
-#endif  // FASCICLE_TESTS_CORE_SIM_BRICK_BODIES_H_
+#endif  // FASCICLE_TESTS_SUPPORT_BRICK_BODIES_H_

@@ -1,0 +1,233 @@
+#include "core/eulerian/body_stepper.h"
+
+#include <limits>
+#include <optional>
+
+#include "core/eulerian/advection.h"
+#include "core/eulerian/extrapolation.h"
+#include "core/eulerian/plasticity.h"
+#include "core/eulerian/surface.h"
+#include "core/eulerian/wave_speed.h"
+
+namespace fascicle {
+namespace {
+
+constexpr int kBand = 4;  // layers of nodes around the solid where the map is known
+// Velocities reach further than the map, which they advect.
+constexpr int kVelocityBand = kBand + 2;
+constexpr double kCourant = 0.4;       // of a cell, that waves go in a step
+constexpr double kImplicit = 10;       // times that, where elasticity is implicit
+constexpr double kMostTravel = 0.5;    // of a cell, that the solid goes in a step
+constexpr double kLeastStep = 1e-6;    // of that for waves at rest
+constexpr double kMostSurfaceGap = 1;  // cells that the map and its surface may be apart
+constexpr std::size_t kMostNamed = 16;
+constexpr std::size_t kGrain = 1024;
+
+std::vector<std::uint8_t> NodesInside(const EulerianBody& body, const std::vector<Vec3>& X) {
+  std::vector<std::uint8_t> inside(X.size(), 0);
+  for (std::size_t n = 0; n < X.size(); ++n) inside[n] = body.shape.Distance(X[n]) < 0 ? 1 : 0;
+  return inside;
+}
+
+void StartPlasticity(const EulerianBody& body, EulerianState& state) {
+  if (!body.plasticity) return;
+  const EulerianGrid samples = PlasticGrid(body);
+  state.plastic.assign(samples.node_count(), Mat3::Identity());
+  for (std::size_t n = 0; n < samples.node_count(); ++n) {
+    state.plastic_places.push_back(samples.NodePosition(samples.NodeAt(n)));
+  }
+}
+
+}  // namespace
+
+EulerianState BodyStepper::InitialState(const std::function<Vec3(const Vec3&)>& map,
+                                        const std::function<Vec3(const Vec3&)>& velocity) const {
+  const EulerianGrid& grid = body_->grid;
+  EulerianState state;
+  for (std::size_t n = 0; n < grid.node_count(); ++n) {
+    const Vec3 x = grid.NodePosition(grid.NodeAt(n));
+    state.X.push_back(map ? map(x) : x);
+    state.v.push_back(velocity ? velocity(x) : Vec3::Zero());
+  }
+  state.known = Band(grid, NodesInside(*body_, state.X), kBand, *team_).Known(kBand);
+  state.surface = body_->shape.surface().nodes;
+  state.pressure.assign(grid.cell_count(), std::numeric_limits<double>::quiet_NaN());
+  state.reactions.assign(body_->supports.size(), Vec3::Zero());
+  FindSurface(*body_, *team_, state);
+  StartPlasticity(*body_, state);
+  return state;
+}
+
+StepProblem BodyStepper::Prepare(const EulerianState& state, const BodyControls& now,
+                                 std::vector<std::int64_t>& bad_cells) {
+  const StageTimer timer(profile_, "forces");
+  UpdateCells(*body_, state, *team_, cells_);
+  if (!cells_.valid) {
+    for (const std::size_t c : cells_.solid) {
+      const bool bad = !(cells_.J[c] > 0) || !cells_.F[c].allFinite();
+      if (bad && bad_cells.size() < kMostNamed) bad_cells.push_back(static_cast<std::int64_t>(c));
+    }
+    return StepProblem::kInvertedElement;
+  }
+  bad_cells = CellsAtSide();
+  if (!bad_cells.empty()) return StepProblem::kLeftGrid;
+  SetForces(*body_, state, now, cells_, *team_, roles_, forces_);
+  return StepProblem::kNone;
+}
+
+std::vector<std::int64_t> BodyStepper::CellsAtSide() const {
+  std::vector<std::int64_t> found;
+  for (const std::size_t c : cells_.solid) {
+    const GridIndex at = body_->grid.CellAt(c);
+    bool side = false;
+    for (int axis = 0; axis < 3; ++axis) side |= at[axis] < 2 || at[axis] >= body_->grid.cells[axis] - 2;
+    if (side && found.size() < kMostNamed) found.push_back(static_cast<std::int64_t>(c));
+  }
+  return found;
+}
+
+StepLength BodyStepper::FindStepLength(const EulerianState& state, const BodyControls& now) {
+  double fastest = 0;
+  for (std::size_t n = 0; n < state.v.size(); ++n) {
+    if (forces_.mass[n] > 0) fastest = std::max(fastest, state.v[n].norm());
+  }
+  const double h = body_->grid.spacing;
+  StepLength step;
+  waves_ = step.waves = kCourant * h / FastestWave(*body_, state, now, cells_, *team_);
+  step.stable = (body_->implicit_elasticity ? kImplicit : 1) * step.waves;
+  if (body_->time_step) step.stable = std::min(step.stable, *body_->time_step);
+  if (fastest > 0) step.stable = std::min(step.stable, kMostTravel * h / fastest);
+  if (body_->mass_damping > 0) step.stable = std::min(step.stable, 1 / body_->mass_damping);
+  return step;
+}
+
+double BodyStepper::LeastStep() const { return kLeastStep * kCourant * body_->grid.spacing / WaveSpeedAtRest(*body_); }
+
+void BodyStepper::AdvectVelocities(const EulerianState& state, double dt) {
+  now_ = state.v;
+  const Resultant momentum = Conserve(state, now_), force = ForceOf(body_->grid, forces_, *team_);
+  made_.momentum = momentum.sum + dt * force.sum;
+  made_.moment = momentum.moment + dt * force.moment;
+  const StageTimer timer(profile_, "advection of velocities");
+  AdvectField(now_, now_, state, dt, made_.v);
+}
+
+// Gives a body without supports the momentum that it should have, which is returned.
+Resultant BodyStepper::Conserve(const EulerianState& state, std::vector<Vec3>& v) const {
+  if (state.momentum_mass == 0 || !body_->supports.empty()) return MomentumOf(body_->grid, forces_, v, *team_);
+  // Masses of cut cells are not exact and vary by a thousandth from step to step: velocities shall not.
+  const double part = MassOf(forces_, *team_) / state.momentum_mass;
+  const Resultant wanted = {part * state.momentum, part * state.moment};
+  SetMomentum(body_->grid, forces_, wanted, state.known, *team_, v);
+  return wanted;
+}
+
+void BodyStepper::Accelerate(const EulerianState& state, const BodyControls& now, const BodyControls& next, double dt) {
+  std::vector<Vec3>& v = made_.v;
+  impulses_.assign(body_->supports.empty() ? 0 : v.size(), Vec3::Zero());
+  team_->For(v.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      if (roles_.IsPrescribed(n)) {
+        const RigidMotion& from = now.motions[roles_.support[n]];
+        const RigidMotion& to = next.motions[roles_.support[n]];
+        const Vec3 prescribed = (to.PositionOf(state.X[n]) - from.PositionOf(state.X[n])) / dt;
+        impulses_[n] = forces_.mass[n] * (prescribed - v[n]) - dt * forces_.force[n];
+        v[n] = prescribed;
+      } else if (roles_.inside[n] != 0) {
+        v[n] += dt / forces_.mass[n] * forces_.force[n];
+      }
+    }
+  });
+  made_.pressure.assign(body_->grid.cell_count(), std::numeric_limits<double>::quiet_NaN());
+}
+
+VelocityProgram::Part BodyStepper::PartOf(const EulerianState& state, const BodyControls& now) const {
+  return {body_, &state, &now, &cells_, &roles_, &forces_, &made_.v, waves_};
+}
+
+void BodyStepper::TakeVelocities(const VelocityProgram& program, std::size_t body) {
+  program.TakeBody(body, made_.v, made_.pressure, impulses_);
+}
+
+StepProblem BodyStepper::FinishVelocities(double dt) {
+  std::vector<Vec3>& v = made_.v;
+  made_.reactions.assign(body_->supports.size(), Vec3::Zero());
+  for (std::size_t n = 0; n < impulses_.size(); ++n) {
+    if (roles_.IsPrescribed(n)) made_.reactions[roles_.support[n]] += impulses_[n] / dt;
+  }
+  if (!AllFinite(v)) return StepProblem::kNotFinite;
+  for (const NodeRoles::Constrained& constrained : roles_.constrained) {
+    Vec3 sum = Vec3::Zero();
+    for (const NodeWeight& root : constrained.roots) sum += root.weight * v[root.node];
+    if (!constrained.roots.empty()) v[constrained.node] = sum;
+  }
+  return StepProblem::kNone;
+}
+
+// Of free and prescribed nodes.
+bool BodyStepper::AllFinite(const std::vector<Vec3>& v) const {
+  return team_->Sum(v.size(), [&](std::size_t begin, std::size_t end) {
+    int wrong = 0;
+    for (std::size_t n = begin; n < end; ++n) {
+      if ((roles_.IsPrescribed(n) || roles_.inside[n] != 0) && !v[n].allFinite()) ++wrong;
+    }
+    return static_cast<double>(wrong);
+  }) == 0;
+}
+
+void BodyStepper::AdvectField(const std::vector<Vec3>& field, const std::vector<Vec3>& v, const EulerianState& state,
+                              double dt, std::vector<Vec3>& result) {
+  const Flow flow = {&body_->grid, &state.known, &v, dt};
+  body_->maccormack ? AdvectMacCormack(flow, field, *team_, result) : Advect(flow, field, *team_, result);
+}
+
+// Points of the material go along with v, to near where the map will have them.
+void BodyStepper::AdvectPoints(const EulerianState& state, double dt, std::vector<Vec3>& points) {
+  const KnownField v = {&made_.v, &state.known};
+  team_->For(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      if (const auto velocity = Interpolate(body_->grid, v, points[k])) points[k] += dt * *velocity;
+    }
+  });
+}
+
+StepProblem BodyStepper::Move(const EulerianState& state, const BodyControls& next, double dt) {
+  const EulerianGrid& grid = body_->grid;
+  std::vector<Vec3>& v = made_.v;
+  std::optional<Band> band;
+  {
+    const StageTimer timer(profile_, "extrapolation of velocities");
+    // Constrained nodes keep their own map, which goes with the volumes that their velocities were chosen for.
+    std::vector<std::uint8_t> has_velocity(v.size());
+    for (std::size_t n = 0; n < v.size(); ++n) has_velocity[n] = roles_.HasVelocity(n) ? 1 : 0;
+    band.emplace(grid, has_velocity, kVelocityBand, *team_);
+    band->Extend(kVelocityBand, 0, *team_, v);
+  }
+  {
+    const StageTimer timer(profile_, "advection of the map");
+    AdvectField(state.X, v, state, dt, made_.X);
+  }
+  {
+    const StageTimer timer(profile_, "extrapolation of the map");
+    band->Extend(kBand, 1, *team_, made_.X);
+    made_.known = band->Known(kBand);
+  }
+  {
+    const StageTimer timer(profile_, "surface");
+    made_.surface = state.surface;
+    made_.plastic = state.plastic;
+    made_.plastic_places = state.plastic_places;
+    AdvectPoints(state, dt, made_.surface);
+    AdvectPoints(state, dt, made_.plastic_places);
+    if (!(FindSurface(*body_, *team_, made_) < kMostSurfaceGap * grid.spacing)) return StepProblem::kInvertedElement;
+  }
+  if (body_->plasticity) {
+    const StageTimer timer(profile_, "plastic flow");
+    FlowPlastically(*body_, next, dt, *team_, made_);
+  }
+  made_.momentum_mass = MassOf(forces_, *team_);
+  made_.pose = state.pose;
+  return StepProblem::kNone;
+}
+
+}  // namespace fascicle

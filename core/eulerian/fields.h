@@ -1,0 +1,20 @@
+#ifndef FASCICLE_CORE_EULERIAN_FIELDS_H_
+#define FASCICLE_CORE_EULERIAN_FIELDS_H_
+
+#include <vector>
+
+#include "core/eulerian/cells.h"
+
+namespace fascicle {
+
+// A field at the vertices of the surface, component fastest, in SI: velocities interpolated, all others the mean of the
+// solid cells within two cells of a vertex, each weighted by its solid part and its nearness. Stresses hold the
+// pressure that kept the volume.
+//   now    the controls of the body at the state's time
+//   cells  those of the state (UpdateCells)
+std::vector<double> FieldValuesOf(const EulerianBody& body, const EulerianState& state, const BodyControls& now,
+                                  const EulerianCells& cells, OutputField field);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_EULERIAN_FIELDS_H_
