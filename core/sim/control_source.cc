@@ -6,7 +6,7 @@ void ControlSource::Evaluate(double time, Controls& controls) {
   controls.time = time;
   controls.gravity_scale = scene_->gravity.scale.At(time);
   controls.force_field_scales.clear();
-  for (const Squeeze& squeeze : scene_->squeezes) controls.force_field_scales.push_back(squeeze.scale.At(time));
+  for (const PlaneForceField& field : scene_->squeezes) controls.force_field_scales.push_back(field.scale.At(time));
   controls.activations.clear();
   controls.load_scales.clear();
   controls.motions.clear();
