@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/check.h"
+#include "core/linalg/elimination_order.h"
 
 namespace fascicle {
 namespace {
@@ -14,6 +15,8 @@ namespace {
 constexpr int kInitialize = -1, kAnalyze = 1, kFactor = 2, kSolve = 3, kEnd = -2;
 // MUMPS's placeholder for the communicator of all processes; there is only one.
 constexpr int kWorld = -987654;
+// EliminationOrder's, which depends on nothing but the pattern.
+constexpr int kGivenOrder = 1;
 // Errors that more workspace can cure.
 constexpr int kWorkspaceTooSmall = -9, kIntegerWorkspaceTooSmall = -8;
 constexpr int kMostWorkspacePercent = 2000;
@@ -32,7 +35,8 @@ struct DirectSolver::Impl {
     mumps.comm_fortran = kWorld;
     Call(kInitialize);
     for (const int k : {1, 2, 3, 4}) Control(k) = k == 4 ? 0 : -1;  // prints nothing
-    Control(14) = 60;                                               // [%] more workspace than estimated
+    Control(7) = kGivenOrder;
+    Control(14) = 60;  // [%] more workspace than estimated
     // Scaled to a unit diagonal, quasi-definite matrices need no pivoting, which would increase the fill-in.
     Control(8) = 1;
   }
@@ -48,7 +52,7 @@ struct DirectSolver::Impl {
   }
 
   DMUMPS_STRUC_C mumps = {};
-  std::vector<MUMPS_INT> rows, columns;
+  std::vector<MUMPS_INT> rows, columns, order;
   std::vector<double> values;
 };
 
@@ -59,6 +63,9 @@ DirectSolver::~DirectSolver() { impl_->Call(kEnd); }
 bool DirectSolver::Analyze(std::int32_t size, std::span<const std::int32_t> rows,
                            std::span<const std::int32_t> columns) {
   Impl& d = *impl_;
+  d.order = EliminationOrder(size, rows, columns);
+  if (d.order.empty()) return false;
+  for (MUMPS_INT& place : d.order) ++place;
   d.rows.assign(rows.begin(), rows.end());
   d.columns.assign(columns.begin(), columns.end());
   d.values.assign(rows.size(), 0.0);
@@ -69,6 +76,7 @@ bool DirectSolver::Analyze(std::int32_t size, std::span<const std::int32_t> rows
   d.mumps.irn = d.rows.data();
   d.mumps.jcn = d.columns.data();
   d.mumps.a = d.values.data();
+  d.mumps.perm_in = d.order.data();
   return d.Call(kAnalyze);
 }
 

@@ -9,8 +9,11 @@ namespace fascicle {
 
 // Factorization L D L^T of a sparse symmetric matrix, definite or indefinite, by MUMPS's multifrontal method with
 // pivoting [Amestoy, Duff, L'Excellent & Koster 2001]. The pattern is analyzed once; values may change. Not
-// thread-safe. Calls of different solvers wait for each other, because the library has global state. The same input
-// gives the same bits.
+// thread-safe. Calls of different solvers wait for each other, because the library has global state.
+//
+// The same input gives the same bits in any process, whatever the number of threads. This holds across processors for
+// which OpenBLAS has the same kernels: those for AVX-512 (SkylakeX, Cooperlake) add in another order than those for
+// AVX2 (Haswell, Zen).
 class DirectSolver {
  public:
   DirectSolver();
@@ -18,8 +21,8 @@ class DirectSolver {
   DirectSolver(const DirectSolver&) = delete;
   DirectSolver& operator=(const DirectSolver&) = delete;
 
-  // Entries (rows[k], columns[k]) of one triangle, diagonal included, counted from 0, without duplicates. False when
-  // memory runs out.
+  // Entries (rows[k], columns[k]) of one triangle, diagonal included, counted from 0, without duplicates; size >= 1.
+  // False when memory runs out.
   bool Analyze(std::int32_t size, std::span<const std::int32_t> rows, std::span<const std::int32_t> columns);
 
   struct Factored {
