@@ -20,7 +20,7 @@ class Interrupts {
   std::jthread thread_;
 };
 
-// The same for work that heeds a stop token.
+// The same for work that checks a stop token.
 class StopOnInterrupt {
  public:
   std::stop_token token() const { return source_.get_token(); }

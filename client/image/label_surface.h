@@ -24,7 +24,7 @@ bool IsImageName(const std::string& name);
 // Reads an image with one component per voxel and makes a surface of the voxels whose value is `label`, smoothed by a
 // Gaussian of `smoothing` voxels (standard deviation, 0.3 to 10) with the volume preserved. Adds to `problems` (with
 // empty paths) what is wrong with the file, or the existing labels if this one does not exist. Throws Stopped after a
-// stop request, which VTK's filters are asked for between their pieces of work.
+// stop request, which is checked between the parts of VTK's filters.
 std::optional<LabelSurface> ReadLabelSurface(const std::filesystem::path& path, int label, double smoothing,
                                              const std::stop_token& stop, Problems& problems);
 

@@ -80,8 +80,8 @@ class Client {
   ~Client();
 
   Result<v1::ServerInfo> GetServerInfo();
-  // Uploads the files that the server lacks and creates the job. A stop request ends it with kStopped, and the server's
-  // work on the scene with it.
+  // Uploads the files that the server lacks and creates the job. A stop request ends it with kStopped, and also ends
+  // the server's work on the scene.
   Result<v1::Job> Submit(const ScenePackage& package, int threads, const std::stop_token& stop = {});
   // Checks a scene without creating a job.
   std::optional<Error> Validate(const ScenePackage& package, int threads);

@@ -26,8 +26,8 @@ class Connection {
   // five seconds without a response. Later calls return at once, because each call detects a lost connection itself.
   grpc::Status Connect();
 
-  // Makes `call` with a deadline, and repeats it with backoff on UNAVAILABLE for up to 15 s. A stop request cancels it:
-  // CANCELLED.
+  // Makes `call` with a deadline, and repeats it with backoff on UNAVAILABLE for up to 15 s. A stop request cancels it
+  // with CANCELLED.
   grpc::Status Repeat(std::chrono::seconds timeout, const std::function<grpc::Status(grpc::ClientContext&)>& call,
                       const std::stop_token& stop = {});
 

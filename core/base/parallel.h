@@ -14,7 +14,7 @@ namespace fascicle {
 // One loop at a time: member functions must not be called from two threads at once, nor from inside a loop.
 //
 // Loops are where work is interrupted: after a stop request, For and Sum throw Stopped in the calling thread, before
-// the loop or after leaving out parts of it. So whatever runs in loops stops within the time of a part of one.
+// the loop or after skipping parts of it. So work in loops stops within the time of one part of a loop.
 class ThreadTeam {
  public:
   // threads >= 1.
@@ -24,11 +24,11 @@ class ThreadTeam {
   ThreadTeam& operator=(const ThreadTeam&) = delete;
 
   int size() const;
-  // Whose requests are heeded from now on.
+  // Sets the token whose stop requests are observed from now on.
   void HeedStop(std::stop_token stop);
-  // For long work between loops: throws Stopped after a request.
+  // For long work between loops: throws Stopped after a stop request.
   void ThrowIfStopped() const;
-  // For long work that runs without the team.
+  // For long work that does not use the team.
   const std::stop_token& stop() const;
   // Processor time of all threads but the calling one since the team was created [s].
   double others_cpu_seconds() const;
@@ -65,8 +65,8 @@ class ThreadTeam {
   std::unique_ptr<Impl> impl_;
 };
 
-// Calls each(i) for all i in [0, count) as team.For does, and looks for a stop request before each: for long work on
-// few items.
+// Calls each(i) for all i in [0, count) as team.For does, and checks for a stop request before each call: for long work
+// on few items.
 template <class Each>
 void ForEach(ThreadTeam& team, std::size_t count, std::size_t grain, const Each& each) {
   const std::stop_token& stop = team.stop();

@@ -29,11 +29,11 @@ struct BadElements {
   bool inverted = false;               // whether J <= 0 in any of them
 };
 
-// The next step that a method would make.
+// The next step that a method proposes.
 struct StepProposal {
-  double time = 0;                           // where it ends [s]
-  double dt = 0;                             // its length [s]; `time` is the present one plus dt but for rounding
-  StepProblem problem = StepProblem::kNone;  // why there is none
+  double time = 0;                           // its end [s]
+  double dt = 0;                             // its length [s]; `time` is the current one plus dt, except for round-off
+  StepProblem problem = StepProblem::kNone;  // the reason why there is none
   BadElements bad;
 };
 

@@ -8,8 +8,8 @@
 
 namespace fascicle {
 
-// Ends work that was asked to stop. Not a failure: whoever asked catches it. What the work was about to make is
-// incomplete and must be discarded.
+// Thrown to end work after a stop request. It is not a failure; the requester catches it. Unfinished results must be
+// discarded.
 class Stopped : public std::exception {
  public:
   const char* what() const noexcept override { return "stopped on request"; }
@@ -19,7 +19,7 @@ inline void ThrowIfStopped(const std::stop_token& stop) {
   if (stop.stop_requested()) throw Stopped();
 }
 
-// As std::sort. Throws Stopped after a stop request; the items are then in any order.
+// Like std::sort. Throws Stopped after a stop request; the items are then in an unspecified order.
 template <class Items, class Less = std::less<>>
 void SortUnlessStopped(Items& items, const std::stop_token& stop, const Less& less = {}) {
   std::sort(items.begin(), items.end(), [&](const auto& a, const auto& b) {

@@ -5,14 +5,14 @@ namespace {
 
 constexpr std::size_t kGrain = 256;
 
-// The place that the flow takes to a node.
+// The departure point of the flow that arrives at a node.
 Vec3 Origin(const Flow& flow, std::size_t n) {
   const Vec3 x = flow.grid->NodePosition(flow.grid->NodeAt(n)), v = (*flow.v)[n];
   const KnownField velocity = {flow.v, flow.known};
   return x - flow.dt * Interpolate(*flow.grid, velocity, x - 0.5 * flow.dt * v).value_or(v);
 }
 
-// Limits a value to those at the corners of the cell that a place is in; `otherwise` where one of them is not known.
+// Limits a value to the range at the corners of the cell around a place; `otherwise` if one of them is not known.
 Vec3 Limited(const Vec3& value, const Flow& flow, const std::vector<Vec3>& field, const Vec3& place,
              const Vec3& otherwise) {
   const GridIndex cell = flow.grid->PlaceOf(place).cell;

@@ -12,7 +12,8 @@
 
 namespace fascicle {
 
-// A solid that moves through a grid of its own. Const while it is stepped; what changes with time comes as controls.
+// A solid that moves through its own grid. Const while it is stepped; everything that changes with time is in the
+// controls.
 struct EulerianBody {
   EulerianGrid grid;
   SolidShape shape;
@@ -21,28 +22,29 @@ struct EulerianBody {
   double mass_damping = 0;      // a of the force -a M v [1/s]
   Vec3 gravity = Vec3::Zero();  // at scale 1 [m/s^2]
   VolumeTreatment volume = VolumeTreatment::kPreserved;
-  double stabilization = 0.05;  // eps of eps L, over the volume's own matrix [1]
+  double stabilization = 0.05;  // eps of eps L, relative to the matrix of the volumes [1]
   std::optional<FibreSamples> fibres = std::nullopt;
   std::optional<Plasticity> plasticity = std::nullopt;
-  // The elastic force is taken where the step ends, linearized, which costs a larger system and allows long steps.
+  // Whether the elastic force is evaluated at the end of the step, linearized. This makes the system larger and allows
+  // longer steps.
   bool implicit_elasticity = false;
-  bool maccormack = false;  // advection of second order in time, limited, in place of semi-Lagrangian
-  std::optional<double> time_step = std::nullopt;  // the longest step [s]
-  // Parts of the material whose motion is prescribed, one for each of BodyControls::motions. Where two overlap, the
-  // first counts.
+  bool maccormack = false;  // whether advection is second-order MacCormack with a limiter, in place of semi-Lagrangian
+  std::optional<double> time_step = std::nullopt;  // upper bound of the step [s]
+  // Parts of the material with prescribed motion, one for each of BodyControls::motions. Where two overlap, the first
+  // one applies.
   std::vector<RegionPoints> supports = {};
-  // Of each load, the force on every vertex of the surface at scale 1 [N].
+  // For each load: the force on every vertex of the surface at scale 1 [N].
   std::vector<std::vector<Vec3>> loads = {};
   std::vector<PlaneForceField> force_fields = {};
 
-  // The support that a point X of the material is in; -1: none.
+  // The support that contains material point X; -1: none.
   int SupportOf(const Vec3& X) const {
     for (std::size_t k = 0; k < supports.size(); ++k) {
       if (supports[k].Contain(X)) return static_cast<int>(k);
     }
     return -1;
   }
-  // The fibre at a point X of the material, and its activation.
+  // The fibre and its activation at material point X.
   FibreState FibreAt(const Vec3& X, const BodyControls& controls) const {
     return fibres ? FibreState{fibres->At(X), controls.activations[0]} : FibreState{};
   }

@@ -12,14 +12,14 @@
 namespace fascicle {
 namespace {
 
-constexpr int kBand = 4;  // layers of nodes around the solid where the map is known
-// Velocities reach further than the map, which they advect.
+constexpr int kBand = 4;  // layers of nodes around the solid where the map is extrapolated
+// Velocities are extrapolated further than the map, because they advect it.
 constexpr int kVelocityBand = kBand + 2;
-constexpr double kCourant = 0.4;       // of a cell, that waves go in a step
-constexpr double kImplicit = 10;       // times that, where elasticity is implicit
-constexpr double kMostTravel = 0.5;    // of a cell, that the solid goes in a step
-constexpr double kLeastStep = 1e-6;    // of that for waves at rest
-constexpr double kMostSurfaceGap = 1;  // cells that the map and its surface may be apart
+constexpr double kCourant = 0.4;       // fraction of a cell that waves travel in a step
+constexpr double kImplicit = 10;       // factor on that for implicit elasticity
+constexpr double kMostTravel = 0.5;    // fraction of a cell that the solid moves in a step
+constexpr double kLeastStep = 1e-6;    // relative to the step for waves at rest
+constexpr double kMostSurfaceGap = 1;  // largest distance between the map and its surface [cells]
 constexpr std::size_t kMostNamed = 16;
 constexpr std::size_t kGrain = 1024;
 
@@ -112,10 +112,10 @@ void BodyStepper::AdvectVelocities(const EulerianState& state, double dt) {
   AdvectField(now_, now_, state, dt, made_.v);
 }
 
-// Gives a body without supports the momentum that it should have, which is returned.
+// Restores the momentum of an unsupported body; returns that momentum.
 Resultant BodyStepper::Conserve(const EulerianState& state, std::vector<Vec3>& v) const {
   if (state.momentum_mass == 0 || !body_->supports.empty()) return MomentumOf(body_->grid, forces_, v, *team_);
-  // Masses of cut cells are not exact and vary by a thousandth from step to step: velocities shall not.
+  // Masses of cut cells are inaccurate and vary by a thousandth from step to step; velocities must not vary with them.
   const double part = MassOf(forces_, *team_) / state.momentum_mass;
   const Resultant wanted = {part * state.momentum, part * state.moment};
   SetMomentum(body_->grid, forces_, wanted, state.known, *team_, v);
@@ -164,7 +164,7 @@ StepProblem BodyStepper::FinishVelocities(double dt) {
   return StepProblem::kNone;
 }
 
-// Of free and prescribed nodes.
+// Whether the velocities of free and prescribed nodes are finite.
 bool BodyStepper::AllFinite(const std::vector<Vec3>& v) const {
   return team_->Sum(v.size(), [&](std::size_t begin, std::size_t end) {
     int wrong = 0;
@@ -181,7 +181,7 @@ void BodyStepper::AdvectField(const std::vector<Vec3>& field, const std::vector<
   body_->maccormack ? AdvectMacCormack(flow, field, *team_, result) : Advect(flow, field, *team_, result);
 }
 
-// Points of the material go along with v, to near where the map will have them.
+// Moves material points with v, to near their position on the next map.
 void BodyStepper::AdvectPoints(const EulerianState& state, double dt, std::vector<Vec3>& points) {
   const KnownField v = {&made_.v, &state.known};
   team_->For(points.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -197,7 +197,7 @@ StepProblem BodyStepper::Move(const EulerianState& state, const BodyControls& ne
   std::optional<Band> band;
   {
     const StageTimer timer(profile_, "extrapolation of velocities");
-    // Constrained nodes keep their own map, which goes with the volumes that their velocities were chosen for.
+    // Constrained nodes keep their own map: it is advected with the velocities for which the volumes were computed.
     std::vector<std::uint8_t> has_velocity(v.size());
     for (std::size_t n = 0; n < v.size(); ++n) has_velocity[n] = roles_.HasVelocity(n) ? 1 : 0;
     band.emplace(grid, has_velocity, kVelocityBand, *team_);

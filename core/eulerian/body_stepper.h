@@ -10,17 +10,17 @@
 
 namespace fascicle {
 
-// The longest step of a body [s].
+// Upper bounds of a body's step [s].
 struct StepLength {
-  double waves = 0;   // that the fastest wave allows
-  double stable = 0;  // that is stable: also for travel, damping, and the scene's own limit
+  double waves = 0;   // the bound due to the fastest wave
+  double stable = 0;  // the bound due to waves, travel, damping, and the scene's own limit
 };
 
-// The stages of a step of one body on its grid [Fan 2013, algorithm 1], with their scratch; EulerianWorld calls them in
-// the order in which they are declared. The state is never changed: what is made is `made`. Not thread-safe.
+// The stages of a step of one body on its grid [Fan 2013, algorithm 1] and their scratch memory. EulerianWorld calls
+// them in the order of their declaration. The given state is not changed; results are in `made`. Not thread-safe.
 class BodyStepper {
  public:
-  // Body and team must outlive it, and so must the profile, where stages are timed if there is one.
+  // Body and team must outlive this, as must the profile, which may be null.
   BodyStepper(const EulerianBody& body, ThreadTeam& team, Profile* profile)
       : body_(&body), team_(&team), profile_(profile) {}
 
@@ -28,30 +28,30 @@ class BodyStepper {
   EulerianState InitialState(const std::function<Vec3(const Vec3&)>& map = nullptr,
                              const std::function<Vec3(const Vec3&)>& velocity = nullptr) const;
 
-  // Cells, roles of nodes, masses and forces. Problems: kInvertedElement (the map folds), kLeftGrid; `bad_cells` says
-  // where, at most 16.
+  // Sets cells, roles of nodes, masses and forces. Problems: kInvertedElement (the map folds), kLeftGrid; `bad_cells`
+  // are at most 16 cells where that is.
   StepProblem Prepare(const EulerianState& state, const BodyControls& now, std::vector<std::int64_t>& bad_cells);
   StepLength FindStepLength(const EulerianState& state, const BodyControls& now);
-  // A millionth of what waves take through a cell at rest [s]: nothing gets on by less.
+  // The shortest useful step: a millionth of the time that waves need to cross a cell at rest [s].
   double LeastStep() const;
 
-  // Advects velocities by themselves, after giving the body its momentum back.
+  // Restores the body's momentum, then advects velocities by themselves.
   void AdvectVelocities(const EulerianState& state, double dt);
-  // Adds what forces do to free nodes; prescribed ones get the velocity that takes them where their supports go.
+  // Adds the effect of forces to free nodes, and sets the velocities of prescribed nodes to those of their supports.
   void Accelerate(const EulerianState& state, const BodyControls& now, const BodyControls& next, double dt);
-  // What the program of all bodies has to know; null is left out where neither volumes nor elasticity ask for it.
+  // The body's part of the velocity program, which is needed only for volume preservation and implicit elasticity.
   bool needs_program() const { return body_->volume != VolumeTreatment::kNone || body_->implicit_elasticity; }
   VelocityProgram::Part PartOf(const EulerianState& state, const BodyControls& now) const;
   void TakeVelocities(const VelocityProgram& program, std::size_t body);
-  // Reactions of supports, and the velocities of constrained nodes. Problems: kNotFinite.
+  // Sets reactions of supports and velocities of constrained nodes. Problems: kNotFinite.
   StepProblem FinishVelocities(double dt);
-  // The map, the surface and what is plastic, by the new velocities. Problems: kInvertedElement.
+  // Advects the map, moves the surface and updates plasticity. Problems: kInvertedElement.
   StepProblem Move(const EulerianState& state, const BodyControls& next, double dt);
 
-  // Made of the state that the stages were called with.
+  // The result for the state of the last calls.
   EulerianState& made() { return made_; }
 
-  // Of the last state that was prepared.
+  // The cells of the state of the last Prepare.
   const EulerianCells& cells() const { return cells_; }
   const NodeRoles& roles() const { return roles_; }
   const NodalForces& forces() const { return forces_; }
@@ -71,9 +71,9 @@ class BodyStepper {
   NodeRoles roles_;
   NodalForces forces_;
   double waves_ = 0;            // StepLength::waves
-  std::vector<Vec3> now_;       // velocities at the start of the step, with the momentum that they should have
+  std::vector<Vec3> now_;       // velocities at the start of the step, with the momentum restored
   std::vector<Vec3> impulses_;  // of supports on prescribed nodes [N s]; empty without supports
-  EulerianState made_;          // its memory is used again in the next step
+  EulerianState made_;          // its memory is reused in the next step
 };
 
 }  // namespace fascicle

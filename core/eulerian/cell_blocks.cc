@@ -28,7 +28,7 @@ CellBlocks MakeCellBlocks(const EulerianGrid& grid, const EulerianCells& cells, 
   team.For(roots.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) roots[c] = RootOf(grid, cells, cells.solid[c]);
   });
-  std::vector<int> block_of(grid.cell_count(), -1);  // of roots
+  std::vector<int> block_of(grid.cell_count(), -1);  // of root cells
   CellBlocks blocks;
   for (std::size_t c = 0; c < roots.size(); ++c) {
     if (roots[c] != cells.solid[c]) continue;
@@ -37,7 +37,7 @@ CellBlocks MakeCellBlocks(const EulerianGrid& grid, const EulerianCells& cells, 
   }
   for (const std::size_t root : roots) ++blocks.begin[block_of[root] + 1];
   for (std::size_t b = 0; b < blocks.count(); ++b) blocks.begin[b + 1] += blocks.begin[b];
-  // Roots come first, whatever their numbers.
+  // Root cells come first, whatever their numbers.
   blocks.cells.resize(roots.size());
   std::vector<std::size_t> place(blocks.begin);
   for (std::size_t c = 0; c < roots.size(); ++c) {

@@ -8,11 +8,11 @@
 
 namespace fascicle {
 
-// Cells that share a pressure, block by block: one that is mostly solid, then those beside it that are less so. The
-// volume of a sliver can't be corrected by a pressure of its own.
+// Blocks of cells that share a pressure: one cell that is mostly solid, followed by neighbours that are less so. The
+// volume of a sliver cannot be corrected by its own pressure.
 struct CellBlocks {
   std::vector<std::size_t> cells;
-  std::vector<std::size_t> begin = {0};  // of each block, in `cells`, and the end
+  std::vector<std::size_t> begin = {0};  // start of each block in `cells`, and the end
 
   std::size_t count() const { return begin.size() - 1; }
   std::size_t First(std::size_t block) const { return cells[begin[block]]; }
@@ -21,8 +21,7 @@ struct CellBlocks {
   }
 };
 
-// The blocks of all cells that have any solid, in ascending order of their first cells. The same for any number of
-// threads.
+// The blocks of all cells that are solid in part, by ascending first cells. The same for any number of threads.
 CellBlocks MakeCellBlocks(const EulerianGrid& grid, const EulerianCells& cells, ThreadTeam& team);
 
 }  // namespace fascicle

@@ -5,9 +5,9 @@
 
 namespace fascicle {
 
-// The part of a cell where a function is negative, in [0, 1]: exact for one that is linear in each of the six
-// tetrahedra around a diagonal, in the mean of the four diagonals. phi: at the corners, numbered as
-// EulerianGrid::Corner does.
+// The part of a cell where a function is negative, in [0, 1]: exact for a function that is linear in each of the six
+// tetrahedra around a diagonal; averaged over the four diagonals. phi: values at the corners, in the order of
+// EulerianGrid::Corner.
 double NegativeFraction(const std::array<double, 8>& phi);
 
 }  // namespace fascicle

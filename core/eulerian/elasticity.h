@@ -11,17 +11,17 @@ namespace fascicle {
 FibreState FibreOf(const EulerianBody& body, const EulerianState& state, const BodyControls& controls,
                    const GridIndex& cell);
 
-// The elastic part Fe = F Fp^-1 of a solid cell's deformation gradient; F where nothing is plastic.
+// The elastic part Fe = F Fp^-1 of a solid cell's deformation gradient; F without plasticity.
 Mat3 ElasticGradient(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
                      std::size_t cell);
 
-// sigma = P Fe^T / det Fe [Pa]; without the pressure that preserves volumes.
+// sigma = P Fe^T / det Fe [Pa], without the pressure that preserves volume.
 template <class Law>
 Mat3 CauchyStress(const Law& law, const Mat3& Fe, const FibreState& fibre) {
   return law.Stress(Fe, fibre) * Fe.transpose() / Fe.determinant();
 }
 
-// Of the law's shape at small strains [Pa].
+// The law's shear modulus at small strains [Pa].
 double ShearModulusOf(const Material& material);
 
 // Elastic energy of the solid, with the potential of active fibres [J].

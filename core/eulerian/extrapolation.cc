@@ -9,8 +9,8 @@ namespace fascicle {
 namespace {
 
 constexpr int kReach = 2;                 // [cells] along each axis
-constexpr int kSquareReach = 6;           // [cells^2]: at a cube's corner four nodes inside that are not in a plane
-constexpr double kRegularization = 1e-6;  // of the weights, for slopes that the known nodes leave open
+constexpr int kSquareReach = 6;           // [cells^2]; includes four non-coplanar interior nodes at a cube's corner
+constexpr double kRegularization = 1e-6;  // relative to the weights, for slopes that known nodes do not determine
 
 // Calls body(number, offset) for the nodes of the grid within `reach` of one.
 template <class Body>
@@ -26,8 +26,8 @@ void ForNeighbours(const EulerianGrid& grid, const GridIndex& at, int reach, con
   }
 }
 
-// The slope at a node of the linear function that fits the known values around it best, as columns by axes, per cell.
-// value(number, offset): what is fitted. Directions in which the known nodes are coplanar have slope zero.
+// The slope at a node of the linear function that best fits the known values around it: one column per axis, per cell.
+// value(number, offset): the value to fit. Directions in which the known nodes are coplanar have slope zero.
 template <class IsKnown, class Value>
 Mat3 SlopeAt(const EulerianGrid& grid, const GridIndex& at, const IsKnown& is_known, const Value& value) {
   Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
@@ -44,7 +44,7 @@ Mat3 SlopeAt(const EulerianGrid& grid, const GridIndex& at, const IsKnown& is_kn
   return A.ldlt().solve(b).bottomRows<3>().transpose();
 }
 
-// Collects what find(k, found) adds for each k below `count`, in the order of k.
+// Collects the results of find(k, found) for each k below `count`, in the order of k.
 template <class Find>
 std::vector<std::size_t> Gather(std::size_t count, ThreadTeam& team, const Find& find) {
   constexpr std::size_t kBlock = 512;
@@ -100,7 +100,7 @@ std::vector<std::uint8_t> Band::Known(int layers) const {
   return known;
 }
 
-// Known nodes beside others.
+// The known nodes with unknown neighbours.
 Band::Places Band::Front(ThreadTeam& team) const {
   return Gather(layer_.size(), team, [&](std::size_t n, Places& found) {
     if (layer_[n] == 0) return;
@@ -110,7 +110,7 @@ Band::Places Band::Front(ThreadTeam& team) const {
   });
 }
 
-// Nodes of no layer that are beside those of the one before. Threads race to claim nodes; results do not depend on the
+// Nodes without a layer next to those of the previous layer. Threads race to claim nodes; results do not depend on the
 // order.
 Band::Places Band::Beside(const Places& before, int layer, ThreadTeam& team) {
   return Gather(before.size(), team, [&](std::size_t k, Places& found) {
@@ -126,7 +126,7 @@ Band::Places Band::Beside(const Places& before, int layer, ThreadTeam& team) {
 }
 
 void Band::Extend(int layers, double slope, ThreadTeam& team, std::vector<Vec3>& field) const {
-  // Less `slope` times the position.
+  // Without the term `slope` times the position.
   std::vector<Mat3> slopes(NodeCount(layers));
   const Places& front = places_.front();
   const double own = slope * grid_->spacing;

@@ -8,33 +8,33 @@
 
 namespace fascicle {
 
-// The weight of a node in a fitted value.
+// A node and its weight in an extrapolated value.
 struct NodeWeight {
   std::size_t node;
   double weight;
 };
 
-// The weights that extrapolate to a node: of the linear least squares fit to the known nodes within two cells, nearer
-// ones weighing more. They add up to 1. Directions in which the known nodes are coplanar have slope zero. Empty where
-// no known node is near.
+// The weights of the value at a node that extrapolates the known nodes within two cells by a linear least squares fit;
+// nearer nodes have larger weights. They add up to 1. Directions in which the known nodes are coplanar have slope zero.
+// Empty if no known node is near.
 std::vector<NodeWeight> ExtrapolationWeights(const EulerianGrid& grid, const GridIndex& at,
                                              const std::vector<std::uint8_t>& known);
 
-// Layers of nodes around those where fields are known, each of the nodes beside the layer before. Const, it may be used
-// by several threads.
+// The extrapolation band: layers of nodes around those where fields are known; each layer has the neighbours of the
+// previous one. Const, thread-safe.
 class Band {
  public:
-  // known: of each node, 1 where fields are known. `grid` must outlive it.
+  // known: for each node, 1 where fields are known. `grid` must outlive the band.
   Band(const EulerianGrid& grid, const std::vector<std::uint8_t>& known, int layers, ThreadTeam& team);
 
-  // Of each node, 1 where fields are known or in the first so many layers.
+  // For each node, 1 where fields are known or in the given number of layers.
   std::vector<std::uint8_t> Known(int layers) const;
 
-  // Extrapolates a field into the first so many layers: each node takes the mean of what its neighbours of the layer
-  // before extrapolate by their slopes, and the mean of these slopes. The slopes of the first are those of linear least
-  // squares fits to the known nodes within two cells. So linear fields are continued exactly, and others grow no faster
-  // than linearly, however many layers there are. Directions in which the known nodes are coplanar have the slope
-  // `slope`.
+  // Extrapolates a field to the given number of layers. Each node takes the mean of its neighbours in the previous
+  // layer, each extrapolated by its slope, and the mean of their slopes. The slopes of the first layer are those of
+  // linear least squares fits to the known nodes within two cells. So linear fields are extrapolated exactly, and other
+  // fields grow at most linearly, whatever the number of layers. Directions in which the known nodes are coplanar have
+  // the slope `slope`.
   //   slope  1 for the reference map, 0 for velocities
   void Extend(int layers, double slope, ThreadTeam& team, std::vector<Vec3>& field) const;
 
@@ -45,9 +45,9 @@ class Band {
   std::size_t NodeCount(int layers) const;
 
   const EulerianGrid* grid_;
-  std::vector<std::uint8_t> layer_;  // of each node: 1 + its layer, 1 where it is known, 0 beyond
-  std::vector<Places> places_;       // of each layer; the first: known nodes beside others
-  std::vector<int> number_of_;       // of each node in places_: its number there
+  std::vector<std::uint8_t> layer_;  // for each node: 1 + its layer, 1 where it is known, 0 beyond
+  std::vector<Places> places_;       // the nodes of each layer; the first: known nodes with unknown neighbours
+  std::vector<int> number_of_;       // for each node in places_: its index there
 };
 
 }  // namespace fascicle

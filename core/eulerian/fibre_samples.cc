@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRoundOff = 1e-9;  // of barycentric coordinates
 
-// Calls body(number) for the nodes of the grid in a tetrahedron.
+// Calls body(number) for the nodes of the grid within a tetrahedron.
 template <class Body>
 void ForNodesIn(const TetMesh& mesh, const Tetrahedron& tet, const EulerianGrid& grid, const Body& body) {
   const Vec3& origin = mesh.nodes[tet[0]];
@@ -33,7 +33,7 @@ void ForNodesIn(const TetMesh& mesh, const Tetrahedron& tet, const EulerianGrid&
   }
 }
 
-// The mean direction of the neighbours that have one; zero where none does.
+// The mean direction of the neighbours that have one; zero if none has.
 Vec3 MeanOfNeighbours(const EulerianGrid& grid, const std::vector<Vec3>& direction, std::size_t n) {
   const GridIndex at = grid.NodeAt(n);
   Vec3 sum = Vec3::Zero();

@@ -10,15 +10,14 @@
 
 namespace fascicle {
 
-// Fibre directions of tetrahedra at the nodes of a grid, to be asked for at points of the material. Const; may be asked
-// from several threads at once.
+// Fibre directions of tetrahedra, sampled at the nodes of a grid and evaluated at material points. Const, thread-safe.
 class FibreSamples {
  public:
-  // Nodes in a tetrahedron take its direction, others that of the nearest of these, layer by layer. One direction
-  // without tetrahedra holds everywhere.
+  // Nodes within a tetrahedron take its direction, other nodes that of the nearest of these, layer by layer. Without
+  // tetrahedra, the single direction is used everywhere.
   FibreSamples(const TetMesh& mesh, const FibreField& fibres, const EulerianGrid& samples, ThreadTeam& team);
 
-  // Unit; trilinear between nodes.
+  // A unit vector; trilinear between nodes.
   Vec3 At(const Vec3& X) const;
 
  private:

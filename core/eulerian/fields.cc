@@ -9,7 +9,7 @@
 namespace fascicle {
 namespace {
 
-// Cells further than that from a vertex have no part in its values [cells].
+// Cells farther from a vertex than this do not contribute to its values [cells].
 constexpr double kReach = 2;
 
 // Stress of a cell, with the pressure that kept its volume [Pa].
@@ -43,7 +43,7 @@ std::vector<double> CellValue(const EulerianBody& body, const EulerianState& sta
   return values;
 }
 
-// The mean over solid cells around a point, each by its solid part and its nearness; zero where there is none.
+// The mean over solid cells around a point, weighted by solid part and distance; zero if there are none.
 template <class ValueOf>
 std::vector<double> MeanAround(const EulerianGrid& grid, const EulerianCells& cells, const Vec3& x,
                                std::size_t components, const ValueOf& value_of) {

@@ -7,9 +7,9 @@
 
 namespace fascicle {
 
-// A field at the vertices of the surface, component fastest, in SI: velocities interpolated, all others the mean of the
-// solid cells within two cells of a vertex, each weighted by its solid part and its nearness. Stresses hold the
-// pressure that kept the volume.
+// A field at the vertices of the surface, component fastest, in SI units. Velocities are interpolated; all others are
+// means over the solid cells within two cells of a vertex, weighted by solid part and distance. Stresses include the
+// pressure that preserves volume.
 //   now    the controls of the body at the state's time
 //   cells  those of the state (UpdateCells)
 std::vector<double> FieldValuesOf(const EulerianBody& body, const EulerianState& state, const BodyControls& now,

@@ -10,12 +10,12 @@
 namespace fascicle {
 namespace {
 
-// Inside nodes keep at least that part of their own mass: at edges constrained nodes take more than there is, and the
-// step would not be stable.
+// Inside nodes keep at least this part of their own mass: at edges the extrapolation of constrained nodes takes more
+// than there is, and the step would be unstable.
 constexpr double kLeastMass = 0.3;
 
-// V sigma of a cell [J], its mass [kg], the force of fields on it [N], and what its hourglass modes push each corner
-// with, up to the corner's sign.
+// V sigma of a cell [J], its mass [kg], the force of fields on it [N], and the force of its hourglass modes on each
+// corner, up to the corner's sign.
 struct CellForce {
   std::array<Vec3, kHourglassModes> hourglass;
   Mat3 stress;
@@ -35,7 +35,7 @@ Vec3 ForceOfFields(const EulerianBody& body, const BodyControls& controls, const
   return sum;
 }
 
-// The forces of the cells of one body, whose law is of one type.
+// The cell forces of a body with a law of one type.
 template <class Law>
 class CellForces {
  public:
@@ -65,8 +65,8 @@ class CellForces {
   }
 
  private:
-  // Hourglass modes of the reference map in place of displacements: X moves by -F^-1 v dt, so v is pushed by F^-T times
-  // the gradient of their energy.
+  // Hourglass modes of the reference map instead of displacements: X changes by -F^-1 v dt, so the force on v is F^-T
+  // times the gradient of their energy.
   void SetHourglass(const GridIndex& cell, const Mat3& F, double volume, CellForce& force) const {
     const Mat3 inverse_transpose = F.inverse().transpose();
     const double stiffness = HourglassStiffness(law_.ShearModulus(), volume, body_.grid.spacing);
@@ -124,8 +124,8 @@ void SetFromCells(const EulerianBody& body, const EulerianState& state, const Bo
   });
 }
 
-// The nodes that a force at a point acts on: those with mass at the corners of its cell, by its place in there; where
-// there are none, those within two cells, nearer ones more.
+// The nodes on which a force at a point acts: nodes with mass at the corners of its cell, by trilinear weights; if
+// there are none, those within two cells, nearer ones with a larger weight.
 std::vector<NodeWeight> NodesUnder(const EulerianGrid& grid, const std::vector<double>& mass, const Vec3& point) {
   const EulerianGrid::Place place = grid.PlaceOf(point);
   std::vector<NodeWeight> parts;

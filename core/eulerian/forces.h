@@ -7,17 +7,17 @@
 
 namespace fascicle {
 
-// Lumped masses [kg] and forces [N] of free and prescribed nodes; zero elsewhere. Those of constrained nodes are handed
-// to their roots, each by its weight, which keeps momentum and forces.
+// Lumped masses [kg] and forces [N] of free and prescribed nodes; zero elsewhere. Those of constrained nodes are added
+// to their root nodes by their weights, which conserves momentum and forces.
 struct NodalForces {
   std::vector<double> mass;
-  std::vector<double> own_mass;  // before that of constrained nodes [kg]
+  std::vector<double> own_mass;  // before masses of constrained nodes are added [kg]
   std::vector<Vec3> force;
 };
 
 // m = sum of rho0/J times an eighth of the solid part of each cell around a node; f = sum of -V sigma grad N, with
-// sigma = P F^T / J of the elastic F and V the solid part, of gravity, of loads and force fields, and of damping
-// [Fan 2013, 3.1]. Sets roles too.
+// sigma = P F^T / J of the elastic F and V the solid part, plus gravity, loads, force fields and damping [Fan 2013,
+// 3.2]. Sets roles too.
 void SetForces(const EulerianBody& body, const EulerianState& state, const BodyControls& controls,
                const EulerianCells& cells, ThreadTeam& team, NodeRoles& roles, NodalForces& nodes);
 

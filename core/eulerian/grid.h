@@ -11,7 +11,7 @@
 
 namespace fascicle {
 
-// A regular grid over space, at rest: cubes, and the nodes at their corners. Numbers run along x first, then y.
+// A regular, fixed grid over space: cubes, and the nodes at their corners. Numbered with x fastest, then y.
 struct EulerianGrid {
   Vec3 origin = Vec3::Zero();  // of node (0, 0, 0) [m]
   double spacing = 1;          // h [m]
@@ -49,7 +49,7 @@ struct EulerianGrid {
     return NodeNumber({cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2)});
   }
 
-  // The cell that a point is in, moved inside the grid where the point is outside, and where in it, in [0, 1] there.
+  // The cell that contains a point, clamped to the grid, and the position in it, in [0, 1] within the grid.
   struct Place {
     GridIndex cell;
     Vec3 within;
@@ -73,7 +73,7 @@ struct EulerianGrid {
   }
 };
 
-// What corner c of a cell counts in trilinear interpolation, at a place `within` it.
+// The trilinear weight of corner c at a position `within` a cell.
 inline double CornerWeight(int c, const Vec3& within) {
   double weight = 1;
   for (int axis = 0; axis < 3; ++axis) weight *= (c >> axis & 1) != 0 ? within[axis] : 1 - within[axis];
@@ -87,7 +87,7 @@ inline Vec3 CentreValue(const EulerianGrid& grid, const std::vector<Vec3>& field
   return sum;
 }
 
-// The gradient of the trilinear function of corner c at the centre of a cell [1/m].
+// The gradient of the trilinear shape function of corner c at the centre of a cell [1/m].
 inline Vec3 CornerGradient(int c, double spacing) {
   return Vec3((c & 1) != 0 ? 1 : -1, (c & 2) != 0 ? 1 : -1, (c & 4) != 0 ? 1 : -1) / (4 * spacing);
 }

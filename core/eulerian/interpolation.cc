@@ -3,11 +3,11 @@
 namespace fascicle {
 namespace {
 
-// What `count` nodes in a row, the first one `before` nodes ahead of the place, count along an axis.
+// The weights along an axis of `count` consecutive nodes, the first one `before` nodes before the place.
 template <int count>
 using Weights = std::array<std::array<double, count>, 3>;
 
-// Lagrange's polynomials of the nodes at -1, 0, 1, 2 for a point at t in [0, 1], and their derivatives.
+// Lagrange polynomials for nodes at -1, 0, 1, 2 at t in [0, 1], and their derivatives.
 std::array<double, 4> CubicWeights(double t) {
   return {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
           (t + 1) * t * (t - 1) / 6};
@@ -49,7 +49,7 @@ Vec3 WeightedSum(const EulerianGrid& grid, const KnownField& field, const GridIn
   return sum;
 }
 
-// How the nodes around a place make the value there: tricubic or trilinear.
+// Tricubic or trilinear interpolation from the nodes around a place.
 template <int count>
 struct Stencil {
   GridIndex first;

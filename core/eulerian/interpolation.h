@@ -8,17 +8,17 @@
 
 namespace fascicle {
 
-// A vector at every node, some of which mean something.
+// A vector at every node, valid at known nodes.
 struct KnownField {
   const std::vector<Vec3>* values;
   const std::vector<std::uint8_t>* known;
 };
 
-// The value at a point: tricubic (Lagrange's polynomials through four nodes along each axis) where all 64 nodes are
-// known, trilinear where the eight around it are, else nothing.
+// The value at a point: tricubic (Lagrange polynomials through four nodes along each axis) if all 64 nodes are known,
+// trilinear if the eight nodes around it are, otherwise nothing.
 std::optional<Vec3> Interpolate(const EulerianGrid& grid, const KnownField& field, const Vec3& point);
 
-// The same with its derivative: column d along axis d [1/m of the field's unit].
+// The same with its derivative: column d along axis d [unit of the field per m].
 struct ValueAndGradient {
   Vec3 value;
   Mat3 gradient;

@@ -8,7 +8,7 @@
 namespace fascicle {
 namespace {
 
-// The sum of add(n, sum) over all nodes that have mass, block by block: the same bits for any number of threads.
+// The sum of add(n, sum) over all nodes with mass, block by block: the same bits for any number of threads.
 template <int kSize, class Add>
 Eigen::Vector<double, kSize> SumOverNodes(const NodalForces& nodes, ThreadTeam& team, const Add& add) {
   using Sum = Eigen::Vector<double, kSize>;
@@ -27,7 +27,7 @@ Eigen::Vector<double, kSize> SumOverNodes(const NodalForces& nodes, ThreadTeam& 
   return sum;
 }
 
-// value(n): what node n has of a quantity.
+// value(n): the quantity at node n.
 template <class Value>
 Resultant ResultantOf(const EulerianGrid& grid, const NodalForces& nodes, ThreadTeam& team, const Value& value) {
   const Eigen::Vector<double, 6> sum = SumOverNodes<6>(nodes, team, [&](std::size_t n, Eigen::Vector<double, 6>& sums) {

@@ -5,8 +5,8 @@
 
 namespace fascicle {
 
-// Sums over the nodes of a quantity, and of its moment about the origin of space: of momenta [kg m/s, kg m^2/s], or of
-// forces [N, N m].
+// Sum over the nodes of a quantity and of its moment about the origin: of momenta [kg m/s, kg m^2/s], or of forces [N,
+// N m].
 struct Resultant {
   Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
 };
@@ -14,8 +14,8 @@ double MassOf(const NodalForces& nodes, ThreadTeam& team);  // [kg]
 Resultant MomentumOf(const EulerianGrid& grid, const NodalForces& nodes, const std::vector<Vec3>& v, ThreadTeam& team);
 Resultant ForceOf(const EulerianGrid& grid, const NodalForces& nodes, ThreadTeam& team);
 
-// Adds the velocities of a rigid body to all known nodes, so that momentum and its moment are the wanted ones.
-// Otherwise advection, and mass that passes from node to node, would add spurious momentum and angular momentum.
+// Adds a rigid-body velocity to all known nodes such that momentum and its moment are as wanted. Otherwise advection,
+// and mass that moves between nodes, would add spurious momentum and angular momentum.
 void SetMomentum(const EulerianGrid& grid, const NodalForces& nodes, const Resultant& wanted,
                  const std::vector<std::uint8_t>& known, ThreadTeam& team, std::vector<Vec3>& v);
 

@@ -3,7 +3,7 @@
 namespace fascicle {
 namespace {
 
-// Nodes nearer to the surface than that are outside [cells]: otherwise round-off would decide for nodes on a surface
+// Nodes closer to the surface than this are outside [cells]; otherwise round-off would decide for nodes on a surface
 // along the grid.
 constexpr double kSkin = 1e-3;
 

@@ -9,30 +9,30 @@
 
 namespace fascicle {
 
-// What determines the velocity of each node of the grid:
+// How the velocity of each node of the grid is determined:
 //   free         inside of the solid: it is an unknown
-//   prescribed   a corner of a solid cell within a support: the support's motion
-//   constrained  any other corner of a solid cell: the linear extrapolation of inside nodes, its root nodes
-// and of all other nodes nothing does. Cells with a sliver of solid then neither move by themselves nor fray the
-// surface [Badia, Verdugo & Martin 2018, The aggregated unfitted finite element method for elliptic problems, Comput.
-// Methods Appl. Mech. Eng. 336].
+//   prescribed   a corner of a solid cell within a support: by the support's motion
+//   constrained  any other corner of a solid cell: by linear extrapolation from inside nodes, its root nodes
+// Other nodes have no velocity. So slivers of cells neither move independently nor fray the surface [Badia, Verdugo &
+// Martin 2018, The aggregated unfitted finite element method for elliptic problems, Comput. Methods Appl. Mech. Eng.
+// 336].
 struct NodeRoles {
-  std::vector<std::uint8_t> inside;   // of each node: 1 where it is in the solid and has mass, prescribed or not
-  std::vector<std::int32_t> support;  // of each node: the support that prescribes its velocity; -1: none
+  std::vector<std::uint8_t> inside;   // for each node: 1 if it is in the solid and has mass, prescribed or not
+  std::vector<std::int32_t> support;  // for each node: the support that prescribes its velocity; -1: none
   struct Constrained {
     std::size_t node;
-    std::vector<NodeWeight> roots;  // empty where no inside node is near
+    std::vector<NodeWeight> roots;  // empty if no inside node is near
   };
   std::vector<Constrained> constrained;      // ascending
-  std::vector<std::int32_t> constrained_of;  // of each node: its number there; -1: it has no roots
+  std::vector<std::int32_t> constrained_of;  // for each node: its index there; -1: none, or no roots
 
   bool IsFree(std::size_t node) const { return inside[node] != 0 && support[node] < 0; }
   bool IsPrescribed(std::size_t node) const { return support[node] >= 0; }
   bool HasVelocity(std::size_t node) const {
     return inside[node] != 0 || support[node] >= 0 || constrained_of[node] >= 0;
   }
-  // Calls body(node, weight) for the free and prescribed nodes whose velocities make that of a node: itself, or its
-  // roots.
+  // Calls body(node, weight) for the free and prescribed nodes that determine the velocity of a node: itself, or its
+  // root nodes.
   template <class Body>
   void ForRoots(std::size_t node, const Body& body) const {
     if (inside[node] != 0 || support[node] >= 0) body(node, 1.0);
@@ -41,12 +41,12 @@ struct NodeRoles {
   }
 };
 
-// mass: of each node, an eighth of that of the cells around it; 0 where none of them is solid.
+// mass: for each node, an eighth of the mass of the cells around it; 0 if none of them is solid.
 void SetNodeRoles(const EulerianBody& body, const EulerianState& state, const EulerianCells& cells,
                   const std::vector<double>& mass, ThreadTeam& team, NodeRoles& roles);
 
-// Sorts parts by their nodes and adds those of one node up.
-//   add(sum, part)  adds a part to another of the same node
+// Sorts parts by their nodes and adds up the parts of each node.
+//   add(sum, part)  adds a part to another one of the same node
 template <class Part, class Add>
 void MergeByNode(std::vector<Part>& parts, const Add& add) {
   const auto do_not_rise = [](const Part& a, const Part& b) { return a.node >= b.node; };

@@ -13,7 +13,7 @@
 namespace fascicle {
 namespace {
 
-// Nodes further outside than that are never interpolated from [spacings].
+// Nodes farther outside than this are never interpolated from [spacings].
 constexpr double kReach = 1.8;
 
 // The plastic increment of an elastic gradient: V (S / det(S)^(1/3))^-gamma V^T.

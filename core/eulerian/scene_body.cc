@@ -10,7 +10,7 @@
 namespace fascicle {
 namespace {
 
-// Cells between a body at rest and the side of its grid.
+// Least number of cells between a body at rest and the boundary of its grid.
 constexpr double kLeastRoom = 3;
 
 Bounds RoomOf(const EulerianMethod& method, const TriangleMesh& surface) {
@@ -20,7 +20,7 @@ Bounds RoomOf(const EulerianMethod& method, const TriangleMesh& surface) {
   return {body.lowest - Vec3::Constant(margin), body.highest + Vec3::Constant(margin)};
 }
 
-// Numbers of cells as they are, whole or not: they may be too many for a grid.
+// Number of cells along each axis as real numbers, since there may be too many for a grid.
 Vec3 CellsOf(const Bounds& room, double cell_size) {
   const Vec3 first = (room.lowest / cell_size).array().floor(), last = (room.highest / cell_size).array().ceil();
   return last - first;
@@ -36,7 +36,7 @@ Material BesidePressure(const Material& material) {
       material);
 }
 
-// The points of the material that a support prescribes: its region, and half a cell around it.
+// The material points that a support prescribes: its region, and half a cell around it.
 RegionPoints SupportPoints(const Body& body, const Constraint& constraint, double cell_size) {
   return {body.regions[constraint.region], body.nodes(), 0.5 * cell_size};
 }
@@ -49,7 +49,7 @@ std::vector<Vec3> ForcesOf(const Body& source, const Load& load) {
   return of_vertices;
 }
 
-// Whether a support prescribes any node of the grid in the body at rest, or of a cell at its surface.
+// Whether a support prescribes any grid node of the body at rest, or of a cell at its surface.
 bool PrescribesNode(const EulerianGrid& grid, const RegionPoints& points, const TriangleTree& tree) {
   for (std::size_t n = 0; n < grid.node_count(); ++n) {
     const Vec3 x = grid.NodePosition(grid.NodeAt(n));
@@ -67,8 +67,8 @@ void CheckSupports(const EulerianGrid& grid, const Body& body, const std::string
     if (region < 0 || region >= static_cast<std::int32_t>(body.regions.size())) continue;
     if (PrescribesNode(grid, SupportPoints(body, body.constraints[k], grid.spacing), tree)) continue;
     problems.Add(JoinPath(path, IndexPath("constraints", k) + ".region"),
-                 "region `" + body.regions[region].name + "` holds no node of the body's grid",
-                 "supports hold what is within half a cell of their regions: make it larger, or take smaller cells");
+                 "region `" + body.regions[region].name + "` contains no node of the body's grid",
+                 "supports act within half a cell of their regions: use a larger region, or smaller cells");
   }
 }
 
@@ -82,7 +82,7 @@ void CheckRoom(const EulerianMethod& method, const TriangleMesh& surface, const 
   }
   problems.Add(
       path, "the body at rest is not within eulerian.lowest and eulerian.highest, or less than three cells from them",
-      "make the room larger, or leave both out");
+      "use a larger grid, or omit both");
 }
 
 }  // namespace
@@ -139,7 +139,7 @@ void CheckEulerianBodies(const Scene& scene, std::span<const std::string> source
   if (cells > static_cast<double>(max_cells)) {
     char text[64];
     std::snprintf(text, sizeof(text), "%.4g cells are too many; at most %.4g", cells, static_cast<double>(max_cells));
-    problems.Add("eulerian.cell_size", text, "take larger cells, or a smaller margin");
+    problems.Add("eulerian.cell_size", text, "use larger cells, or a smaller margin");
     return;
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {

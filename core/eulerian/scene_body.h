@@ -10,18 +10,18 @@
 
 namespace fascicle {
 
-// The grid of a body of a scene: nodes at multiples of the cell size, around the room that the scene gives or the
-// margin around the body at rest.
+// The grid of a body of a scene: nodes at multiples of the cell size, covering the scene's `lowest` to `highest`, or
+// the body at rest plus its margin.
 EulerianGrid GridOf(const EulerianMethod& method, const TriangleMesh& surface);
 
-// The solid that a body of a scene is, with its supports, loads and fibres.
-//   Where volumes are preserved, the law keeps no more of its bulk modulus than twice its shear modulus: pressure does
-//   the rest, and waves of pressure, which would shorten the step, are not there.
+// The solid of a scene's body, with its supports, loads and fibres. If volumes are preserved, the law keeps at most
+// twice its shear modulus as bulk modulus: pressure preserves the volumes, and the step is not limited by pressure
+// waves.
 EulerianBody MakeEulerianBody(const Scene& scene, const Body& body, ThreadTeam& team);
 
-// What makes bodies unfit for their grids: surfaces that bound no solid, grids of more cells than `max_cells` together,
-// rooms that bodies are not in, supports that hold no node. Adds to `problems`, each with its path.
-//   sources  paths of what the surface of each body was made of, such as `bodies[0].mesh.box`
+// Reports bodies that do not fit their grids: surfaces that bound no solid, grids with more than `max_cells` cells in
+// total, bodies outside of the given grid, supports without nodes. Each problem has its path.
+//   sources  paths of the sources of the bodies' surfaces, such as `bodies[0].mesh.box`
 void CheckEulerianBodies(const Scene& scene, std::span<const std::string> sources, std::int64_t max_cells,
                          Problems& problems);
 

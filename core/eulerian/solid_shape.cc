@@ -8,10 +8,10 @@
 namespace fascicle {
 namespace {
 
-constexpr double kMargin = 2;      // samples around the surface's box
+constexpr double kMargin = 2;      // number of samples around the surface's bounding box
 constexpr double kLeastCells = 4;  // across
 
-// Edges that do not have one triangle on either side.
+// Number of edges that do not have one triangle on each side.
 std::size_t OpenEdges(const TriangleMesh& surface) {
   std::map<std::array<std::int32_t, 2>, int> sides;
   for (const auto& triangle : surface.triangles) {
@@ -59,13 +59,14 @@ double SolidShape::Distance(const Vec3& X) const {
 
 void CheckSolidSurface(const TriangleMesh& surface, double spacing, Problems& problems) {
   if (surface.triangles.empty()) {
-    problems.Add("", "the surface has no triangles", "give a closed one");
+    problems.Add("", "the surface has no triangles", "give a closed surface");
     return;
   }
   const std::size_t open = OpenEdges(surface);
   if (open > 0) {
     problems.Add("",
-                 std::to_string(open) + " edges of the surface lack a triangle on one side, or have one that is turned",
+                 std::to_string(open) +
+                     " edges of the surface lack a triangle on one side, or have one with the wrong orientation",
                  "close it; `fascicle mesh` repairs small holes");
     return;
   }
@@ -80,8 +81,8 @@ void CheckSolidSurface(const TriangleMesh& surface, double spacing, Problems& pr
   }
   const double across = BoundsOf(surface.nodes).extent().minCoeff() / spacing;
   if (across < kLeastCells) {
-    problems.Add("", "the solid is " + std::to_string(across) + " cells across; 4 are needed at least",
-                 "take smaller cells");
+    problems.Add("", "the solid is " + std::to_string(across) + " cells across; at least 4 are needed",
+                 "use smaller cells");
   }
 }
 

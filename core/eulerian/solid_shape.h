@@ -11,19 +11,17 @@
 
 namespace fascicle {
 
-// A solid in material space: its surface, and the signed distance phi0 from it, sampled on a grid. Const; may be asked
-// from several threads at once.
+// A solid in material space: its surface and the signed distance phi0 from it, sampled on a grid. Const, thread-safe.
 class SolidShape {
  public:
-  // surface [m]: one that CheckSolidSurface passed. spacing of the samples [m], about half a cell of the grid that it
-  // will move through.
+  // surface [m]: accepted by CheckSolidSurface. spacing: of the samples [m], about half a cell of the solid's grid.
   SolidShape(TriangleMesh surface, double spacing, ThreadTeam& team);
 
   const TriangleMesh& surface() const { return surface_; }
   double volume() const { return volume_; }  // [m^3]
-  // A grid of that spacing [m] over the solid and two cells around it.
+  // A grid of the given spacing [m] over the solid and two cells around it.
   EulerianGrid MaterialGrid(double spacing) const;
-  // phi0 [m]: negative inside; trilinear between samples, and no less than the distance from them outside of these.
+  // phi0 [m]: negative inside; trilinear between samples, and at least the distance from the samples outside of them.
   double Distance(const Vec3& X) const;
 
  private:
@@ -34,8 +32,8 @@ class SolidShape {
   double volume_ = 0;
 };
 
-// Whether a surface bounds a solid that a grid of that spacing [m] can hold: closed, turned outwards, free of cuts
-// through itself, and four cells across at least. Adds what is wrong to `problems`, with paths left empty.
+// Whether a surface bounds a solid that a grid of the given spacing [m] can represent: closed, oriented outwards,
+// without self-intersections, and at least four cells across. Adds problems with empty paths.
 void CheckSolidSurface(const TriangleMesh& surface, double spacing, Problems& problems);
 
 }  // namespace fascicle

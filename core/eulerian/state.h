@@ -11,34 +11,34 @@
 
 namespace fascicle {
 
-// What changes of a body from step to step.
+// The state of one body.
 struct EulerianState {
-  // At the nodes of the grid, in the solid and in a band around it; elsewhere they mean nothing.
-  std::vector<Vec3> X;              // reference map: which point of the material is there [m]
+  // At the nodes of the grid, valid in the solid and in a band around it.
+  std::vector<Vec3> X;              // reference map: the material point at the node [m]
   std::vector<Vec3> v;              // velocity [m/s]
-  std::vector<std::uint8_t> known;  // of each node: whether X and v mean something
+  std::vector<std::uint8_t> known;  // for each node: whether X and v are valid
   std::vector<Vec3> surface;        // positions of the vertices of the material surface [m]
-  // What the momentum of a body without supports and its moment about the origin should be [kg m/s, kg m^2/s], with
-  // the mass of all nodes that it was found for [kg]: 0 before the first step, or after velocities were changed by
-  // hand, when it is taken from these.
+  // Momentum of a body without supports and its moment about the origin [kg m/s, kg m^2/s], with the total mass of the
+  // nodes for which it was found [kg]. The mass is 0 before the first step, or after velocities were changed from
+  // outside; the momentum is then computed from them.
   double momentum_mass = 0;
   Vec3 momentum = Vec3::Zero(), moment = Vec3::Zero();
-  // Of each cell, what kept its volume in the last step, compression positive [Pa]; NaN where nothing did.
+  // For each cell: the pressure that preserved its volume in the last step, compression positive [Pa]; NaN where there
+  // was none.
   std::vector<double> pressure;
-  // At the nodes of PlasticGrid, of bodies that flow plastically: Fp^-1, and where these points of the material are
-  // [m].
+  // At the nodes of PlasticGrid, for bodies with plasticity: Fp^-1, and the positions of these material points [m].
   std::vector<Mat3> plastic;
   std::vector<Vec3> plastic_places;
-  std::vector<Vec3> reactions;  // of each support, its force on the body in the mean of the last step [N]
-  Pose pose;                    // of the grid in the world: identity, as grids rest
+  std::vector<Vec3> reactions;  // the force of each support on the body, the mean of the last step [N]
+  Pose pose;                    // of the grid in the world: identity, because grids do not move
 
   // Names in the archive begin with `prefix`.
   void Save(const std::string& prefix, ArchiveWriter& archive) const;
-  // Sets failed() of the archive when sizes differ from the present ones.
+  // Sets failed() of the archive if sizes differ from the current ones.
   void Load(const std::string& prefix, ArchiveReader& archive);
 };
 
-// What changes from step to step of all bodies, and all that a checkpoint saves.
+// The state of all bodies, which is what a checkpoint saves.
 struct EulerianWorldState {
   double time = 0;  // [s]
   std::int64_t step = 0;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kGrain = 64;
 
-// V/J (F x I) A (F^T x I) dt^2: of T by columns to L by columns.
+// V/J (F x I) A (F^T x I) dt^2: maps L to T, both in column-major order.
 //   factor  dt^2 V/J
 Mat9 SpatialTangent(const Mat9& tangent, const Mat3& Fe, double factor) {
   const Mat9 A = NearestPositive(tangent);
@@ -86,7 +86,7 @@ ElasticStiffness::Cell ElasticStiffness::MakeCell(const Law& law, const Eulerian
   return result;
 }
 
-// The force of each cell, for its gradient and its hourglass modes.
+// The forces of each cell on its gradient and its hourglass modes.
 template <class VelocityOf>
 std::vector<ElasticStiffness::CellForces> ElasticStiffness::ForcesOf(const VelocityOf& velocity_of) const {
   std::vector<CellForces> forces(cells_.size());

@@ -11,21 +11,22 @@
 
 namespace fascicle {
 
-// dt^2 K, K the tangent stiffness of a solid's elastic forces: to first order they change by -dt K v in a step. Of each
-// cell T = V/J [A : (L F)] F^T for the velocity gradient L, with A = dP/dF made positive semidefinite, and its
-// hourglass modes. Symmetric. Matrix-free: a cut cell depends on many nodes, the roots of its corners.
+// dt^2 K, where K is the tangent stiffness of a solid's elastic forces: to first order these change by -dt K v in a
+// step. For each cell T = V/J [A : (L F)] F^T for the velocity gradient L, with A = dP/dF made positive semidefinite,
+// and its hourglass modes. Symmetric. Matrix-free, because a cut cell depends on many nodes through the root nodes of
+// its corners.
 class ElasticStiffness {
  public:
-  // number: of each node, its place among the free ones; -1: it is not. `roles` and `number` must outlive it.
+  // number: index of each node among the free ones; -1: not free. `roles` and `number` must outlive this.
   ElasticStiffness(const EulerianBody& body, const EulerianState& state, const BodyControls& controls,
                    const EulerianCells& cells, const NodeRoles& roles, const std::vector<int>& number, double dt,
                    ThreadTeam& team);
 
-  // Adds dt^2 K v to a product, both three numbers for each free node.
+  // Adds dt^2 K v to a product; both have three numbers for each free node.
   void AddProduct(const Eigen::Ref<const Eigen::VectorXd>& v, Eigen::Ref<Eigen::VectorXd> product) const;
-  // dt^2 K of the velocities of all prescribed nodes, for the free ones.
+  // dt^2 K times the prescribed velocities, for the free nodes.
   Eigen::VectorXd OfPrescribed(const std::vector<Vec3>& velocity) const;
-  // Adds the impulses of the step on prescribed nodes for all velocities, -dt^2 K v [N s].
+  // Adds the impulses on prescribed nodes in the step, -dt^2 K v for all velocities [N s].
   void AddPrescribedImpulses(const std::vector<Vec3>& velocity, std::vector<Vec3>& impulses) const;
   // The diagonal of dt^2 K.
   Eigen::VectorXd Diagonal() const;
@@ -38,9 +39,9 @@ class ElasticStiffness {
     std::array<double, kRows> weight;
   };
   struct Cell {
-    std::vector<Part> parts;  // ascending in node, each once
-    Mat9 gradient;            // of T to L, by columns [J s^2/kg m^2]
-    Mat3 hourglass;           // of the force of a mode to its velocity
+    std::vector<Part> parts;  // by ascending nodes, without duplicates
+    Mat9 gradient;            // maps L to T, column-major [J s^2/kg m^2]
+    Mat3 hourglass;           // maps the velocity of an hourglass mode to its force
   };
   struct Place {
     std::size_t cell, part;
@@ -61,8 +62,8 @@ class ElasticStiffness {
   const std::vector<int>* number_;
   ThreadTeam* team_;
   std::vector<Cell> cells_;
-  std::vector<std::vector<Place>> places_;  // of each free node, where it has a part
-  // The same of prescribed nodes.
+  std::vector<std::vector<Place>> places_;  // for each free node: its places in cells
+  // The same for prescribed nodes.
   struct Prescribed {
     std::size_t node;
     std::vector<Place> places;

@@ -8,7 +8,7 @@ namespace fascicle {
 namespace {
 
 constexpr int kMostIterations = 20;
-constexpr double kEnough = 1e-8;  // of a cell
+constexpr double kEnough = 1e-8;  // relative to a cell
 
 }  // namespace
 

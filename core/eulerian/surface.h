@@ -8,16 +8,16 @@
 
 namespace fascicle {
 
-// Finds the vertices of the material surface in space: x with X(x) = X_v, by x += F (X_v - X(x)) from where
-// state.surface has them [Fan 2013, 3.3]. They do not drift: their positions follow from the reference map alone.
-// Returns the greatest |X_v - X(x)| that is left [m]; infinite where a vertex has left what is known of the map, and
-// then stays.
+// Moves the vertices of the material surface to their positions: x with X(x) = X_v, by x += F (X_v - X(x)) starting
+// from state.surface [Fan 2013, 3.4.1]. There is no drift, because the positions follow from the reference map only.
+// Returns the largest remaining |X_v - X(x)| [m]; infinite if a vertex has left the known region of the map, where it
+// stays unchanged.
 double FindSurface(const EulerianBody& body, ThreadTeam& team, EulerianState& state);
 
-// The same for one point of the material, from a place near it.
+// The same for one material point, starting from a place near it.
 double FindPoint(const EulerianGrid& grid, const KnownField& map, const Vec3& X, Vec3& place);
 
-// The volume that the surface encloses [m^3], by the divergence theorem.
+// The volume enclosed by the surface [m^3], by the divergence theorem.
 double SurfaceVolume(const EulerianBody& body, const EulerianState& state);
 
 }  // namespace fascicle

@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kTolerance = 1e-7;
 constexpr std::size_t kGrain = 64;
-// Cells along each axis whose pressures are corrected together.
+// Number of cells along each axis whose pressures are corrected together.
 constexpr std::int32_t kGroup = 4;
-// The most that a cell gains or loses of its volume in a step; what the map says beyond is made up for later.
+// Largest relative change of a cell's volume in a step; the remaining error of the map is corrected later.
 constexpr double kMostGain = 0.1;
 
 // How the velocity of a node changes the volume of a block of cells [m^2].
@@ -25,13 +25,13 @@ struct NodeFlux {
   std::size_t node;
   Vec3 flux;
 };
-using CellFluxes = std::vector<NodeFlux>;  // ascending in node, each once
+using CellFluxes = std::vector<NodeFlux>;  // by ascending nodes, without duplicates
 
 // The fluxes of blocks of cells, one block after the other.
 struct BlockFluxes {
   std::unique_ptr<NodeFlux[]> parts;
-  std::vector<std::size_t> begin;  // of each block, in `parts`
-  std::vector<std::size_t> size;   // of each block
+  std::vector<std::size_t> begin;  // start of each block in `parts`
+  std::vector<std::size_t> size;   // number of fluxes of each block
 
   std::size_t count() const { return size.size(); }
   std::span<const NodeFlux> operator[](std::size_t block) const { return {parts.get() + begin[block], size[block]}; }
@@ -50,7 +50,7 @@ void AddFluxes(const EulerianBody& body, const EulerianCells& cells, const NodeR
   }
 }
 
-// The most nodes that a block's fluxes can name.
+// Upper bound for the number of nodes in a block's fluxes.
 std::size_t MostNodes(const EulerianGrid& grid, const NodeRoles& roles, std::span<const std::size_t> block) {
   std::size_t count = 0;
   for (const std::size_t cell : block) {
@@ -85,7 +85,7 @@ BlockFluxes Fluxes(const EulerianBody& body, const EulerianCells& cells, const N
   return fluxes;
 }
 
-// How much volume a cell is to gain per time [m^3/s].
+// The required rate of volume change of a cell [m^3/s].
 double Gain(const EulerianBody& body, const EulerianCells& cells, std::size_t cell, double dt) {
   if (body.volume != VolumeTreatment::kPreserved) return 0;
   const double part = std::clamp(1 / cells.J[cell] - 1, -kMostGain, kMostGain);
@@ -105,9 +105,9 @@ struct VelocityProgram::Block {
   Part part;
   CellBlocks blocks;
   BlockFluxes fluxes;
-  std::vector<int> of_node;     // of each node: its number among the body's free ones; -1: not free
-  std::vector<int> free_nodes;  // of each block of cells, how many
-  std::vector<int> of_block;    // of each block of cells: its row among the body's; -1: it has none
+  std::vector<int> of_node;     // for each node: its index among the body's free ones; -1: not free
+  std::vector<int> free_nodes;  // for each block of cells: its number of free nodes
+  std::vector<int> of_block;    // for each block of cells: its row among the body's; -1: none
   int nodes = 0, rows = 0;
   int first_node, first_row;  // among those of all bodies
   std::optional<ElasticStiffness> stiffness;
@@ -135,7 +135,7 @@ VelocityProgram::Block::Block(const Part& p, int node, int row, double dt, Threa
   }
 }
 
-// Prescribed velocities move to the right-hand side.
+// Prescribed velocities go to the right-hand side.
 void VelocityProgram::Block::AddVolumeRows(double dt, ThreadTeam& team, ConstraintRows& all) const {
   const int* const begin = all.G.outerIndexPtr();
   int* const column = all.G.innerIndexPtr();
@@ -160,9 +160,9 @@ void VelocityProgram::Block::AddVolumeRows(double dt, ThreadTeam& team, Constrai
   });
 }
 
-// eps L between blocks whose first cells share a face, as large as the volumes' own matrix there: h/rho times their
-// solid parts. It is weighted by the square of (step of waves / step): what it does to the volumes of a body at rest
-// then does not depend on the step, and a step that a frame cuts short upsets nothing.
+// eps L between blocks whose first cells share a face, of the size of the volume constraints' own matrix there: h/rho
+// times their solid parts. It is weighted by the square of (step of waves / step), so that its effect on the volumes of
+// a body at rest does not depend on the step, and a step shortened by a frame causes no disturbance.
 void VelocityProgram::Block::AddStabilization(double dt, std::vector<int>& begin, std::vector<int>& column,
                                               std::vector<double>& value) const {
   const EulerianGrid& grid = part.body->grid;
@@ -199,7 +199,7 @@ void VelocityProgram::Block::AddStabilization(double dt, std::vector<int>& begin
   }
 }
 
-// The cube of neighbouring cells that each row belongs to; `count` cubes so far.
+// The cube of neighbouring cells that contains each row; `count` is the number of cubes so far.
 void VelocityProgram::Block::AddGroups(std::vector<int>& groups, int& count) const {
   const EulerianGrid& grid = part.body->grid;
   const auto along = [&](int axis) { return static_cast<std::size_t>((grid.cells[axis] + kGroup - 1) / kGroup); };
@@ -275,7 +275,7 @@ void VelocityProgram::SetStabilization(QuadraticProgram& problem) const {
   std::vector<int> begin = {0}, column;
   std::vector<double> value;
   for (const auto& block : blocks_) block->AddStabilization(dt_, begin, column, value);
-  // Symmetric: the same by rows and by columns.
+  // The matrix is symmetric, so rows and columns are the same.
   problem.E = Eigen::Map<const Eigen::SparseMatrix<double>>(rows_, rows_, begin.back(), begin.data(), column.data(),
                                                             value.data());
 }

@@ -9,17 +9,17 @@
 
 namespace fascicle {
 
-// The velocities of all bodies at the end of a step as one quadratic program [Fan 2013, 3.2, 3.11]:
+// The velocities of all bodies at the end of a step as one quadratic program [Fan 2013, eq. 3.11 and section 3.3]:
 //
-//   v = argmin 1/2 (v - v*) . M (v - v*)          M + dt^2 K for the first M where elasticity is implicit
+//   v = argmin 1/2 (v - v*) . M (v - v*)     with M + dt^2 K in place of the first M if elasticity is implicit
 //   where  sum over nodes of V grad N . v + eps L p = V (1 - J)/(dt J), or 0      for each block of cells
 //
-// and prescribed nodes move as their supports do. Blocks of cells (cell_blocks.h) share a pressure p. Each body has its
-// own columns, three for each free node, and its own rows; no row couples two bodies. Not thread-safe; may end by
+// with prescribed velocities of supported nodes. Blocks of cells (cell_blocks.h) share a pressure p. Each body has its
+// own columns, three for each free node, and its own rows; no row couples two bodies. Not thread-safe. May throw
 // Stopped.
 class VelocityProgram {
  public:
-  // What a body brings. All of it must stay as it is until the velocities are taken.
+  // The data of a body, which must not change until its velocities have been taken.
   struct Part {
     const EulerianBody* body;
     const EulerianState* state;
@@ -27,25 +27,25 @@ class VelocityProgram {
     const EulerianCells* cells;
     const NodeRoles* roles;
     const NodalForces* forces;
-    const std::vector<Vec3>* velocity;  // of each node: v* where it is free, as prescribed where it is prescribed
-    double waves;                       // the step that the fastest wave of the body would allow [s]
+    const std::vector<Vec3>* velocity;  // for each node: v* if it is free, its prescribed velocity if it is prescribed
+    double waves;                       // the step allowed by the fastest wave of the body [s]
   };
 
   // dt: the length of the step [s].
   VelocityProgram(double dt, ThreadTeam& team);
   ~VelocityProgram();
 
-  // Bodies are numbered from 0 as they are added.
+  // Bodies are numbered from 0 in the order of the calls.
   void AddBody(const Part& part);
-  // Once, after all bodies. iterations(): of MINRES.
+  // Call once, after all bodies. iterations() counts those of MINRES.
   QpStatus Solve();
   int iterations() const;
 
-  // After QpStatus::kSolved.
-  //   velocity  of free nodes: set; others stay
-  //   pressure  of each cell: set in those of blocks, in the mean of the step, compression positive [Pa]
-  //   impulses  of each prescribed node: what volumes and implicit elasticity push it with is taken off [N s]; empty
-  //             for a body without supports
+  // Call after QpStatus::kSolved.
+  //   velocity  set for free nodes; others are unchanged
+  //   pressure  set for each cell of a block: the mean over the step, compression positive [Pa]
+  //   impulses  for each prescribed node: the impulse of volume constraints and implicit elasticity on it is subtracted
+  //   [N s]; empty for a body without supports
   void TakeBody(std::size_t body, std::vector<Vec3>& velocity, std::vector<double>& pressure,
                 std::vector<Vec3>& impulses) const;
 

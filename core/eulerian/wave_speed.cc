@@ -7,8 +7,8 @@
 namespace fascicle {
 namespace {
 
-// rho c^2 J of waves along n, a direction in space: the largest component of Q_ij = n_k F_kl A_iljm F_pm n_p bounds it,
-// up to a factor of 3, by its trace. A: dP/dF, columns by column-major components of F.
+// rho c^2 J of waves along a direction n in space: the largest eigenvalue of Q_ij = n_k F_kl A_iljm F_pm n_p, bounded
+// by its Frobenius norm, up to a factor of sqrt(3). A: dP/dF, with columns in the column-major order of F.
 double Stiffness(const Mat9& A, const Mat3& F, const Vec3& n) {
   const Vec3 N = F.transpose() * n;
   Mat3 Q = Mat3::Zero();
@@ -37,7 +37,7 @@ double WaveSpeedAtRest(const EulerianBody& body) {
 
 double FastestWave(const EulerianBody& body, const EulerianState& state, const BodyControls& controls,
                    const EulerianCells& cells, ThreadTeam& team) {
-  // Waves are as many times faster in space as the material is stretched.
+  // The speed of waves in space grows with the stretch of the material.
   double longest = 1;
   for (const std::size_t c : cells.solid) longest = std::max(longest, cells.F[c].norm() / std::sqrt(3.0));
   double fastest = longest * WaveSpeedAtRest(body);

@@ -5,11 +5,11 @@
 
 namespace fascicle {
 
-// The fastest small wave of the material at rest, without its fibres [m/s].
+// The fastest small-amplitude wave of the material at rest, without its fibres [m/s].
 double WaveSpeedAtRest(const EulerianBody& body);
 
-// The fastest wave in any cell, as it is deformed [m/s]. Isotropic laws: that at rest times the largest stretch. Laws
-// of fibres: of the acoustic tensor along the fibre and along the axes.
+// The speed of the fastest wave in any cell in its deformed state [m/s]. For isotropic laws: that at rest times the
+// largest stretch. For laws with fibres: by the acoustic tensor along the fibre and along the axes.
 double FastestWave(const EulerianBody& body, const EulerianState& state, const BodyControls& controls,
                    const EulerianCells& cells, ThreadTeam& team);
 

@@ -40,7 +40,7 @@ StepProposal EulerianWorld::ProposeStep(const EulerianWorldState& state, const C
     }
     stable = std::min(stable, of_body);
   }
-  // The last two steps before a frame are equally long: a very short one would upset pressures.
+  // The last two steps before a frame have equal length: a very short one would disturb the pressure.
   const double left = end - state.time;
   proposal.dt = left <= stable ? left : std::min(stable, left / 2);
   proposal.time = left <= stable ? end : state.time + proposal.dt;
@@ -78,7 +78,7 @@ EulerianReport EulerianWorld::Step(EulerianWorldState& state, const Controls& co
   return report;
 }
 
-// Volumes, supports and implicit elasticity of all bodies together.
+// Solves for volumes, supports and implicit elasticity of all bodies together.
 StepProblem EulerianWorld::FindVelocities(const EulerianWorldState& state, const std::vector<BodyControls>& now,
                                           double dt, int& iterations) {
   VelocityProgram program(dt, team_);

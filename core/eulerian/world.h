@@ -7,40 +7,40 @@
 
 namespace fascicle {
 
-// How a step ended.
+// The outcome of a step.
 struct EulerianReport {
   StepProblem problem = StepProblem::kNone;
-  BadElements bad;  // cells of the grid of a body, where it could not be made
+  BadElements bad;  // the cells of a body's grid at which it failed
 };
 
-// Steps solids on their grids together, all by the same time [Fan 2013, algorithm 1]: forces; velocities advected;
-// volumes and supports in one program of all bodies; the reference maps advected and continued into a band around the
-// solids; the surfaces; plastic flow. Not thread-safe; the same bits for any number of threads, and of a state
-// that was saved and loaded. All may end early by Stopped (core/base/stop.h); states are then as they were.
+// Steps solids on their grids together, with a common time step [Fan 2013, algorithm 1]: forces; advection of
+// velocities; volumes and supports in one program of all bodies; advection of the reference maps and their
+// extrapolation to a band around the solids; the surfaces; plastic flow. Not thread-safe. The same bits for any number
+// of threads, and for a state that was saved and loaded. All functions may throw Stopped (core/base/stop.h); states are
+// then unchanged.
 class EulerianWorld {
  public:
-  // Scene, bodies (one for each of the scene's) and team must outlive it, and so must the profile, where stages are
-  // timed if there is one.
+  // Scene, bodies (one for each of the scene's) and team must outlive this, as must the profile, which may be null.
   EulerianWorld(const Scene& scene, const std::vector<const EulerianBody*>& bodies, ThreadTeam& team,
                 Profile* profile = nullptr);
 
-  // At rest at time 0.
+  // The rest state at time 0.
   EulerianWorldState InitialState() const;
 
-  // The next step from `state`, under the controls at its time, towards `end` [s], which it never passes and hits
-  // exactly: as long as is stable for all bodies; the last two before `end` are equal. Problems: kInvertedElement (a
-  // map folds), kLeftGrid, kStepTooSmall.
+  // The next step from `state` with the controls at its time: the longest one that is stable for all bodies and does
+  // not pass `end` [s], which is hit exactly. The last two steps before `end` have equal length. Problems:
+  // kInvertedElement (a map folds), kLeftGrid, kStepTooSmall.
   StepProposal ProposeStep(const EulerianWorldState& state, const Controls& now, double end);
 
-  // Makes a step of dt [s] to the time of `next`, no longer than the last ProposeStep said, which must have been for
-  // the same state and controls. On a problem the state stays as it was: kInvertedElement, kVelocitiesNotFound
+  // Steps by dt [s] to the time of `next`; dt must not exceed that of the last ProposeStep, which must have been called
+  // with the same state and controls. On a problem the state is unchanged: kInvertedElement, kVelocitiesNotFound
   // (MINRES), kNotFinite.
   EulerianReport Step(EulerianWorldState& state, const Controls& now, const Controls& next, double dt);
 
   const BodyStepper& body(std::size_t body) const { return steppers_[body]; }
 
  private:
-  // Of each body.
+  // The controls of each body.
   std::vector<BodyControls> ControlsOfBodies(const Controls& controls) const;
   StepProblem FindVelocities(const EulerianWorldState& state, const std::vector<BodyControls>& now, double dt,
                              int& iterations);

@@ -29,7 +29,7 @@ class BsplineLocator {
 
   const BsplineSolid& solid() const;
   BsplineLocation Locate(const Vec3& point) const;
-  // Points are independent of each other: the same bits for any number of threads. Heeds the team's stop requests.
+  // Points are independent of each other: the same bits for any number of threads. Observes the team's stop requests.
   std::vector<BsplineLocation> Locate(std::span<const Vec3> points, ThreadTeam& team) const;
 
  private:

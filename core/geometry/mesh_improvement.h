@@ -8,7 +8,7 @@
 
 namespace fascicle {
 
-// Both functions heed the team's stop requests, and then leave the mesh somewhere on its way.
+// Both functions observe the team's stop requests and then leave the mesh partly improved.
 
 // Moves nodes to improve the worst dihedral angle around each: towards the mean of their neighbours, or to a better
 // place found by local search [Freitag and Ollivier-Gooch 1997]. Boundary nodes move along the surface. The worst angle

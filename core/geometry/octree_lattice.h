@@ -25,7 +25,7 @@ struct Lattice {
 
 // Leaves have the width `width` where the surface is nearer than that, and elsewhere at most `width` plus `grading`
 // times the distance from the surface. Leaves that share an edge differ by a factor of at most two. Some tetrahedra lie
-// outside of the surface. The same bits for any number of threads. Heeds the team's stop requests.
+// outside of the surface. The same bits for any number of threads. Observes the team's stop requests.
 Lattice MakeLattice(const TriangleMesh& surface, const TriangleTree& tree, double width, double grading,
                     ThreadTeam& team);
 

@@ -55,7 +55,7 @@ using MeshingProgress = std::function<void(double, const char*)>;
 // `surface` repaired. Of a surface that intersects itself, the region with a winding number above one half is meshed;
 // the surface is refused when that volume differs from the enclosed volume by more than 1 %. Surfaces around several
 // bodies are refused, too. Returns nothing and adds to `problems` when the surface is refused. The same bits for any
-// number of threads. Heeds the team's stop requests; `surface` is then half repaired.
+// number of threads. Observes the team's stop requests; `surface` is then half repaired.
 std::optional<MeshingResult> Tetrahedralize(TriangleMesh& surface, const MeshingOptions& options, ThreadTeam& team,
                                             Problems& problems, const MeshingProgress& progress = {});
 

@@ -48,8 +48,8 @@ struct BiasFieldFilter {
 
 using ImageFilter = std::variant<GaussianFilter, CurvatureFilter, WaveletFilter, BiasFieldFilter>;
 
-// The filtered image; the same bits for any number of threads. Settings must be valid (CheckImageStage). Heeds the
-// team's stop requests.
+// The filtered image; the same bits for any number of threads. Settings must be valid (CheckImageStage). Observes
+// the team's stop requests.
 VolumeImage ApplyFilter(const VolumeImage& image, const ImageFilter& filter, ThreadTeam& team);
 
 // Standard deviation of an image's noise, from the median absolute deviation of the finest wavelet coefficients [unit

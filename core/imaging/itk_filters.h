@@ -4,7 +4,7 @@
 #include "core/imaging/filters.h"
 #include "core/imaging/volume_image.h"
 
-// ITK's filters, run with as many threads as the team has; they heed its stop requests. Internal to this room.
+// ITK's filters, run with as many threads as the team has; they observe its stop requests. Internal to this room.
 namespace fascicle {
 
 VolumeImage GaussianOf(const VolumeImage& image, const GaussianFilter& filter, const ThreadTeam& team);

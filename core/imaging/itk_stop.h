@@ -10,12 +10,12 @@
 
 namespace fascicle {
 
-// Runs a filter of ITK, which ends early and throws Stopped after a stop request. The filter's own progress is when it
-// is asked: between iterations, and between parts of the image in filters that report them. For this room alone.
+// Runs an ITK filter, which ends early and throws Stopped after a stop request. It is checked when the filter reports
+// progress: between iterations, and between parts of the image in filters that report them. Internal to this room.
 inline void UpdateUnlessStopped(itk::ProcessObject& filter, const std::stop_token& stop) {
   ThrowIfStopped(stop);
-  // A filter looks at this flag itself when it reports progress, perhaps from several threads; but not all look at it
-  // between iterations, of which they tell in the calling thread.
+  // Filters check this flag when they report progress, perhaps from several threads. Not all check it between
+  // iterations, which they report in the calling thread.
   filter.AddObserver(itk::ProgressEvent(), [&](const itk::EventObject&) {
     if (stop.stop_requested()) filter.AbortGenerateDataOn();
   });

@@ -22,7 +22,8 @@ struct BsplineFibreField {
 
 // Unit derivative of the solid along w at the centroids of the tetrahedra [Teran 2003, 6]. Where it vanishes, the
 // direction is taken from the neighbours. The same bits for any number of threads. Adds a problem and returns no fibres
-// if more than half of the centroids are outside, or if no direction can be determined. Heeds the team's stop requests.
+// if more than half of the centroids are outside, or if no direction can be determined. Observes the team's stop
+// requests.
 BsplineFibreField BsplineFibres(const TetMesh& mesh, const BsplineLocator& locator, ThreadTeam& team,
                                 Problems& problems);
 

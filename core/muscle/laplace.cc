@@ -9,8 +9,8 @@
 namespace fascicle {
 namespace {
 
-// The diagonal, which conjugate gradients apply once in each iteration: the place to end them. Eigen has none of its
-// own.
+// The diagonal preconditioner. Conjugate gradients apply it once per iteration, where a stop request can be checked;
+// Eigen has no other place for that.
 class StoppablePreconditioner : public Eigen::DiagonalPreconditioner<double> {
  public:
   void SetStop(const std::stop_token& stop) { stop_ = stop; }

@@ -5,13 +5,13 @@
 
 namespace fascicle {
 
-// The controls that a scene's curves ask for. Not thread-safe.
+// Evaluates the curves of a scene. Not thread-safe.
 class ControlSource {
  public:
   // The scene must have passed CheckScene and must outlive the source.
   explicit ControlSource(const Scene& scene) : scene_(&scene) {}
 
-  // Sets all controls to those of a time [s]. Allocates nothing where `controls` has held those of the scene before.
+  // Sets all controls to their values at a time [s]. Does not allocate if `controls` already has the scene's sizes.
   void Evaluate(double time, Controls& controls);
   Controls At(double time);
 

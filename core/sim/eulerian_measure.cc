@@ -9,13 +9,13 @@ namespace fascicle {
 
 std::vector<SeriesInfo> EulerianSeriesOf(const Scene& scene) {
   std::vector<SeriesInfo> series = {
-      {"energy/elastic", "J", "elastic energy of all bodies, with the potential of active fibres"},
+      {"energy/elastic", "J", "elastic energy of all bodies, including the potential of active fibres"},
       {"energy/kinetic", "J", "kinetic energy of all bodies"},
       {"solver/step", "s", "length of the last time step"},
-      {"solver/iterations", "1", "iterations of MINRES since the frame before"},
+      {"solver/iterations", "1", "iterations of MINRES since the previous frame"},
   };
   for (const Body& body : scene.bodies) {
-    series.push_back({body.name + "/volume_ratio", "1", "volume within the surface over that at rest"});
+    series.push_back({body.name + "/volume_ratio", "1", "volume within the surface over the rest volume"});
     series.push_back({body.name + "/min_volume_ratio", "1", "smallest volume ratio J of a cell"});
     series.push_back({body.name + "/max_volume_ratio", "1", "largest volume ratio J of a cell"});
     series.push_back({body.name + "/activation", "1", "activation"});

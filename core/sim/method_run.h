@@ -14,7 +14,7 @@
 
 namespace fascicle {
 
-// Where a run stands.
+// The progress of a run.
 struct RunClock {
   double time = 0;  // [s]
   std::int64_t step = 0;
@@ -22,44 +22,44 @@ struct RunClock {
   std::int64_t iterations = 0;  // of linear solves, or of Newton's method, so far
 };
 
-// How a step ended.
+// The outcome of a step.
 struct StepOutcome {
   StepProblem problem = StepProblem::kNone;
-  BadElements bad;           // where, when it could not be made
-  bool try_shorter = false;  // it could not be made, but ProposeStep has a shorter one
+  BadElements bad;           // where it failed
+  bool try_shorter = false;  // whether it failed but ProposeStep has a shorter one
 };
 
-// What Simulation asks of a method: its model of a scene, its solver, and the state of the run. Simulation has the
-// clock: it asks for a step's length, evaluates the controls at both ends, and has the step made, which takes all
-// bodies of the scene along. Not thread-safe. All of it may end early by Stopped (core/base/stop.h), as the team
-// does; the state is then that after the last whole step.
+// The interface of a method for Simulation: its model of a scene, its solver, and the state of the run. Simulation
+// controls the time: it asks for a proposed step, evaluates the controls at both ends, and makes the step for all
+// bodies of the scene. Not thread-safe. All functions may throw Stopped (core/base/stop.h), as the team does; the state
+// is then that after the last complete step.
 class MethodRun {
  public:
   virtual ~MethodRun() = default;
 
   virtual std::vector<SeriesInfo> Series() const = 0;
 
-  // At time 0, or to be loaded; to be called before anything below. start: the controls at time 0.
+  // Sets the state at time 0. Call before anything below, also before loading. start: the controls at time 0.
   virtual void Start(const Controls& start) = 0;
-  // Solves for time 0 where the scene asks for equilibrium; unless a checkpoint was loaded, before the first frame.
+  // Solves for time 0 if the scene asks for equilibrium. Call before the first frame, unless a checkpoint was loaded.
   virtual StepOutcome SolveStart(const Controls& start) = 0;
   virtual RunClock clock() const = 0;
 
-  // The next step towards `end` [s], which it never passes and hits exactly. now: the controls at the clock's time.
+  // The next step towards `end` [s], which it does not pass and hits exactly. now: the controls at the current time.
   virtual StepProposal ProposeStep(const Controls& now, double end) = 0;
-  // Makes a step of dt [s], no longer than the one that was proposed last, to the time of `next`. On a problem the
-  // state keeps its time and motion.
+  // Steps by dt [s], at most the last proposed step, to the time of `next`. On a problem the state keeps its time and
+  // motion.
   virtual StepOutcome Step(const Controls& now, const Controls& next, double dt) = 0;
 
   // Largest speed of a node [m/s].
   virtual double LargestSpeed() const = 0;
 
-  // Positions and the fields that the scene asks for, of every body. now: the controls at the clock's time.
+  // Positions and the requested fields of every body. now: the controls at the current time.
   virtual std::vector<BodyFrame> MeasureBodies(const Controls& now) const = 0;
-  // The force of each constraint of each body on it, in the scene's order [N]. later: the controls after another step
-  // as long as the last one.
+  // The force of each constraint on its body, in the scene's order [N]. later: the controls after another step of the
+  // same length as the last one.
   virtual std::vector<Vec3> Reactions(const Controls& now, const Controls& later) const = 0;
-  // One value for each of Series(). `reactions`: as above. `iterations_before`: of the clock at the frame before.
+  // One value for each of Series(). `reactions`: see above. `iterations_before`: of the clock at the previous frame.
   virtual std::vector<double> MeasureSeries(const Controls& now, const std::vector<Vec3>& reactions,
                                             std::int64_t iterations_before) const = 0;
 
@@ -67,7 +67,7 @@ class MethodRun {
   virtual void Load(ArchiveReader& archive) = 0;
 };
 
-// The method that the scene names. Scene (checked), team and profile, if there is one, must outlive the run.
+// The method of a scene. Scene (checked), team and profile (may be null) must outlive the run.
 std::unique_ptr<MethodRun> MakeMethodRun(const Scene& scene, ThreadTeam& team, Profile* profile);
 
 }  // namespace fascicle

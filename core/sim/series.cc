@@ -8,7 +8,8 @@ namespace {
 
 constexpr const char* kAxes[] = {"x", "y", "z"};
 
-// Several constraints may act on one region (different axes): their reactions are one series. In order of first use.
+// Several constraints may act on one region (along different axes); their reactions are one series. In the order of
+// first use.
 struct RegionReaction {
   std::int32_t region;
   std::vector<std::size_t> constraints;
@@ -40,7 +41,7 @@ void AddBodySeries(const Body& body, std::vector<SeriesInfo>& series) {
     if (!body.loads[k].kept) continue;
     const std::string& region = body.regions[body.loads[k].region].name;
     series.push_back(
-        {body.name + "/load/" + std::to_string(k) + "/" + region, "N", "pull of the muscle on `" + region + "`"});
+        {body.name + "/load/" + std::to_string(k) + "/" + region, "N", "force of the muscle on `" + region + "`"});
   }
 }
 

@@ -7,13 +7,13 @@
 #include "core/scene/controls.h"
 #include "core/sim/frame.h"
 
-// Series that all methods have in common: those of supports, loads and probes.
+// Series common to all methods: those of supports, loads and probes.
 namespace fascicle {
 
-// Of a body: the force of the supports of each region, x, y and z, then the loads that are kept.
+// For a body: the reaction at each region, x, y and z, then the loads that are series.
 void AddBodySeries(const Body& body, std::vector<SeriesInfo>& series);
-// Their values under the body's controls.
-//   forces  of the body's constraints on it, one each, in their order [N]
+// Their values with the body's controls.
+//   forces  on the body by each of its constraints, in order [N]
 void AddBodyValues(const Body& body, const BodyControls& controls, std::span<const Vec3> forces,
                    std::vector<double>& values);
 

@@ -27,38 +27,39 @@ struct ProblemText {
 ProblemText TextOf(StepProblem problem) {
   switch (problem) {
     case StepProblem::kInvertedElement:
-      return {"INVERTED_ELEMENT", "elements are inverted, also with the step cut to a thousandth",
+      return {"INVERTED_ELEMENT", "elements are inverted, even with the step reduced to a thousandth",
               "load, move or activate more slowly, use a smaller safety, a finer mesh where it bends, or a law that "
               "resists compression"};
     case StepProblem::kNotFinite:
-      return {"NOT_FINITE", "stresses are not finite numbers, also with the step cut to a thousandth",
-              "check loads and material parameters for their units"};
+      return {"NOT_FINITE", "stresses are not finite, even with the step reduced to a thousandth",
+              "check the units of loads and material parameters"};
     case StepProblem::kNotConverged:
       return {"NOT_CONVERGED", "the linear solve of the damping did not reach its tolerance",
               "use a larger solver_tolerance or less damping"};
     case StepProblem::kNotSolved:
       return {"NOT_CONVERGED", "the conjugate gradients did not reach their tolerance",
-              "use a larger tolerance, a smaller contrast of stiffness, or remove parts that hang on single voxels"};
+              "use a larger tolerance, a smaller contrast of stiffness, or remove parts that are connected by single "
+              "voxels"};
     case StepProblem::kVelocitiesNotFound:
-      return {"NOT_CONVERGED", "no velocities were found that keep the volumes and move as supports do",
+      return {"NOT_CONVERGED", "no velocities were found that satisfy volume constraints and supports",
               "use a larger stabilization or a smaller time_step, or an explicit elastic_force"};
     case StepProblem::kLeftGrid:
-      return {"LEFT_GRID", "the body has come to the side of its grid",
-              "give it a larger margin, or a larger room by lowest and highest"};
+      return {"LEFT_GRID", "the body has reached the boundary of its grid",
+              "use a larger margin, or a larger grid by lowest and highest"};
     case StepProblem::kNoEquilibrium:
       return {
-          "NOT_CONVERGED", "no equilibrium was found, also with the step cut to a few thousandths",
-          "the elements named are the furthest from it: see whether the body can hold this load there; load, move or "
-          "activate more slowly, or use a stepping with inertia (backward_euler), which follows a body that snaps"};
+          "NOT_CONVERGED", "no equilibrium was found, even with the step reduced to a few thousandths",
+          "the listed elements are farthest from it: check whether the body can bear this load there; load, move or "
+          "activate more slowly, or use a stepping with inertia (backward_euler), which can simulate snap-through"};
     case StepProblem::kUnstable:
-      return {"STEP_TOO_SMALL", "the motion gains energy, also with the step cut to a thousandth",
-              "leave time_step out, so that a stable step is found, or use a smaller safety"};
+      return {"STEP_TOO_SMALL", "the motion gains energy, even with the step reduced to a thousandth",
+              "omit time_step to use a stable step, or use a smaller safety"};
     case StepProblem::kNone:
     case StepProblem::kStepTooSmall:
       break;
   }
-  return {"STEP_TOO_SMALL", "the stable step has become too small to get on",
-          "the elements named are the thinnest: load or move more slowly, repair the mesh there, or use a lower "
+  return {"STEP_TOO_SMALL", "the stable step has become too small",
+          "the listed elements are the thinnest: load or move more slowly, repair the mesh there, or use a lower "
           "bulk modulus or a higher density"};
 }
 
@@ -73,7 +74,7 @@ struct Simulation::Impl {
         method(MakeMethodRun(*scene, team, p)),
         layout{FloorBodies(*scene), {}, method->Series()} {
     const double intervals = scene->duration / scene->output.frame_interval;
-    // The allowance keeps rounding from adding a frame to a whole number of intervals.
+    // The tolerance prevents rounding from adding a frame to a whole number of intervals.
     last_frame = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(intervals * (1 - 1e-12))));
   }
 
@@ -152,7 +153,7 @@ struct Simulation::Impl {
     return true;
   }
 
-  // Makes one step towards `end`: the one that the method proposes, or a shorter one where that can't be made.
+  // Makes one step towards `end`: the proposed one, or a shorter one if that fails.
   StepOutcome Step(double end) {
     const StageTimer timer(profile, "step");
     team.ThrowIfStopped();
@@ -169,7 +170,7 @@ struct Simulation::Impl {
     }
   }
 
-  // From where the run is to its end.
+  // Runs from the current time to the end.
   Outcome Run(FrameSink& sink, std::chrono::milliseconds checkpoint_interval) {
     using Clock = std::chrono::steady_clock;
     Clock::time_point last_checkpoint = Clock::now();
@@ -225,7 +226,7 @@ struct Simulation::Impl {
             ObjectKind::kNone,
             {},
             {},
-            "make room where results are kept, then start the job again"};
+            "free space where results are stored, then start the job again"};
   }
 
   Profile* const profile;
@@ -238,7 +239,7 @@ struct Simulation::Impl {
   const double curves_end = CurvesEnd(*scene);
   std::int64_t last_frame = 0;
 
-  Controls now, next;  // at the clock's time; scratch
+  Controls now, next;  // at the current time; scratch memory
   std::int64_t next_frame = 0;
   std::int64_t iterations_at_frame = 0;
   bool settled = false;

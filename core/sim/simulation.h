@@ -15,9 +15,9 @@
 
 namespace fascicle {
 
-// How far a run is.
+// The progress of a run.
 struct Progress {
-  double fraction = 0;  // of the simulated time, 0 to 1
+  double fraction = 0;  // completed fraction of the simulated time, 0 to 1
   double time = 0;      // [s]
   std::int64_t step = 0;
   double time_step = 0;  // [s]
@@ -42,17 +42,17 @@ struct Failure {
 struct Outcome {
   enum class Kind { kSucceeded, kFailed, kCancelled };
   Kind kind = Kind::kSucceeded;
-  Failure failure;  // kFailed only
+  Failure failure;  // for kFailed
 };
 
-// Takes what a run produces. Called from the thread that runs the simulation.
+// Receives the results of a run. Called from the thread that runs the simulation.
 class FrameSink {
  public:
   virtual ~FrameSink() = default;
-  // `checkpoint` is empty, or restores the simulation to the moment right after this frame. False stops the run with
-  // failure STORAGE.
+  // `checkpoint` is empty, or restores the simulation to the state right after this frame. Returning false ends the run
+  // with failure STORAGE.
   virtual bool PutFrame(Frame frame, std::string checkpoint) = 0;
-  // After every step; cheap.
+  // Called after every step; must be cheap.
   virtual void PutProgress(const Progress& progress) = 0;
 };
 
@@ -60,24 +60,24 @@ class FrameSink {
 // threads, nor on how often a run was interrupted and restored. Not thread-safe.
 class Simulation {
  public:
-  // The scene must have passed CheckScene. threads >= 1. What takes time is timed in `profile`, if there is one, which
-  // must outlive the simulation; that then ends in the thread that made it. Throws Stopped (core/base/stop.h) when
-  // `stop` asks for it while the model is set up.
+  // The scene must have passed CheckScene. threads >= 1. Stages are timed in `profile`, which may be null and must
+  // outlive the simulation; with a profile, the simulation must be destroyed by the thread that created it. Throws
+  // Stopped (core/base/stop.h) if `stop` is requested while the model is set up.
   Simulation(std::shared_ptr<const Scene> scene, int threads, Profile* profile = nullptr, std::stop_token stop = {});
   ~Simulation();
 
   // What every frame holds beside the bodies of the scene.
   const FrameLayout& layout() const;
 
-  // Goes on from a checkpoint of the same scene; false when it is not one (the simulation then starts from rest).
+  // Continues from a checkpoint of the same scene. False if it is not one; the simulation then starts from rest.
   bool Restore(std::string_view checkpoint);
 
-  // Index of the next frame that Run will put: 0, or the one after the restored checkpoint.
+  // Index of the next frame of Run: 0, or the one after the restored checkpoint.
   std::int64_t next_frame() const;
 
-  // Steps to the end of the scene. A stop request ends it with kCancelled, also within a step or a frame, which are
-  // then as if they had not been begun: it can be run on. A checkpoint goes with the first frame after each
-  // `checkpoint_interval` of wall time, and with the last frame.
+  // Steps to the end of the scene. A stop request ends it with kCancelled, also within a step or a frame, which is then
+  // discarded; Run can be called again. A checkpoint is written with the first frame after each `checkpoint_interval`
+  // of wall time, and with the last frame.
   Outcome Run(FrameSink& sink, std::stop_token stop,
               std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2));
 

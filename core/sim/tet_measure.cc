@@ -18,15 +18,15 @@ std::size_t NodeOf(const TetModel& model, const Probe& probe) {
 
 std::vector<SeriesInfo> SeriesOf(const TetModel& model) {
   std::vector<SeriesInfo> series = {
-      {"energy/elastic", "J", "elastic energy of all bodies, with the potential of active fibres"},
+      {"energy/elastic", "J", "elastic energy of all bodies, including the potential of active fibres"},
       {"energy/kinetic", "J", "kinetic energy of all bodies"},
-      {"energy/external_work", "J", "work that loads and gravity have done so far"},
-      {"energy/dissipated", "J", "energy that damping has taken so far"},
+      {"energy/external_work", "J", "work of loads and gravity so far"},
+      {"energy/dissipated", "J", "energy dissipated by damping so far"},
       {"solver/step", "s", "length of the last time step"},
-      {"solver/iterations", "1", "iterations of linear solves, or of Newton's method, since the frame before"},
+      {"solver/iterations", "1", "iterations of linear solves, or of Newton's method, since the previous frame"},
   };
   if (!model.scene().floors.empty()) {
-    series.push_back({"energy/contact", "J", "energy stored where bodies press on floors"});
+    series.push_back({"energy/contact", "J", "energy stored in contacts with floors"});
   }
   for (const Floor& floor : model.scene().floors) {
     for (const char* axis : kAxes) {
@@ -36,7 +36,7 @@ std::vector<SeriesInfo> SeriesOf(const TetModel& model) {
   }
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const Body& body = *model.bodies()[b].source;
-    series.push_back({body.name + "/volume_ratio", "1", "present volume over rest volume"});
+    series.push_back({body.name + "/volume_ratio", "1", "current volume over rest volume"});
     series.push_back({body.name + "/min_volume_ratio", "1", "smallest volume ratio J of an element"});
     series.push_back({body.name + "/activation", "1", "activation"});
     AddBodySeries(body, series);

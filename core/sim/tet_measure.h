@@ -6,18 +6,18 @@
 #include "core/sim/frame.h"
 #include "core/tet/solver.h"
 
-// Turns a state into what a frame carries.
+// Converts a state to the contents of a frame.
 namespace fascicle {
 
-// The series of a scene of the tet method, in the order in which MeasureSeries gives their values.
+// The series of a scene of the tet method, in the order of the values of MeasureSeries.
 std::vector<SeriesInfo> SeriesOf(const TetModel& model);
 
-// now: the controls at the state's time. reactions: of each constraint of each body [N]. iterations_before: of the
-// linear solves up to the frame before.
+// now: the controls at the state's time. reactions: for each constraint of each body [N]. iterations_before: those of
+// the linear solves up to the previous frame.
 std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, const Controls& now,
                                   const std::vector<Vec3>& reactions, std::int64_t iterations_before, ThreadTeam& team);
 
-// Positions and the fields that the scene asks for, of every body.
+// Positions and the requested fields of every body.
 std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& state, const Controls& now,
                                      ThreadTeam& team);
 

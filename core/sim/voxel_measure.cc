@@ -24,7 +24,7 @@ std::vector<Mat3> GradientsAtCentres(const VoxelModel& model, const VoxelField<d
   return F;
 }
 
-// The tensors of the grid along the axes of the world; with large rotation they turned with their bricks.
+// The tensors of the grid along the world axes; with large rotation they have been rotated with their bricks.
 std::vector<Mat3> StressesOf(const VoxelSceneBody& body, const VoxelField<double>& u) {
   const VoxelModel& model = body.model();
   const bool turns = model.rotation() == VoxelRotation::kLarge;
@@ -89,9 +89,9 @@ Vec3 PositionOf(const VoxelSceneBody& body, const VoxelField<double>& u, std::si
 std::vector<SeriesInfo> VoxelSeriesOf(const Scene& scene) {
   std::vector<SeriesInfo> series = {
       {"energy/elastic", "J", "elastic energy of all bodies"},
-      {"energy/kinetic", "J", "kinetic energy of all bodies, of the mean velocity of the last step"},
+      {"energy/kinetic", "J", "kinetic energy of all bodies, for the mean velocity of the last step"},
       {"solver/step", "s", "length of the last time step"},
-      {"solver/iterations", "1", "iterations of conjugate gradients since the frame before"},
+      {"solver/iterations", "1", "iterations of conjugate gradients since the previous frame"},
   };
   for (const Body& body : scene.bodies) {
     series.push_back({body.name + "/volume_ratio", "1", "mean volume ratio J of the voxels, at their centres"});

@@ -6,19 +6,19 @@
 #include "core/sim/frame.h"
 #include "core/voxel/solver.h"
 
-// Turns a state into what a frame carries.
+// Converts a state to the contents of a frame.
 namespace fascicle {
 
-// The series of a scene of the voxel method, in the order in which MeasureVoxelSeries gives their values.
+// The series of a scene of the voxel method, in the order of the values of MeasureVoxelSeries.
 std::vector<SeriesInfo> VoxelSeriesOf(const Scene& scene);
 
-// now: the controls at the state's time. reactions: of each constraint of each body [N]. iterations_before: of the
-// linear solves up to the frame before.
+// now: the controls at the state's time. reactions: for each constraint of each body [N]. iterations_before: those of
+// the linear solves up to the previous frame.
 std::vector<double> MeasureVoxelSeries(const Scene& scene, const VoxelSolver& solver, const VoxelSceneState& state,
                                        const Controls& now, const std::vector<Vec3>& reactions,
                                        std::int64_t iterations_before);
 
-// Positions and the fields that the scene asks for, of every body, along the axes of the world.
+// Positions and the requested fields of every body, along the world axes.
 std::vector<BodyFrame> MeasureVoxelBodies(const Scene& scene, const VoxelSolver& solver, const VoxelSceneState& state);
 
 }  // namespace fascicle

@@ -6,8 +6,8 @@
 
 namespace fascicle {
 
-// How the controls of a scene act on the nodes of its model. Their load scales and motions are those of model.loads()
-// and model.supports(), one for one.
+// The effect of a scene's controls on the nodes of its model. Their load scales and motions correspond to
+// model.loads() and model.supports().
 
 // Sets prescribed components to their position, or velocity, at the time of the controls.
 void PrescribePositions(const TetModel& model, const Controls& controls, NodalVector& positions);

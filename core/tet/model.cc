@@ -491,8 +491,8 @@ std::vector<std::int32_t> TetModel::NodesOfRegion(const Region& region, const Te
   return nodes;
 }
 
-// What loads on a region act on. With quadratic elements a face acts on its mid-edge nodes, because the corner
-// functions integrate to zero.
+// The faces and nodes on which loads of a region act. With quadratic elements a face acts on its mid-edge nodes,
+// because the corner functions integrate to zero.
 LoadedRegion TetModel::LoadedRegionIn(const Region& region, const TetBody& body) const {
   const auto first = static_cast<std::int32_t>(body.node_begin);
   LoadedRegion loaded;

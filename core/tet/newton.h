@@ -33,7 +33,7 @@ struct NewtonResult {
 // first. If its inertia is not that of a minimum, it is blended with the projected tangent, as little as necessary,
 // because the projected one is far stiffer and converges slowly. Prescribed components move in the first iterations;
 // the rest of the body follows by the linear system. A start with inverted elements, or a prescribed motion that
-// inverts some, is first repaired with UntanglingLaw. Not thread-safe; may end early by Stopped (core/base/stop.h).
+// inverts some, is first repaired with UntanglingLaw. Not thread-safe; may throw Stopped (core/base/stop.h).
 class NewtonSolver {
  public:
   // Model, team and profile must outlive the solver. Stages are timed in `profile`, which may be null.

@@ -28,7 +28,7 @@ struct StepReport {
   BadElements bad;  // where a step failed
 };
 
-// Steps a model in time by Lagrangian finite volumes [Teran 2003]. Not thread-safe. All functions may end early by
+// Steps a model in time by Lagrangian finite volumes [Teran 2003]. Not thread-safe. All functions may throw
 // Stopped (core/base/stop.h), which leaves states unchanged.
 class TetSolver {
  public:

@@ -35,8 +35,8 @@ struct VoxelSolveReport {
   std::size_t body = 0;  // the body with the problem
 };
 
-// Steps the bodies of a scene by the voxel method [Zhu, Chen & Kaufman 1998]. Not thread-safe. All functions may end
-// early by Stopped (core/base/stop.h), which leaves states unchanged.
+// Steps the bodies of a scene by the voxel method [Zhu, Chen & Kaufman 1998]. Not thread-safe. All functions may throw
+// Stopped (core/base/stop.h), which leaves states unchanged.
 class VoxelSolver {
  public:
   // CheckScene and CheckVoxelSupports must have accepted the scene. Scene, team and profile must outlive the solver.
@@ -54,8 +54,8 @@ class VoxelSolver {
   // the frame interval that is no longer than the scene's time step.
   StepProposal ProposeStep(const VoxelSceneState& state, double end) const;
 
-  // Makes a step of dt [s] to the time of `next`. dt must be that of ProposeStep: the levels of the dynamic method are
-  // made for one length. If it fails, the state is unchanged.
+  // Makes a step of dt [s] to the time of `next`. dt must be that of ProposeStep: the levels of the dynamic method
+  // are built for one length. If it fails, the state is unchanged.
   VoxelSolveReport Step(VoxelSceneState& state, const Controls& next, double dt);
 
  private:

@@ -35,7 +35,7 @@ class ActiveJob {
   void SetProgress(const Progress& progress);
   void SetFrames(std::shared_ptr<FrameStore> frames);
   std::shared_ptr<FrameStore> frames() const;
-  // The job's scene, where it is there already; to be taken once.
+  // The job's scene if it exists already; can be taken once.
   void SetScene(std::shared_ptr<const Scene> scene);
   std::shared_ptr<const Scene> TakeScene();
 

@@ -159,7 +159,7 @@ struct JobManager::Impl {
   std::condition_variable queue_changed;
   std::map<std::string, std::shared_ptr<ActiveJob>, std::less<>> active;
   std::set<std::string, std::less<>> queue;       // in the order of creation; all of them active
-  std::set<std::string, std::less<>> with_scene;  // those of the queue whose scene is there
+  std::set<std::string, std::less<>> with_scene;  // those of the queue that have their scene
   std::set<std::shared_ptr<ActiveJob>> running;   // with a worker
   bool is_draining = false;
 

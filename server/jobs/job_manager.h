@@ -67,8 +67,8 @@ class JobManager {
 
   // `record` has spec, scene_name, threads, request_id, request_digest and the profile so far set. Returns the new job,
   // or the earlier one with the same request id (then `*repeated` is true; the caller compares request_digest). The job
-  // is durable on return. `scene` is the scene of the spec, which the worker then need not decode. Only as many scenes
-  // of waiting jobs are kept as there are workers.
+  // is durable on return. `scene` is the scene of the spec, so that the worker need not decode it. Scenes are kept for
+  // at most as many waiting jobs as there are workers.
   JobView Submit(JobRecord record, bool* repeated, std::shared_ptr<const Scene> scene = nullptr);
   std::optional<JobView> Get(std::string_view id);
   std::vector<JobView> List(int limit, std::string_view before_id, const std::vector<JobState>& states);

@@ -49,7 +49,7 @@ std::unique_ptr<Simulation> MakeSimulation(std::shared_ptr<const Scene> scene, i
   return std::make_unique<Simulation>(std::move(scene), threads, &profile, stop);
 }
 
-// As whoever submitted the job has left it, or from the specification.
+// The scene passed at submission, or built from the specification.
 std::shared_ptr<const Scene> SceneOf(const RunContext& context, ActiveJob& job, const std::string& spec,
                                      Profile& profile) {
   const StageTimer timer(&profile, "scene");
@@ -59,7 +59,7 @@ std::shared_ptr<const Scene> SceneOf(const RunContext& context, ActiveJob& job, 
   return scene;
 }
 
-// Everything before the first step. Throws Stopped when the job is asked to stop.
+// Everything before the first step. Throws Stopped if the job is asked to stop.
 std::unique_ptr<Simulation> SetUp(const RunContext& context, ActiveJob& job, Profile& profile) {
   const StageTimer timer(&profile, "set-up");
   const std::optional<JobRecord> record = context.store.GetJob(job.id());

@@ -39,7 +39,7 @@ class JobServiceImpl : public v1::JobService::CallbackService {
   grpc::Status List(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
   // `assets/{sha256}` of the scene's assets that the store lacks.
   std::vector<std::string> MissingAssets(const v1::Scene& scene);
-  // The scene to run; nullptr, with problems, when something is wrong with it.
+  // The scene to run; null, with problems, if it is invalid.
   std::shared_ptr<const Scene> Translate(const v1::Scene& scene, Profile& profile, const std::stop_token& stop,
                                          Problems& problems);
 

@@ -54,7 +54,7 @@ grpc::ServerUnaryReactor* RunUnary(RpcContext& context, Executor& executor, grpc
   return reactor;
 }
 
-// Of a call whose work ends when its caller has given up.
+// The reactor of a call whose stop token is requested when the caller gives up.
 class StoppableReactor final : public grpc::ServerUnaryReactor {
  public:
   std::stop_token stop() const { return stop_.get_token(); }
@@ -65,7 +65,7 @@ class StoppableReactor final : public grpc::ServerUnaryReactor {
   std::stop_source stop_;
 };
 
-// As RunUnary, with a body that takes the stop token of its call.
+// Like RunUnary, with a body that takes the stop token of its call.
 template <class Body>
 grpc::ServerUnaryReactor* RunStoppable(RpcContext& context, Executor& executor, const char* method, Body body) {
   auto* reactor = new StoppableReactor;

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file is the CRC-32C of the bytes that follow it.
+// A file starts with the CRC-32C of its remaining bytes.
 constexpr std::size_t kHead = sizeof(std::uint32_t);
 
 std::optional<std::string> ReadChecked(const std::string& path) {
@@ -35,7 +35,7 @@ std::optional<std::string> ReadChecked(const std::string& path) {
   return bytes;
 }
 
-// An entry as the last process has left it.
+// An entry left by the previous process.
 struct Found {
   fs::file_time_type used;
   std::string key;
@@ -60,7 +60,7 @@ class ResultDirectory final : public ResultStore {
     std::error_code ignored;
     if (bytes) {
       order_.Use(key);
-      // Files tell the order to the next process.
+      // File times preserve the order for the next process.
       fs::last_write_time(PathOf(key), fs::file_time_type::clock::now(), ignored);
     } else {
       order_.Remove(key);
@@ -89,7 +89,7 @@ class ResultDirectory final : public ResultStore {
  private:
   std::string PathOf(std::string_view key) const { return directory_ + "/" + std::string(key); }
 
-  // What is there, from the entry used longest ago; files half written are removed.
+  // Reads the existing entries, least recently used first; removes incomplete files.
   std::vector<Found> Entries() const {
     std::vector<Found> entries;
     std::error_code error;
@@ -108,7 +108,7 @@ class ResultDirectory final : public ResultStore {
     return entries;
   }
 
-  // Without waiting for the disk: what a power cut tears is found by its check sum.
+  // Does not wait for the disk: the checksum detects files damaged by a power cut.
   static bool Write(const std::string& path, std::string_view bytes) {
     try {
       FileWriter file(path);
@@ -121,7 +121,7 @@ class ResultDirectory final : public ResultStore {
     }
   }
 
-  // Needs mutex_.
+  // Call with mutex_ locked.
   void Shrink() {
     std::error_code ignored;
     for (const std::string& key : order_.Shrink(most_bytes_)) fs::remove(PathOf(key), ignored);
@@ -130,7 +130,7 @@ class ResultDirectory final : public ResultStore {
   const std::string directory_;
   const std::int64_t most_bytes_;
   std::atomic<std::int64_t> next_file_ = 0;
-  std::mutex mutex_;  // guards order_, and that files come and go with it
+  std::mutex mutex_;  // guards order_ and the creation and removal of files
   UseOrder order_;
 };
 

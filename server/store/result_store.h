@@ -9,21 +9,21 @@
 
 namespace fascicle::server {
 
-// A cache of results that took long to compute, as bytes, each under the SHA-256 digest of all that it depends on. An
-// entry may be gone at any time, so storage that fails is not an error: there is one entry less. Thread-safe.
+// A cache of the bytes of results that took long to compute. The key of a result is the SHA-256 digest of everything
+// that it depends on. Entries may vanish at any time, so a storage failure is not an error; the entry is lost.
+// Thread-safe.
 class ResultStore {
  public:
   virtual ~ResultStore() = default;
-  // The bytes that were put under `key` (64 digits 0-9a-f), to the last bit; nothing when they are not there or were
-  // damaged.
+  // The bytes stored under `key` (64 digits 0-9a-f), unchanged; nothing if they do not exist or are damaged.
   virtual std::optional<std::string> GetResult(std::string_view key) = 0;
-  // Keeps the bytes, and removes the entries that have not been put or got for the longest time until all together have
-  // no more bytes than the store may. More bytes than that are not kept.
+  // Stores the bytes, then removes the least recently used entries until the total does not exceed the store's limit.
+  // Bytes that exceed it alone are not stored.
   virtual void PutResult(std::string_view key, std::string_view bytes) = 0;
 };
 
-// As files in a folder, which is created: they are there again when it is opened the next time. To be used by one
-// process at a time. Throws StoreError when the folder can't be made or read.
+// As files in a folder, which is created. Entries persist when it is closed. For one process at a time. Throws
+// StoreError if the folder cannot be created or read.
 std::unique_ptr<ResultStore> OpenResultDirectory(const std::string& directory, std::int64_t most_bytes);
 std::unique_ptr<ResultStore> MakeMemoryResults(std::int64_t most_bytes);
 

@@ -10,15 +10,15 @@
 
 namespace fascicle::server {
 
-// Which entries of a cache there are, how large each is, and in which order they were used. Not thread-safe.
+// The entries of a cache, their sizes, and the order in which they were used. Not thread-safe.
 class UseOrder {
  public:
-  // Makes an entry the one used last. Without effect when there is none.
+  // Marks an entry as used last. No effect if it does not exist.
   void Use(std::string_view key);
-  // Adds or replaces an entry, which is then the one used last.
+  // Adds or replaces an entry and marks it as used last.
   void Add(std::string_view key, std::int64_t bytes);
   void Remove(std::string_view key);
-  // Removes the entries used longest ago until the rest has at most so many bytes, and returns their keys.
+  // Removes the least recently used entries until the rest has at most that many bytes; returns their keys.
   std::vector<std::string> Shrink(std::int64_t most_bytes);
 
  private:
@@ -27,7 +27,7 @@ class UseOrder {
     std::list<std::string>::iterator place;
   };
 
-  std::list<std::string> keys_;  // from the one used longest ago
+  std::list<std::string> keys_;  // least recently used first
   std::map<std::string, Entry, std::less<>> entries_;
   std::int64_t bytes_ = 0;  // of all entries
 };

@@ -86,7 +86,7 @@ std::vector<std::string> NotesOf(const BsplineFibreField& field) {
   return notes;
 }
 
-// The part that takes long, and that is kept. Nothing where something is wrong.
+// The long computation whose result is kept. Nothing if something is wrong.
 std::optional<ComputedFibres> Compute(const BodySource& source, const std::string& path,
                                       const TranslatedTetrahedra* mesh, const NamedRegions& regions,
                                       Problems& problems) {
@@ -109,9 +109,9 @@ std::optional<ComputedFibres> Compute(const BodySource& source, const std::strin
   return ComputedFibres{std::move(field.fibres), std::move(notes)};
 }
 
-// All that the fibres depend on, of a sound mesh.
+// Everything that the fibres depend on, for a sound mesh.
 ArchiveWriter InputsOf(const BodySource& source, const TetMesh& mesh, const NamedRegions& regions) {
-  constexpr std::uint32_t kVersion = 1;  // of what Compute gives
+  constexpr std::uint32_t kVersion = 1;  // version of the results of Compute
   const v1::BsplineFibres& bspline = source.wire.fibres().bspline();
   ArchiveWriter writer("B-spline fibres", kVersion);
   PutMessage("bspline", bspline, writer);
@@ -131,7 +131,7 @@ FibreField TranslateBsplineFibres(const BodySource& source, const std::string& p
                                   const NamedRegions& regions, std::vector<std::string>& notes, Problems& problems) {
   const auto compute = [&] { return Compute(source, path, mesh, regions, problems); };
   if (mesh == nullptr || !mesh->sound) {
-    compute();  // what is wrong with the solid is told, too
+    compute();  // reports problems of the solid, too
     return {};
   }
   auto computed = Kept<ComputedFibres>(

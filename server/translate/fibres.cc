@@ -15,7 +15,7 @@ namespace {
 
 FibreField TranslateHarmonic(const BodySource& source, const std::string& path, const TranslatedTetrahedra* mesh,
                              const NamedRegions& regions, Problems& problems) {
-  constexpr std::uint32_t kVersion = 1;  // of what HarmonicFibres gives
+  constexpr std::uint32_t kVersion = 1;  // version of the results of HarmonicFibres
   const auto ends = FindFibreEnds(source.wire.fibres().harmonic(), path, regions, problems);
   // Invalid meshes have been reported.
   if (!ends || mesh == nullptr || !mesh->sound) return {};

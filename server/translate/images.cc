@@ -154,7 +154,7 @@ std::vector<std::string> NotesOf(const StagedImage& staged) {
   return notes;
 }
 
-// From the file to the body's voxels: the part that takes long, and that is kept.
+// From the file to the body's voxels: the long computation whose result is kept.
 std::optional<SegmentedImage> Segment(const BodySource& source, const ImageStage& stage, const std::string& path,
                                       Problems& problems) {
   const StageTimer timer(source.tools.profile, "segmentation");
@@ -173,7 +173,7 @@ std::optional<SegmentedImage> Segment(const BodySource& source, const ImageStage
 
 std::optional<VoxelGrid> TranslateImage(const BodySource& source, const std::string& path,
                                         std::vector<std::string>& notes, Problems& problems) {
-  constexpr std::uint32_t kVersion = 1;  // of what Segment gives
+  constexpr std::uint32_t kVersion = 1;  // version of the results of Segment
   const v1::ImageShape& shape = source.wire.mesh().image();
   const double metres = MetresIn(source.wire.unit());
   const bool has_source = shape.has_file() || shape.has_phantom();
@@ -185,7 +185,7 @@ std::optional<VoxelGrid> TranslateImage(const BodySource& source, const std::str
   CheckImageStage(stage, of_settings);
   AppendOfStage(path, of_settings, shape, problems);
   if (!of_settings.empty()) {
-    ReadImage(source, path, problems);  // what is wrong with it is told, too
+    ReadImage(source, path, problems);  // reports problems of the image, too
     return std::nullopt;
   }
   const auto inputs = [&] {

@@ -11,7 +11,7 @@ AssetReader ReaderOf(AssetStore& assets);
 
 // Conversions of jobs to bytes: a spec is a serialized v1::Job with scene and threads; geometry, frames and failures
 // are serialized v1::Geometry, v1::Frame and v1::Failure. Thread-safe.
-//   results  of long stages are kept there, and it must outlive the codec; nullptr: all are computed
+//   results  keeps results of long stages, and must outlive the codec; null: all are computed
 JobCodec MakeJobCodec(ResultCache* results);
 
 }  // namespace fascicle::server

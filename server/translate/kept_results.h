@@ -16,9 +16,9 @@
 
 namespace fascicle::server {
 
-// Results of the stages that are kept. Notes tell what is noteworthy, without a path.
+// Results of stages that are kept. Notes are remarks without paths.
 
-// Of an image's stages.
+// Result of an image's stages.
 struct SegmentedImage {
   VoxelGrid grid;  // without stiffness
   std::vector<std::string> notes;
@@ -27,7 +27,7 @@ struct SegmentedImage {
   void ReadFrom(ArchiveReader& archive);
 };
 
-// Of a fibre field that is solved for, or that follows a solid.
+// Result of harmonic or B-spline fibres.
 struct ComputedFibres {
   FibreField fibres;
   std::vector<std::string> notes;
@@ -36,15 +36,15 @@ struct ComputedFibres {
   void ReadFrom(ArchiveReader& archive);
 };
 
-// What goes into the inputs of a stage: an archive whose kind is the stage, and whose version grows with each change of
-// what the stage computes.
+// The inputs of a stage: an archive whose kind is the stage, and whose version increases with each change of the
+// stage's results.
 
-// A message. Files count by their path and digest.
+// A message. Files are identified by path and digest.
 void PutMessage(const char* name, const google::protobuf::Message& message, ArchiveWriter& inputs);
 // Nodes and tetrahedra.
 void PutMesh(const TetMesh& mesh, ArchiveWriter& inputs);
 
-// compute() -> std::optional<Result>, or what it gave for the same inputs() -> ArchiveWriter before.
+// Returns the result of compute() -> std::optional<Result>, or the kept one for the same inputs() -> ArchiveWriter.
 template <class Result, class Inputs, class Compute>
 std::optional<Result> Kept(const TranslateTools& tools, const Inputs& inputs, const Compute& compute) {
   if (tools.results == nullptr) return compute();

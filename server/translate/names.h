@@ -19,13 +19,13 @@ class Names {
 
   // Adds the name of the next entry, which is at `path`. Adds a problem if it is malformed or already used.
   void Add(const std::string& name, const std::string& path, Problems& problems);
-  // The entry to which the reference at `path` refers; a problem with the nearest name if there is none. (Problems
-  // beyond those that are kept are counted without a hint, which takes long to find.)
+  // The entry to which the reference at `path` refers; a problem with the nearest name if there is none. (Problems that
+  // are only counted get no hint, because finding it takes long.)
   std::optional<std::size_t> Find(const std::string& name, const std::string& path, Problems& problems) const;
 
  private:
   std::string Hint(const std::string& name) const;
-  // What a misspelt name may mean; empty when none is similar.
+  // The most similar name, for a misspelt one; empty if none is similar.
   std::string Nearest(const std::string& name) const;
 
   std::string what_;

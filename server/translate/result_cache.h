@@ -15,9 +15,9 @@
 
 namespace fascicle::server {
 
-// Results of stages that take long, such as a segmented image, for whoever needs the same again: the worker that runs
-// the scene after it was checked, or another scene with the same scan. A result is a function of what its key is made
-// of, and comes back to the last bit. Thread-safe.
+// Results of stages that take long, such as a segmented image, for later use: by the worker that runs the scene after
+// its check, or by another scene with the same scan. A result is a function of the data in its key, and is returned
+// with the same bits. Thread-safe.
 class ResultCache {
  public:
   // `store` must outlive the cache.
@@ -25,10 +25,10 @@ class ResultCache {
   ResultCache(const ResultCache&) = delete;
   ResultCache& operator=(const ResultCache&) = delete;
 
-  // The result kept for these inputs, or that of compute() -> std::optional<Result>, which is then kept; nothing, and
-  // nothing kept, where compute gives nothing. Threads that ask for the same result at once compute it once. Throws
-  // what compute throws, and Stopped after a stop request while it waits for another thread.
-  //   inputs  all that the result depends on, as an archive whose kind and version are those of the stage
+  // The result kept for these inputs, or that of compute() -> std::optional<Result>, which is then kept. If compute
+  // returns nothing, nothing is kept. If several threads ask for the same result at once, one of them computes it.
+  // Throws what compute throws, and Stopped after a stop request while it waits for another thread.
+  //   inputs  everything that the result depends on, as an archive with the kind and version of the stage
   //   Result  has WriteTo(ArchiveWriter&) const and ReadFrom(ArchiveReader&)
   template <class Result, class Compute>
   std::optional<Result> GetOrCompute(ArchiveWriter inputs, const std::stop_token& stop, const Compute& compute) {
@@ -53,9 +53,9 @@ class ResultCache {
   static constexpr const char* kKind = "result";
   static constexpr std::uint32_t kVersion = 1;
 
-  // The digest of the inputs and of the program's version: another version may compute something else.
+  // The digest of the inputs and of the program's version, since another version may compute a different result.
   static std::string KeyOf(ArchiveWriter inputs);
-  // Waits until no other thread has the key; it is given back with the returned pointer.
+  // Waits until no other thread holds the key; the returned pointer releases it.
   std::shared_ptr<void> Claim(const std::string& key, const std::stop_token& stop);
 
   ResultStore& store_;

@@ -37,11 +37,11 @@ struct TranslateLimits {
   std::int64_t max_frame_bytes = 1'000'000'000;  // a Protobuf message must stay below 2 GiB
 };
 
-// What a translation may use besides.
+// Optional resources of a translation.
 struct TranslateTools {
-  Profile* profile = nullptr;      // its stages are timed there
-  ResultCache* results = nullptr;  // results of long stages are kept there; the scene does not depend on it
-  std::stop_token stop;            // ends it with Stopped
+  Profile* profile = nullptr;      // times the stages; may be null
+  ResultCache* results = nullptr;  // keeps results of long stages, without effect on the scene; may be null
+  std::stop_token stop;            // ends the translation with Stopped
 };
 
 // Checks everything that can be checked without running (the proto's ranges, names, files, meshes, regions, CheckScene)
@@ -54,7 +54,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
 v1::Geometry EncodeGeometry(const Scene& scene, const FrameLayout& layout);
 v1::Frame EncodeFrame(const Frame& frame);
 v1::Failure EncodeFailure(const Failure& failure);
-// The profile of a scene's check, before the first run.
+// The profile of the check of a scene, before the first run.
 v1::Profile EncodeProfileOfCheck(const Profile& profile);
 // The profile of a run, added to those of the check and of earlier runs.
 v1::Profile EncodeProfile(const RunProfile& profile);

@@ -1,5 +1,5 @@
-// Steps of a ball on its grid, its volume preserved: cells a second [a public reference map code, RMT3D: 142 to 160
-// thousand a core], and two threads over one.
+// Steps of a ball on its grid with volume preservation: cells per second [a public reference map code, RMT3D: 142 to
+// 160 thousand per core], and two threads compared with one.
 #include <cstdlib>
 
 #include "ratio.h"

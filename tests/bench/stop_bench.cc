@@ -1,5 +1,5 @@
-// How long a run goes on after a stop request, at moments spread over its set-up and its first steps: a table, not a
-// comparison.
+// The time from a stop request to the end of a run, for requests spread over its set-up and its first steps: a table,
+// not a comparison.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -54,7 +54,7 @@ Scene ManyTetrahedra() {
   return scene;
 }
 
-// Seconds from a request, made after `delay` [s], to the end of the run; less than zero where it had ended by itself.
+// Seconds from a request made after `delay` [s] to the end of the run; negative if it ended by itself before.
 double SecondsToStop(const std::shared_ptr<const Scene>& scene, double delay) {
   std::stop_source stop;
   auto run = std::async(std::launch::async, [&] {

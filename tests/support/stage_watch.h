@@ -11,7 +11,7 @@
 
 namespace fascicle::testing {
 
-// How often a stage was entered so far, such as "step/Newton".
+// How often a stage has been entered so far, such as "step/Newton".
 inline std::int64_t CallsOf(const Profile& profile, const std::string& stage) {
   for (const ProfileStage& entered : profile.Stages()) {
     if (entered.name == stage) return entered.calls;
@@ -19,7 +19,7 @@ inline std::int64_t CallsOf(const Profile& profile, const std::string& stage) {
   return 0;
 }
 
-// Requests a stop from a thread of its own once a stage of another thread has been entered so many times.
+// Requests a stop, from its own thread, once a stage of another thread has been entered a given number of times.
 class StopAtStage {
  public:
   StopAtStage(const Profile& profile, std::string stage, std::int64_t calls = 1)
@@ -30,7 +30,7 @@ class StopAtStage {
         }) {}
 
   std::stop_token token() const { return source_.get_token(); }
-  // Entries of the stage up to a moment after the request; once the watched work has ended.
+  // The number of entries of the stage shortly after the request. Call after the watched work has ended.
   std::int64_t CallsAtStop() {
     thread_.request_stop();
     if (thread_.joinable()) thread_.join();

@@ -10,7 +10,7 @@
 
 namespace fascicle::testing {
 
-// A solver with the controls of its scene's curves, stepped as Simulation steps it.
+// A solver with the controls of its scene's curves, stepped as Simulation does.
 class TetStepper {
  public:
   TetStepper(const TetModel& model, ThreadTeam& team, Profile* profile = nullptr)
@@ -21,7 +21,7 @@ class TetStepper {
     return solver_.InitialState(now_);
   }
 
-  // Makes one step towards `end` [s]: the proposed one, or a shorter one where that can't be made.
+  // Makes one step towards `end` [s]: the proposed one, or a shorter one if that fails.
   StepReport Advance(TetState& state, double end) {
     source_.Evaluate(state.time, now_);
     for (;;) {

@@ -1,4 +1,4 @@
-// Solids that move through their grids, against closed forms and against themselves on finer grids.
+// Solids that move through their grids, against closed forms and finer grids.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -14,14 +14,14 @@ constexpr double kYoung = 2e4;
 constexpr double kClamp = 0.31428571 * kSide;  // a row of nodes of grids of 14, 28 and 42 cells
 constexpr double kLength = kClamp + 0.5 * kSide;
 
-// A cube without sideways strain that is held above kClamp.
+// A cube without lateral strain, fixed above kClamp.
 EulerianBody Bar(int n, ThreadTeam& team) {
   EulerianBody body = MakeSolid(n, false, kYoung, 0, team);
   HoldAbove(kClamp - 1e-6, body);
   return body;
 }
 
-// How far the lower face has gone down, in the mean.
+// The mean displacement of the lower face downwards.
 double Lowered(const EulerianBody& body, const EulerianState& state) {
   double sum = 0, count = 0;
   for (std::size_t v = 0; v < state.surface.size(); ++v) {
@@ -32,7 +32,7 @@ double Lowered(const EulerianBody& body, const EulerianState& state) {
   return sum / count;
 }
 
-// A small wave along a bar that is held at one end: v = v0 sin(pi s / 2L) at first, and the free end has gone by
+// A small wave along a bar that is fixed at one end: v = v0 sin(pi s / 2L) at first, and the free end has moved by
 // v0/omega after a quarter of the period, omega = pi c / 2L.
 TEST(EulerianVerification, AWaveIsOfSecondOrder) {
   ThreadTeam team(2);
@@ -84,7 +84,7 @@ TEST(EulerianVerification, AStretchIsOfSecondOrder) {
   EXPECT_GT(std::log2(errors[0] / errors[1]), 1.5);
 }
 
-// A cube that is squeezed beyond its yield stress for 0.15 s, and rests 0.25 s later.
+// A cube that a plane force field compresses beyond its yield stress for 0.15 s, and its rest 0.25 s later.
 EulerianBody PlasticCube(int n, ThreadTeam& team) {
   EulerianBody body = MakeSolid(n, false, 5000, 0.3, team);
   body.volume = VolumeTreatment::kPreserved;
@@ -94,7 +94,7 @@ EulerianBody PlasticCube(int n, ThreadTeam& team) {
   return body;
 }
 
-// Mean thickness along x, of the surface's two sides.
+// Mean thickness along x, between the two sides of the surface.
 double Thickness(const EulerianBody& body, const EulerianState& state) {
   double sum = 0, count = 0;
   for (std::size_t v = 0; v < state.surface.size(); ++v) {
@@ -121,7 +121,7 @@ TEST(EulerianVerification, WhatIsPlasticConvergesAndDoesNotSmear) {
     thickness[k] = Thickness(body, state) / kSide;
     EXPECT_NEAR(VolumeRatio(body, state), 1, 5e-3);
     if (k > 0) continue;
-    // Thrown and turned: the plastic part stays bit by bit, and so does the shape but for what turning does to it.
+    // Thrown and rotated: the plastic part keeps its bits, and the shape is preserved up to the error of the rotation.
     const std::vector<Mat3> plastic = state.plastic;
     for (std::size_t n = 0; n < state.v.size(); ++n) {
       const Vec3 x = body.grid.NodePosition(body.grid.NodeAt(n));
@@ -139,8 +139,8 @@ TEST(EulerianVerification, WhatIsPlasticConvergesAndDoesNotSmear) {
   for (const double t : thickness) EXPECT_NEAR(t, thickness[2], 0.01);
 }
 
-// Crushed towards a plane [Fan 2013, eq. 6.1] for 1.2 s and released: the volume stays, and the shape comes back.
-// Nothing keeps the cube from turning, on its edge it even lies lower in the field: its place is not what it was.
+// Crushed towards a plane [Fan 2013, eq. 6.1] for 1.2 s and released: the volume is preserved, and the shape recovers.
+// The cube may rotate, and its energy in the field is lower on an edge, so its position does not recover.
 TEST(EulerianVerification, ACrushedCubeComesBackToItsShape) {
   ThreadTeam team(2);
   EulerianBody body = MakeSolid(33, false, 2000, 0.3, team, 24);

@@ -1,4 +1,4 @@
-// A scene of the eulerian method through the programs: submit, watch a server that is killed on the way, run, export,
+// A scene of the eulerian method through the programs: submit, watch a server that is killed meanwhile, run, export,
 // render.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// A soft cube, given as a surface file, that hangs by its upper side and is squeezed: `frames` frames of 2 ms.
+// A soft cube, given as a surface file, that hangs by its upper side in a plane force field: `frames` frames of 2 ms.
 std::string SceneText(int frames) {
   return R"({"bodies": [{"name": "cube", "unit": "mm", "mesh": {"surface": {"path": "cube.obj"}},
     "material": {"neo_hookean": {"young_modulus": 5000}},
@@ -55,7 +55,7 @@ TEST_F(EulerianTest, IsExportedAndDrawn) {
     EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
   }
   EXPECT_EQ(job_.Call({"plot", job, "--series", "cube/*", "--out", folder() / "plot.png"}).exit_code, 0);
-  // There is nothing inside of a surface.
+  // A surface has no elements inside.
   for (const std::vector<std::string>& wish : std::vector<std::vector<std::string>>{
            {"--style", "volume"}, {"--fibres"}, {"--style", "slices", "--scan", "x"}}) {
     std::vector<std::string> command = {"render", job, "--out", folder() / "none.png"};

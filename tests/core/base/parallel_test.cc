@@ -137,7 +137,7 @@ TEST(ThreadTeamDeathTest, NestedLoopsAreABug) {
       "one loop at a time");
 }
 
-// After a request no part of a loop begins any more, the caller hears of it, and the team is as good as before.
+// After a stop request no further part of a loop begins, the caller gets Stopped, and the team can be used again.
 TEST(ThreadTeamTest, StopsWithinALoop) {
   for (const int threads : {1, 2, 4}) {
     std::stop_source source;

@@ -1,4 +1,4 @@
-// Parts of cells, what is between nodes, and what is beyond them.
+// Solid parts of cells, interpolation between nodes, and extrapolation beyond known ones.
 #include <gtest/gtest.h>
 
 #include "core/eulerian/cell_fraction.h"
@@ -14,7 +14,7 @@ std::array<double, 8> AtCorners(const Vec3& gradient, double constant) {
   return phi;
 }
 
-// What is below a plane in a cube with corners at 0 and 1, by inclusion and exclusion of corner pyramids, for a
+// The volume below a plane in a cube with corners at 0 and 1, by inclusion and exclusion of corner pyramids, for a
 // gradient without negative components: sum of (-1)^k max(0, d - sum of k components)^3 / (6 g1 g2 g3).
 double BelowPlane(const Vec3& g, double d) {
   double sum = 0;
@@ -62,7 +62,7 @@ TEST(Interpolation, IsExactForCubicsInsideAndForLinearFieldsAtTheSide) {
   const Vec3 inside = grid.origin + Vec3(0.9, 0.6, 0.77), side = grid.origin + Vec3(0.1, 0.05, 1.7);
   EXPECT_LT((*Interpolate(grid, {&cubic, &known}, inside) - CubicField(inside)).norm(), 1e-12);
   EXPECT_LT((*Interpolate(grid, {&linear, &known}, side) - (2 * side + Vec3(1, 2, 3))).norm(), 1e-12);
-  // A node that is not known takes the cubic away, then all.
+  // One unknown node disables the cubic interpolation; an unknown corner of the cell disables all.
   const EulerianGrid::Place place = grid.PlaceOf(inside);
   known[grid.NodeNumber({place.cell[0] - 1, place.cell[1], place.cell[2]})] = 0;
   EXPECT_GT((*Interpolate(grid, {&cubic, &known}, inside) - CubicField(inside)).norm(), 1e-4);

@@ -21,7 +21,7 @@ double EnergyOf(const EulerianBody& body, const EulerianState& state, ThreadTeam
   return KineticEnergy(state, forces) + ElasticEnergy(body, state, controls, cells);
 }
 
-// Through the grid by three cells: shape, momentum and energy go along.
+// Through the grid by three cells: shape, momentum and energy are preserved.
 TEST(EulerianMotion, FliesFreely) {
   ThreadTeam team(2);
   EulerianBody body = MakeSolid(24, true, 1e4, 0.4, team);
@@ -47,8 +47,8 @@ TEST(EulerianMotion, FliesFreely) {
   EXPECT_LT((momentum() - first).norm(), 0.01 * first.norm());
 }
 
-// A ball stretched by 1.1 and released, its volume preserved: on the surface within 0.1 %. Cells gain and lose energy
-// as the solid moves through them, the less the finer they are.
+// A ball stretched by 1.1 and released, with volume preservation: the volume within its surface stays within 0.1 %. The
+// energy changes as the solid moves through cells, less with finer cells.
 TEST(EulerianMotion, AStretchedBallKeepsItsVolume) {
   ThreadTeam team(2);
   for (const auto& [cells, energy_bound] : {std::pair(20, 1.1), {32, 1.02}, {64, 1.005}}) {
@@ -79,11 +79,11 @@ TEST(EulerianMotion, AStretchedBallKeepsItsVolume) {
     EXPECT_LT(worst, 1e-3);
     EXPECT_LT(most, energy_bound * first);
     EXPECT_LT(push, 0.01 * momentum);
-    EXPECT_LT(least_length, 0.96);  // it swings through
+    EXPECT_LT(least_length, 0.96);  // it passes the rest state
   }
 }
 
-// Crushed between forces towards its middle plane [Fan 2013, figure 6.1], each way of treating the volume.
+// Crushed by forces towards its middle plane [Fan 2013, figure 6.1], with each treatment of volume.
 TEST(EulerianMotion, ACrushedCubeKeepsItsVolumeIfAskedTo) {
   ThreadTeam team(2);
   double worst[3] = {};
@@ -106,9 +106,9 @@ TEST(EulerianMotion, ACrushedCubeKeepsItsVolumeIfAskedTo) {
   EXPECT_LT(worst[2], 0.002);
 }
 
-// Hung by what is above a row of nodes, without sideways strain (nu = 0): with P = mu (s - 1/s) = rho g Z at a distance
-// Z from the lower end, s = p/2 + sqrt(1 + p^2/4), p = rho g Z / mu, and u the integral of s - 1. Of second order in
-// the grid.
+// Hanging from above a row of nodes, without lateral strain (nu = 0): with P = mu (s - 1/s) = rho g Z at a distance Z
+// from the lower end, s = p/2 + sqrt(1 + p^2/4), p = rho g Z / mu, and u the integral of s - 1. Second order in the
+// cell size.
 TEST(EulerianMotion, ABlockHangsAsFarAsItShould) {
   ThreadTeam team(2);
   constexpr double kYoung = 2e4, kGravity = 8, kEnd = 0.3;

@@ -1,4 +1,4 @@
-// What steps promise: rest, the same bits, one step for all solids, and what is said when a step fails.
+// Properties of steps: rest, the same bits, one step for all solids, and reports of failures.
 #include "core/eulerian/world.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ std::string BitsOf(const EulerianWorldState& state) {
   return archive.Finish();
 }
 
-// Two solids, one of which is held.
+// Two solids, one of them supported.
 struct Pair {
   explicit Pair(ThreadTeam& team)
       : held(MakeSolid(14, false, 1e4, 0.3, team)), free(MakeSolid(12, true, 4e4, 0.3, team)) {
@@ -64,7 +64,7 @@ TEST(EulerianWorld, TheSameBitsForAnyThreadsAndInAWorldThatIsLoaded) {
   EXPECT_EQ(bits[0], bits[2]);
 }
 
-// All solids make the step that is stable for the one of them that allows least.
+// All solids make the step that is stable for the most restrictive one.
 TEST(EulerianWorld, SolidsStepTogether) {
   ThreadTeam team(2);
   const Pair pair(team);
@@ -72,7 +72,7 @@ TEST(EulerianWorld, SolidsStepTogether) {
   SolidRun run({&pair.held, &pair.free}, team);
   EXPECT_EQ(run.Propose(1).dt, std::min(of_held, of_free));
   EXPECT_NE(of_held, of_free);
-  // What nothing couples moves as it would alone, to the tolerance of the joint program.
+  // Uncoupled solids move as they would alone, to the tolerance of the joint program.
   SolidRun alone(pair.free, team);
   for (int k = 0; k < 5; ++k) {
     const double dt = alone.Propose(1).dt;
@@ -101,11 +101,11 @@ TEST(EulerianWorld, ABodyThatIsHeldAllOverRests) {
     SolidRun run(body, team);
     for (int k = 0; k < 3; ++k) ASSERT_EQ(run.Step(1).problem, StepProblem::kNone);
     EXPECT_NEAR(VolumeRatio(body, run.solid()), 1, 1e-12);
-    EXPECT_GT(run.solid().reactions[0][2], 0.8 * 9);  // of a body of 1 kg
+    EXPECT_GT(run.solid().reactions[0][2], 0.8 * 9);  // for a body of 1 kg
   }
 }
 
-// From rest, momentum is what gravity and the support gave.
+// From rest, the momentum is the impulse of gravity and of the support.
 TEST(EulerianWorld, ReactionsBalanceTheMomentum) {
   ThreadTeam team(2);
   for (const VolumeTreatment volume : {VolumeTreatment::kNone, VolumeTreatment::kPreserved}) {
@@ -145,8 +145,7 @@ TEST(EulerianWorld, SaysThatTheSolidLeavesItsGridAndKeepsTheState) {
   EXPECT_GT(run.state.time, 0.01);
 }
 
-// Stopped at any stage, the state is as it was, and the step that is made later has the bits of one that was never
-// disturbed.
+// After a stop at any stage, the state is unchanged, and the next step has the same bits as without the stop.
 TEST(EulerianWorld, AStepThatIsStoppedLeavesNoTrace) {
   for (const char* stage : {"forces", "constraints", "advection of the map", "surface"}) {
     Profile profile;

@@ -1,4 +1,4 @@
-// Controls: what the curves of a scene ask for, and what anyone sets in their place.
+// Controls: evaluated from the curves of a scene, or set by the caller.
 #include "core/sim/control_source.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST(ControlSourceTest, EvaluatesAllCurvesInTheOrderOfTheScene) {
   EXPECT_EQ(of_second.motions[1].translation, Vec3(0, 0.01, 0));
 }
 
-// The frame after some steps with the controls of the scene's curves, as `steer` leaves them.
+// The frame after some steps with the controls of the scene's curves, modified by `steer`.
 std::vector<BodyFrame> Stepped(const Scene& scene, const std::function<void(Controls&)>& steer) {
   ThreadTeam team(1);
   const auto method = MakeMethodRun(scene, team, nullptr);
@@ -97,7 +97,7 @@ struct Steered {
 
 class SteeredTest : public ::testing::TestWithParam<Steered> {};
 
-// What is set by hand is what a curve of that value would do, bit by bit, and does something.
+// A control set by the caller has the same effect as a curve of that value, with the same bits, and it has an effect.
 TEST_P(SteeredTest, ControlsComeFromAnywhere) {
   const Scene rests = GetParam().scene();
   Scene curves = rests;

@@ -13,7 +13,7 @@ namespace fascicle::testing {
 
 inline constexpr double kCell = 0.01;  // [m]
 
-// The boundary of a box from the origin on, with its nodes alone.
+// The boundary of a box with one corner at the origin, with only its own nodes.
 inline TriangleMesh BoxSurface(const Vec3& origin, const Vec3& size, int divisions) {
   const TetMesh mesh = MakeBox(origin, size, {divisions, divisions, divisions});
   TriangleMesh surface;
@@ -31,8 +31,8 @@ inline TriangleMesh BoxSurface(const Vec3& origin, const Vec3& size, int divisio
   return surface;
 }
 
-// A cube of 5 cm, off the nodes of the grid, with the regions `low` (its layer of 1 cm at the lowest z) and `high`
-// (the nodes of its upper side).
+// A cube of 5 cm, off the nodes of the grid, with the regions `low` (its lowest layer of 1 cm) and `high` (the nodes of
+// its upper side).
 inline Body EulerianCube(const std::string& name = "cube") {
   Body body;
   body.name = name;

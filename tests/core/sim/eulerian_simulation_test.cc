@@ -1,4 +1,4 @@
-// Scenes of the eulerian method as runs.
+// Runs of scenes of the eulerian method.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 using namespace fascicle::testing;
 
-// Held below, pressed from above, pulled aside by gravity.
+// Supported below, pressed from above, pulled sideways by gravity.
 Scene Held() {
   Body body = EulerianCube();
   body.constraints = {{0, {true, true, true}, {}}};
@@ -59,7 +59,7 @@ TEST(EulerianSimulationTest, FramesCarryTheSurfaceAndFieldsAtItsNodes) {
     EXPECT_NEAR(run.At(f, "cube/volume_ratio"), 1, 1e-3);
     EXPECT_LE(run.At(f, "cube/min_volume_ratio"), run.At(f, "cube/max_volume_ratio"));
   }
-  // Stress and what is made of it agree.
+  // Stress and the fields derived from it agree.
   const std::vector<FieldValues>& fields = run.frames.back().bodies[0].fields;
   for (std::size_t n = 0; n < nodes; ++n) {
     const double* s = &fields[1].values[6 * n];
@@ -69,7 +69,7 @@ TEST(EulerianSimulationTest, FramesCarryTheSurfaceAndFieldsAtItsNodes) {
   EXPECT_GT(run.Last("solver/step"), 0);
 }
 
-// What the grid takes a body to weigh: the more cells across, the nearer to what it does.
+// The weight of a body on its grid approaches the exact one with the number of cells across.
 double MassOnGrid(const Scene& scene) {
   ThreadTeam team(1);
   const EulerianBody body = MakeEulerianBody(scene, scene.bodies[0], team);
@@ -78,7 +78,7 @@ double MassOnGrid(const Scene& scene) {
   return scene.bodies[0].density * SolidVolume(body, cells);
 }
 
-// The support bears all that acts once the body has come to rest: the weight and the traction.
+// After the body has come to rest, the support bears the weight and the traction.
 TEST(EulerianSimulationTest, SupportsBearTheLoads) {
   Scene scene = Held();
   scene.gravity.acceleration = Vec3(1, 0, -2);
@@ -95,7 +95,7 @@ TEST(EulerianSimulationTest, SupportsBearTheLoads) {
   EXPECT_NEAR(run.Last("cube/reaction/low/z"), 2 * mass + press, 0.01 * press);
 }
 
-// A support that turns takes what it holds with it, and the rest follows.
+// A rotating support moves the material in it, and the rest follows.
 TEST(EulerianSimulationTest, SupportsMove) {
   Body body = EulerianCube();
   Constraint low = {0, {true, true, true}, {}};
@@ -150,7 +150,7 @@ TEST(EulerianSimulationTest, CheckpointsFitTheirSceneOnly) {
   for (std::size_t k = 0; k < others.size(); ++k) EXPECT_FALSE(takes(others[k])) << k;
 }
 
-// What comes to the side of its grid ends there, and says what to do.
+// A body that reaches the boundary of its grid ends the run, with advice.
 TEST(EulerianSimulationTest, LeavingTheGridIsAFailureWithAdvice) {
   Scene scene = EulerianScene({EulerianCube()});
   scene.gravity.acceleration = Vec3(0, 0, -50);
@@ -164,9 +164,10 @@ TEST(EulerianSimulationTest, LeavingTheGridIsAFailureWithAdvice) {
   EXPECT_GE(run.frames.size(), 3u);
 }
 
-// Pressed together beyond its yield stress it keeps another shape, at the same volume; an elastic cube comes back.
+// Compressed beyond its yield stress, a plastic cube keeps another shape with the same volume; an elastic cube
+// recovers.
 TEST(EulerianSimulationTest, PlasticFlowStays) {
-  // The mean distance between nodes that face each other: such a cube may rotate onto an edge, where it is thinner.
+  // The mean distance between opposite nodes: such a cube may rotate onto an edge, where it is thinner.
   const auto width = [](bool plastic) {
     Body body = EulerianCube();
     if (plastic) body.surface().plasticity = Plasticity{300, 0};

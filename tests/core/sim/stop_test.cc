@@ -1,4 +1,4 @@
-// A stop request ends a run within the step, the frame or the set-up that it meets, and leaves no trace of these.
+// A stop request ends a run within the current step, frame or set-up, which is discarded.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -50,7 +50,7 @@ Scene Block() {
   return Endless(std::move(scene), 0.005);
 }
 
-// Ends a run, between two steps, once it has put so many frames.
+// Ends a run between two steps after the given number of frames.
 class SinkOfFrames : public CollectingSink {
  public:
   explicit SinkOfFrames(std::size_t count) : count_(count) {}
@@ -69,8 +69,8 @@ class SinkOfFrames : public CollectingSink {
 struct StopCase {
   const char* name;
   Scene (*scene)();
-  const char* stage;   // within which the request comes
-  std::int64_t calls;  // of the stage before that
+  const char* stage;   // during which the request is made
+  std::int64_t calls;  // of the previous stage
 };
 
 class StopTest : public ::testing::TestWithParam<StopCase> {};
@@ -84,7 +84,7 @@ TEST_P(StopTest, EndsWithinAStageAndCanBeRunOn) {
   ASSERT_EQ(simulation.Run(first, stop.token(), std::chrono::hours(1)).kind, Outcome::Kind::kCancelled);
   EXPECT_LE(CallsOf(profile, GetParam().stage), stop.CallsAtStop()) << "the stage was not entered again";
 
-  // Run on, it gives the frames of a run that nothing disturbed.
+  // Continued, it produces the frames of an undisturbed run.
   SinkOfFrames rest(2);
   ASSERT_EQ(simulation.Run(rest, rest.token(), std::chrono::hours(1)).kind, Outcome::Kind::kCancelled);
   SinkOfFrames undisturbed(first.frames.size() + 2);

@@ -1,4 +1,4 @@
-// The cache of results, in memory and as files, and what is special to files.
+// The cache of results, in memory and as files, and special cases of files.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -20,7 +20,7 @@ constexpr std::int64_t kLarge = 1 << 20;
 
 std::string KeyOf(int number) { return Hex(Sha256Of("input " + std::to_string(number))); }
 
-// `size` bytes that differ by `number`.
+// `size` bytes that depend on `number`.
 std::string BytesOf(int number, std::size_t size = 1000) { return SampleBytes(static_cast<unsigned>(number), size); }
 
 class ResultContract : public ::testing::TestWithParam<bool> {
@@ -36,7 +36,7 @@ TEST_P(ResultContract, GivesBackWhatWasPut) {
   const auto results = Open(kLarge);
   for (const std::size_t size : {0, 1, 100'000}) {
     const std::string bytes = BytesOf(1, size);
-    results->PutResult(KeyOf(1), bytes);  // replaces the one before
+    results->PutResult(KeyOf(1), bytes);  // replaces the previous one
     EXPECT_EQ(results->GetResult(KeyOf(1)), bytes);
   }
   EXPECT_EQ(results->GetResult(KeyOf(2)), std::nullopt);
@@ -54,10 +54,10 @@ TEST_P(ResultContract, RemovesTheEntriesUsedLongestAgo) {
   const auto results = Open(3500);
   for (int i = 0; i < 3; ++i) results->PutResult(KeyOf(i), BytesOf(i));
   EXPECT_TRUE(results->GetResult(KeyOf(0)));
-  results->PutResult(KeyOf(3), BytesOf(3));  // 1 goes
+  results->PutResult(KeyOf(3), BytesOf(3));  // removes 1
   EXPECT_EQ(results->GetResult(KeyOf(1)), std::nullopt);
   for (const int i : {0, 2, 3}) EXPECT_EQ(results->GetResult(KeyOf(i)), BytesOf(i)) << i;
-  results->PutResult(KeyOf(4), BytesOf(4, 2000));  // 0 and 2 go
+  results->PutResult(KeyOf(4), BytesOf(4, 2000));  // removes 0 and 2
   EXPECT_EQ(results->GetResult(KeyOf(0)), std::nullopt);
   EXPECT_EQ(results->GetResult(KeyOf(2)), std::nullopt);
   EXPECT_TRUE(results->GetResult(KeyOf(3)));
@@ -135,7 +135,7 @@ TEST_F(ResultDirectoryTest, TheOrderOfUseIsKept) {
   EXPECT_TRUE(smaller->GetResult(KeyOf(2)));
 }
 
-// Any byte changed, and any end cut off: the entry is gone, and can be put again.
+// With any byte changed or any end truncated, the entry is lost and can be stored again.
 TEST_F(ResultDirectoryTest, DamagedEntriesAreNone) {
   const std::string bytes = BytesOf(1, 50);
   const auto results = Open();

@@ -1,4 +1,4 @@
-// Results of long stages are computed once, and scenes are the same with them and without.
+// Results of long stages are computed once, and scenes do not depend on the cache.
 #include "server/translate/result_cache.h"
 
 #include <gmock/gmock.h>
@@ -119,7 +119,7 @@ TEST_F(ResultCacheTest, WhoWaitsForAnotherThreadHeedsItsStopRequest) {
   EXPECT_EQ(Get(1)->text, "slow");
 }
 
-// Entries that are of another kind, whatever has put them there.
+// A store with an entry that may be anything.
 class Garbage final : public ResultStore {
  public:
   std::optional<std::string> GetResult(std::string_view) override { return bytes; }
@@ -135,7 +135,7 @@ TEST(ResultCache, ComputesAgainWhatCannotBeRead) {
   // The entry was replaced.
   const auto none = []() -> std::optional<Text> { throw std::logic_error("it is there"); };
   EXPECT_EQ(cache.GetOrCompute<Text>(Input(1), {}, none)->text, "right");
-  // A whole archive without what is looked for.
+  // A valid archive that lacks the required values.
   ArchiveWriter other("result", 1);
   store.bytes = other.Finish();
   EXPECT_EQ(cache.GetOrCompute<Text>(Input(1), {}, compute)->text, "right");
@@ -189,7 +189,7 @@ Translated TranslateWith(ResultCache* cache, const v1::Scene& scene, const Files
 struct LongStage {
   const char* stage;
   v1::Scene scene;
-  const char* digest;  // of the result that is kept
+  const char* digest;  // of the cached result
 };
 
 class EveryLongStage : public ::testing::TestWithParam<int> {
@@ -224,7 +224,7 @@ TEST_P(EveryLongStage, IsRunOnceAndTheSceneIsTheSame) {
   EXPECT_EQ(second.scene->bodies[0].notes, without.scene->bodies[0].notes);
 }
 
-// The store as it is, and what was put last.
+// The store as it is, and the last stored result.
 class Recording final : public ResultStore {
  public:
   std::optional<std::string> GetResult(std::string_view) override { return std::nullopt; }
@@ -263,7 +263,7 @@ TEST(KeptResults, WhatIsWrongIsSaidEachTime) {
   }
 }
 
-// Other regions, another mesh: other fibres.
+// Different regions or meshes give different fibres.
 TEST(KeptResults, ChangesOfWhatAStageDependsOnAreSeen) {
   const auto store = MakeMemoryResults(1 << 24);
   ResultCache cache(*store);
@@ -276,7 +276,7 @@ TEST(KeptResults, ChangesOfWhatAStageDependsOnAreSeen) {
     EXPECT_THAT(TranslateWith(&cache, scene).stages, Contains("fibres/harmonic"));
     EXPECT_THAT(TranslateWith(&cache, scene).stages, Not(Contains("fibres/harmonic")));
   }
-  // What it does not depend on is not.
+  // The result does not depend on other fields.
   scenes[0].mutable_bodies(0)->set_density(500);
   scenes[0].set_duration(2);
   EXPECT_THAT(TranslateWith(&cache, scenes[0]).stages, Not(Contains("fibres/harmonic")));
