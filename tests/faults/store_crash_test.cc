@@ -53,11 +53,8 @@ struct Acknowledged {
 std::string RunAndKill(const std::string& directory, int round, std::chrono::microseconds delay) {
   ChildProcess writer({Program("store_crash_writer"), directory, std::to_string(round)});
   // One round in four is killed before the store can open, at any point.
-  const std::string first = round % 4 == 3 ? ""
-                                           : writer.ReadLine() +
-                                                 "
-                                                 ";
-                                                 std::this_thread::sleep_for(delay);
+  const std::string first = round % 4 == 3 ? "" : writer.ReadLine() + "\n";
+  std::this_thread::sleep_for(delay);
   writer.Signal(SIGKILL);
   const Finished finished = writer.Wait();
   EXPECT_EQ(finished.exit_code, -SIGKILL) << "the writer ended by itself: " << finished.err;
