@@ -12,8 +12,6 @@
 
 namespace fascicle {
 
-// A force per deformed volume towards a plane [Fan 2013, eq. 6.1].
-
 // A solid that moves through a grid of its own. Const while it is stepped; what changes with time comes as controls.
 struct EulerianBody {
   EulerianGrid grid;

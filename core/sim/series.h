@@ -10,7 +10,7 @@
 // Series that all methods have in common: those of supports, loads and probes.
 namespace fascicle {
 
-// Of a body: the force of the supports of each region, x, y and z, then the loads that are kept.
+// Of a body: the force of the supports of each region, x, y and z, then the pull of each muscle (SternPull).
 void AddBodySeries(const Body& body, std::vector<SeriesInfo>& series);
 // Their values under the body's controls.
 //   forces  of the body's constraints on it, one each, in their order [N]
