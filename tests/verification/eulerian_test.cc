@@ -84,7 +84,7 @@ TEST(EulerianVerification, AStretchIsOfSecondOrder) {
   EXPECT_GT(std::log2(errors[0] / errors[1]), 1.5);
 }
 
-// A cube that is squeezed beyond its yield stress for 0.15 s, and rests 0.25 s later.
+// A cube that is pressed together beyond its yield stress for 0.15 s, and rests 0.25 s later.
 EulerianBody PlasticCube(int n, ThreadTeam& team) {
   EulerianBody body = MakeSolid(n, false, 5000, 0.3, team);
   body.volume = VolumeTreatment::kPreserved;
