@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
+#include "core/base/archive.h"
 #include "core/base/curve.h"
 
 namespace fascicle {
@@ -31,9 +31,38 @@ class LineFitter {
     value_ = value;
   }
 
-  Curve Finish() {
+  // After the last point.
+  void Finish() {
     if (time_ > curve_.times.back()) Push(time_, value_);
-    return std::move(curve_);
+  }
+
+  // As far as it is known: points that are added later leave it as it is up to its end. Empty before the first.
+  const Curve& curve() const { return curve_; }
+
+  // Gives up the curve's points before a time, but for the last of them.
+  void Forget(double time) {
+    const auto later = std::upper_bound(curve_.times.begin(), curve_.times.end(), time) - curve_.times.begin();
+    if (later < 2) return;
+    curve_.times.erase(curve_.times.begin(), curve_.times.begin() + (later - 1));
+    curve_.values.erase(curve_.values.begin(), curve_.values.begin() + (later - 1));
+  }
+
+  void Save(ArchiveWriter& archive) const {
+    archive.PutDoubles("times", curve_.times);
+    archive.PutDoubles("values", curve_.values);
+    archive.PutDouble("time", time_);
+    archive.PutDouble("value", value_);
+    archive.PutDouble("low", low_);
+    archive.PutDouble("high", high_);
+  }
+  void Load(ArchiveReader& archive) {
+    archive.GetDoubles("times", curve_.times);
+    archive.GetDoubles("values", curve_.values);
+    time_ = archive.GetDouble("time");
+    value_ = archive.GetDouble("value");
+    low_ = archive.GetDouble("low");
+    high_ = archive.GetDouble("high");
+    if (curve_.times.size() != curve_.values.size()) archive.Fail();
   }
 
  private:

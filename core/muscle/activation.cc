@@ -2,16 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <string>
-#include <utility>
-
-#include "core/base/line_fitter.h"
 
 namespace fascicle {
 namespace {
-
-constexpr std::size_t kMaxPoints = 10'000;
 
 // Three errors add up to less than 1e-4: points left out, the arcs between two steps, and the remaining distance where
 // the activation counts as at rest. An arc is at most (step/tau)^2 / 2 where an activation begins to rise, and at most
@@ -59,47 +52,61 @@ double StepBefore(const Curve& excitation, const ActivationDynamics& dynamics, d
   return step;
 }
 
-// Integrates from `begin` to `end`, between which the excitation is linear. Where the excitation is constant, stops
-// once the activation is at rest. Returns the final activation.
-double Follow(const Curve& excitation, const ActivationDynamics& dynamics, double begin, double end, double a,
-              LineFitter& fitter) {
-  const bool held = excitation.At(begin) == excitation.At(end);
-  double time = begin;
-  while (time < end) {
-    const double u = excitation.At(time);
-    if (held && std::abs(u - a) <= kRest) break;
-    double limit = std::min(LeastTimeConstant(a, dynamics) / kStepsPerTimeConstant, end - time);
-    if (!held) limit = std::min(limit, (end - begin) / kStepsPerInterval);
-    const double step = StepBefore(excitation, dynamics, time, a, limit);
-    a = Stepped(excitation, dynamics, time, a, step);
-    time = time + step < end ? time + step : end;
-    fitter.Add(time, a);
-  }
-  return a;
-}
-
 }  // namespace
 
-Curve ActivationOf(const Curve& excitation, const ActivationDynamics& dynamics, double duration, Problems& problems) {
-  LineFitter fitter(kLeftOut);
-  double a = dynamics.initial_activation;
-  fitter.Add(0, a);
-  double begin = 0;
-  for (const double time : excitation.times) {
-    if (time <= begin) continue;
-    if (time >= duration) break;
-    a = Follow(excitation, dynamics, begin, time, a, fitter);
-    fitter.Add(time, a);
-    begin = time;
-  }
-  Follow(excitation, dynamics, begin, duration, a, fitter);
-  Curve activation = fitter.Finish();
-  if (activation.times.size() <= kMaxPoints) return activation;
-  problems.Add({},
-               "its activation changes so often that a curve needs " + std::to_string(activation.times.size()) +
-                   " points for it",
-               "at most 10,000: shorten the scene, or let the excitation change less often");
-  return Curve::Constant(dynamics.initial_activation);
+// The piece of the excitation from `begin` to its next point, or to the end.
+void ActivationPoints::BeginPiece(double begin) {
+  begin_ = time_ = begin;
+  const auto next = std::upper_bound(excitation_->times.begin(), excitation_->times.end(), begin);
+  end_ = next == excitation_->times.end() ? duration_ : std::min(*next, duration_);
 }
+
+// The length of the next step in the piece; 0 where it is at its end, or rests under an excitation that is held.
+double ActivationPoints::NextStep() const {
+  if (!(time_ < end_)) return 0;
+  const bool held = excitation_->At(begin_) == excitation_->At(end_);
+  if (held && std::abs(excitation_->At(time_) - activation_) <= kRest) return 0;
+  double limit = std::min(LeastTimeConstant(activation_, dynamics_) / kStepsPerTimeConstant, end_ - time_);
+  if (!held) limit = std::min(limit, (end_ - begin_) / kStepsPerInterval);
+  return StepBefore(*excitation_, dynamics_, time_, activation_, limit);
+}
+
+bool ActivationPoints::AddNext(LineFitter& fitter) {
+  if (!has_begun_) {
+    has_begun_ = true;
+    fitter.Add(0, activation_);
+    BeginPiece(0);
+    return true;
+  }
+  if (const double step = NextStep(); step > 0) {
+    activation_ = Stepped(*excitation_, dynamics_, time_, activation_, step);
+    time_ = time_ + step < end_ ? time_ + step : end_;
+    fitter.Add(time_, activation_);
+    return true;
+  }
+  if (!(end_ < duration_)) return false;
+  fitter.Add(end_, activation_);
+  BeginPiece(end_);
+  return true;
+}
+
+void ActivationPoints::Save(ArchiveWriter& archive) const {
+  archive.PutInt("has_begun", has_begun_ ? 1 : 0);
+  archive.PutDouble("begin", begin_);
+  archive.PutDouble("end", end_);
+  archive.PutDouble("time", time_);
+  archive.PutDouble("activation", activation_);
+}
+
+void ActivationPoints::Load(ArchiveReader& archive) {
+  has_begun_ = archive.GetInt("has_begun") != 0;
+  begin_ = archive.GetDouble("begin");
+  end_ = archive.GetDouble("end");
+  time_ = archive.GetDouble("time");
+  activation_ = archive.GetDouble("activation");
+}
+
+FollowedActivation::FollowedActivation(const Curve& excitation, const ActivationDynamics& dynamics, double duration)
+    : FoundCurve(ActivationPoints(excitation, dynamics, duration), kLeftOut) {}
 
 }  // namespace fascicle

@@ -1,8 +1,7 @@
 #ifndef FASCICLE_CORE_MUSCLE_ACTIVATION_H_
 #define FASCICLE_CORE_MUSCLE_ACTIVATION_H_
 
-#include "core/base/curve.h"
-#include "core/base/problems.h"
+#include "core/base/found_curve.h"
 
 namespace fascicle {
 
@@ -19,10 +18,36 @@ struct ActivationDynamics {
   double initial_activation = 0;     // at time 0
 };
 
-// The activation from time 0 until it is at rest after the excitation's last change, at most until `duration` [s]. The
-// curve is piecewise linear and within 1e-4 of the solution. Adds a problem (with an empty path) and returns a constant
-// curve if more than 10,000 points were needed, the most that a curve of a scene may have.
-Curve ActivationOf(const Curve& excitation, const ActivationDynamics& dynamics, double duration, Problems& problems);
+// Integrates the dynamics step by step from time 0 until the activation has come to rest after the excitation, at most
+// until `duration` [s].
+class ActivationPoints {
+ public:
+  // The excitation must outlive it.
+  ActivationPoints(const Curve& excitation, const ActivationDynamics& dynamics, double duration)
+      : excitation_(&excitation), dynamics_(dynamics), duration_(duration), activation_(dynamics.initial_activation) {}
+
+  bool AddNext(LineFitter& fitter);
+  void Save(ArchiveWriter& archive) const;
+  void Load(ArchiveReader& archive);
+
+ private:
+  void BeginPiece(double begin);
+  double NextStep() const;
+
+  const Curve* excitation_;
+  ActivationDynamics dynamics_;
+  double duration_;
+  bool has_begun_ = false;
+  double begin_ = 0, end_ = 0;  // of a piece of the excitation without a bend in between [s]
+  double time_ = 0;             // [s]
+  double activation_;           // then
+};
+
+// The activation over time, as straight lines that are nowhere more than 1e-4 from the solution.
+class FollowedActivation : public FoundCurve<ActivationPoints> {
+ public:
+  FollowedActivation(const Curve& excitation, const ActivationDynamics& dynamics, double duration);
+};
 
 }  // namespace fascicle
 

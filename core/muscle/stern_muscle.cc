@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <vector>
 
-#include "core/base/line_fitter.h"
 #include "core/materials/fibre_curves.h"
 #include "core/materials/force_velocity.h"
 
 namespace fascicle {
 namespace {
 
-constexpr std::size_t kMaxPoints = 10'000;
 constexpr double kTolerance = 1e-4;  // of the curve, relative to the peak force; as much again between samples
 constexpr int kSamples = 512;        // between two points of the input curves
 
@@ -54,24 +50,35 @@ double ForceOf(const SternMuscle& muscle, double angle, double rate, double acti
          activation;
 }
 
-Curve ForceOverTime(const SternMuscle& muscle, const Curve& angle, const Curve& activation, double duration,
-                    Problems& problems) {
-  LineFitter fitter(kTolerance * muscle.peak_force);
-  const std::vector<double> bends = Bends(angle, activation, duration);
-  for (std::size_t i = 0; i + 1 < bends.size(); ++i) {
-    // The rate of the angle, and so the force, may jump at a bend: there is a point on both sides of it.
-    const double begin = bends[i], end = bends[i + 1], gap = 1e-9 * (end - begin);
-    for (int k = 0; k <= kSamples; ++k) {
-      const double time = std::clamp(begin + (end - begin) * k / kSamples, begin, end - gap);
-      fitter.Add(time, ForceOf(muscle, angle.At(time), angle.RateAt(time), activation.At(time)));
-    }
+SternForcePoints::SternForcePoints(const SternMuscle& muscle, const SternDrive& drive, double duration)
+    : muscle_(muscle), drive_(&drive), bends_(Bends(drive.angle, drive.activation, duration)) {}
+
+bool SternForcePoints::AddNext(LineFitter& fitter) {
+  if (piece_ + 1 >= bends_.size()) return false;
+  // The rate of the angle, and so the force, may jump at a bend: there is a point on both sides of it.
+  const double begin = bends_[piece_], end = bends_[piece_ + 1], gap = 1e-9 * (end - begin);
+  const double time = std::clamp(begin + (end - begin) * sample_ / kSamples, begin, end - gap);
+  const Curve& angle = drive_->angle;
+  fitter.Add(time, ForceOf(muscle_, angle.At(time), angle.RateAt(time), drive_->activation.At(time)));
+  if (++sample_ > kSamples) {
+    sample_ = 0;
+    ++piece_;
   }
-  Curve force = fitter.Finish();
-  if (force.times.size() <= kMaxPoints) return force;
-  problems.Add({},
-               "the force changes so often that a curve needs " + std::to_string(force.times.size()) + " points for it",
-               "at most 10,000: shorten the scene, or give the curves fewer points");
-  return Curve::Constant(0);
+  return true;
 }
+
+void SternForcePoints::Save(ArchiveWriter& archive) const {
+  archive.PutInt("piece", static_cast<std::int64_t>(piece_));
+  archive.PutInt("sample", sample_);
+}
+
+void SternForcePoints::Load(ArchiveReader& archive) {
+  piece_ = static_cast<std::size_t>(archive.GetInt("piece"));
+  sample_ = static_cast<int>(archive.GetInt("sample"));
+  if (sample_ < 0 || sample_ > kSamples) archive.Fail();
+}
+
+SternForce::SternForce(const SternMuscle& muscle, const SternDrive& drive, double duration)
+    : FoundCurve(SternForcePoints(muscle, drive, duration), kTolerance * muscle.peak_force) {}
 
 }  // namespace fascicle

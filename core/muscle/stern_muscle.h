@@ -1,8 +1,10 @@
 #ifndef FASCICLE_CORE_MUSCLE_STERN_MUSCLE_H_
 #define FASCICLE_CORE_MUSCLE_STERN_MUSCLE_H_
 
-#include "core/base/curve.h"
-#include "core/base/problems.h"
+#include <cstddef>
+#include <vector>
+
+#include "core/base/found_curve.h"
 
 namespace fascicle {
 
@@ -32,10 +34,35 @@ double LengthOf(const SternMuscle& muscle, double angle);
 // constant length. Lengthening follows ForceVelocityCurve, because Stern's formula is unbounded there.
 double ForceOf(const SternMuscle& muscle, double angle, double rate, double activation);
 
-// That force [N] over time, from 0 to `duration` [s], as a piecewise linear curve within 2e-4 of peak_force. Adds a
-// problem (with an empty path) and returns a zero curve if more than 10,000 points were needed.
-Curve ForceOverTime(const SternMuscle& muscle, const Curve& angle, const Curve& activation, double duration,
-                    Problems& problems);
+// How such a muscle is driven.
+struct SternDrive {
+  Curve angle = Curve::Constant(0);       // of the joint [rad]
+  Curve activation = Curve::Constant(1);  // in [0, 1]
+};
+
+// Samples the muscle's force from time 0 to `duration` [s].
+class SternForcePoints {
+ public:
+  // The drive must outlive it.
+  SternForcePoints(const SternMuscle& muscle, const SternDrive& drive, double duration);
+
+  bool AddNext(LineFitter& fitter);
+  void Save(ArchiveWriter& archive) const;
+  void Load(ArchiveReader& archive);
+
+ private:
+  SternMuscle muscle_;
+  const SternDrive* drive_;
+  std::vector<double> bends_;  // times between which neither curve has a bend
+  std::size_t piece_ = 0;      // between two of them
+  int sample_ = 0;             // the next one in it
+};
+
+// The muscle's force over time [N], as straight lines that are nowhere more than 2e-4 of peak_force from it.
+class SternForce : public FoundCurve<SternForcePoints> {
+ public:
+  SternForce(const SternMuscle& muscle, const SternDrive& drive, double duration);
+};
 
 }  // namespace fascicle
 

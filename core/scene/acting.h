@@ -9,6 +9,7 @@
 
 #include "core/base/curve.h"
 #include "core/base/types.h"
+#include "core/muscle/stern_muscle.h"
 #include "core/scene/fields.h"
 
 namespace fascicle {
@@ -53,14 +54,29 @@ struct NodalForce {
 template <>
 inline constexpr auto kFieldNames<NodalForce> = FieldNames("total");
 
+template <>
+inline constexpr auto kFieldNames<SternMuscle> = FieldNames("origin_distance", "insertion_distance", "peak_force",
+                                                            "optimal_angle", "contractile_fraction", "hill_curvature",
+                                                            "hill_rate", "eccentric_force");
+template <>
+inline constexpr auto kFieldNames<SternDrive> = FieldNames("angle", "activation");
+
+// The pull of a muscle across a joint [N].
+struct SternPull {
+  SternMuscle muscle;
+  SternDrive drive;
+};
+template <>
+inline constexpr auto kFieldNames<SternPull> = FieldNames("", "");
+
 struct Load {
   std::int32_t region = 0;  // index into Body::regions
   std::variant<Traction, NodalForce> kind;
   Curve scale = Curve::Constant(1);
-  bool kept = false;  // whether the scale is a series in the output; for a unit force it is the force [N]
+  std::optional<SternPull> stern;  // replaces the scale of a unit force; a series in the output
 };
 template <>
-inline constexpr auto kFieldNames<Load> = FieldNames("region", "", "scale", "kept");
+inline constexpr auto kFieldNames<Load> = FieldNames("region", "", "scale", "stern");
 
 struct Gravity {
   Vec3 acceleration = Vec3::Zero();  // [m/s^2]

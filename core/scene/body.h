@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_SCENE_BODY_H_
 
 #include <array>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "core/base/curve.h"
 #include "core/geometry/region.h"
 #include "core/materials/material.h"
+#include "core/muscle/activation.h"
 #include "core/scene/acting.h"
 #include "core/scene/fields.h"
 #include "core/scene/shape.h"
@@ -36,6 +38,18 @@ inline constexpr auto kFieldNames<SideSelector> = FieldNames("direction", "max_a
 template <>
 inline constexpr auto kFieldNames<Region> = FieldNames("name", "nodes", "triangles", "elements", "quads", "selectors");
 
+template <>
+inline constexpr auto kFieldNames<ActivationDynamics> = FieldNames("activation_time", "deactivation_time",
+                                                                   "initial_activation");
+
+// What a muscle's activation follows.
+struct Excitation {
+  Curve curve = Curve::Constant(0);  // in [0, 1]
+  ActivationDynamics dynamics;
+};
+template <>
+inline constexpr auto kFieldNames<Excitation> = FieldNames("curve", "");
+
 struct Body {
   std::string name;
   Shape shape;
@@ -43,6 +57,7 @@ struct Body {
   Material material = NeoHookean(std::array{1e4, 0.3});
   Damping damping;
   Curve activation = Curve::Constant(0);  // in [0, 1]
+  std::optional<Excitation> excitation;   // from which the activation follows, in place of the curve
   std::vector<Region> regions;            // of the shape's mesh
   std::vector<Constraint> constraints;
   std::vector<Load> loads;
@@ -64,7 +79,7 @@ struct Body {
 };
 template <>
 inline constexpr auto kFieldNames<Body> = FieldNames("name", "", "density", "material", "damping", "activation",
-                                                     "regions", "constraints", "loads", "notes");
+                                                     "excitation", "regions", "constraints", "loads", "notes");
 
 }  // namespace fascicle
 

@@ -44,6 +44,7 @@ void CheckActivations(const Scene& scene, Problems& problems) {
     const Body& body = scene.bodies[i];
     const std::string path = IndexPath("bodies", i);
     CheckRange(body.activation, JoinPath(path, "activation"), problems);
+    if (body.excitation) CheckRange(body.excitation->curve, JoinPath(path, "excitation.curve"), problems);
     if (const auto* tet = std::get_if<TetShape>(&body.shape)) CheckTetrahedra(*tet, path, problems);
   }
 }

@@ -40,16 +40,22 @@ std::array<bool, 3> HeldAxes(const Body& body) {
   return held;
 }
 
+// The factor of a load over time; a muscle pulls while it is active.
+const Curve& ScaleOf(const Load& load) { return load.stern ? load.stern->drive.activation : load.scale; }
+
 // Whether the loads on a body have a resultant along `axis` at any time, up to round-off. Between the points of their
 // curves the scales lie between those at the points, so it is enough to check the points.
 bool Pushes(const Scene& scene, const Body& body, const std::vector<Vec3>& resultants, double mass, int axis) {
   std::vector<double> times = scene.gravity.scale.times;
-  for (const Load& load : body.loads) times.insert(times.end(), load.scale.times.begin(), load.scale.times.end());
+  for (const Load& load : body.loads) {
+    const Curve& scale = ScaleOf(load);
+    times.insert(times.end(), scale.times.begin(), scale.times.end());
+  }
   return std::any_of(times.begin(), times.end(), [&](double time) {
     double net = mass * scene.gravity.acceleration[axis] * scene.gravity.scale.At(time);
     double size = std::abs(net);
     for (std::size_t k = 0; k < resultants.size(); ++k) {
-      const double force = resultants[k][axis] * body.loads[k].scale.At(time);
+      const double force = resultants[k][axis] * ScaleOf(body.loads[k]).At(time);
       net += force;
       size += std::abs(force);
     }

@@ -28,8 +28,8 @@ void CheckLeftOut(const Body& body, const std::string& path, Problems& problems)
   const auto is_zero = [](const Curve& curve) {
     return std::all_of(curve.values.begin(), curve.values.end(), [](double value) { return value == 0; });
   };
-  if (!is_zero(body.activation)) {
-    problems.Add(JoinPath(path, "activation"), "voxels don't contract",
+  if (!is_zero(body.activation) || body.excitation) {
+    problems.Add(JoinPath(path, body.excitation ? "excitation" : "activation"), "voxels don't contract",
                  "apply the muscle's force as a load on a region, or use the tet method");
   }
   if (body.damping.stiffness_proportional != 0 || body.damping.viscosity != 0) {

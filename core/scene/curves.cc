@@ -70,12 +70,4 @@ void VisitCurves(const Scene& scene, const std::function<void(const Curve&, cons
   CurveVisitor(visit).Take(scene, {});
 }
 
-double CurvesEnd(const Scene& scene) {
-  double end = 0;
-  VisitCurves(scene, [&end](const Curve& curve, const std::string&) {
-    if (curve.times.size() > 1) end = std::max(end, curve.end());
-  });
-  return end;
-}
-
 }  // namespace fascicle

@@ -11,9 +11,6 @@ namespace fascicle {
 // Calls visit(curve, path) for every curve of a scene, with its field path, such as `bodies[0].loads[1].scale`.
 void VisitCurves(const Scene& scene, const std::function<void(const Curve& curve, const std::string& path)>& visit);
 
-// The time after which all curves of a checked scene are constant [s], at least 0.
-double CurvesEnd(const Scene& scene);
-
 }  // namespace fascicle
 
 #endif  // FASCICLE_CORE_SCENE_CURVES_H_

@@ -1,6 +1,48 @@
 #include "core/sim/control_source.h"
 
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "core/scene/curves.h"
+
 namespace fascicle {
+namespace {
+
+// The curves that muscles follow with dynamics of their own.
+std::set<const Curve*> FollowedCurves(const Scene& scene) {
+  std::set<const Curve*> curves;
+  for (const Body& body : scene.bodies) {
+    if (body.excitation) curves.insert(&body.excitation->curve);
+    for (const Load& load : body.loads) {
+      if (load.stern) curves.insert({&load.stern->drive.angle, &load.stern->drive.activation});
+    }
+  }
+  return curves;
+}
+
+// The time after which no other curve changes any more [s].
+double CurvesEnd(const Scene& scene) {
+  const std::set<const Curve*> followed = FollowedCurves(scene);
+  double end = 0;
+  VisitCurves(scene, [&](const Curve& curve, const std::string&) {
+    if (curve.times.size() > 1 && !followed.contains(&curve)) end = std::max(end, curve.end());
+  });
+  return end;
+}
+
+}  // namespace
+
+ControlSource::ControlSource(const Scene& scene) : scene_(&scene), curves_end_(CurvesEnd(scene)) {
+  for (const Body& body : scene.bodies) {
+    std::optional<FollowedActivation>& activation = activations_.emplace_back();
+    if (body.excitation) activation.emplace(body.excitation->curve, body.excitation->dynamics, scene.duration);
+    for (const Load& load : body.loads) {
+      std::optional<SternForce>& pull = pulls_.emplace_back();
+      if (load.stern) pull.emplace(load.stern->muscle, load.stern->drive, scene.duration);
+    }
+  }
+}
 
 void ControlSource::Evaluate(double time, Controls& controls) {
   controls.time = time;
@@ -10,12 +52,16 @@ void ControlSource::Evaluate(double time, Controls& controls) {
   controls.activations.clear();
   controls.load_scales.clear();
   controls.motions.clear();
-  for (const Body& body : scene_->bodies) {
-    controls.activations.push_back(body.activation.At(time));
+  for (std::size_t b = 0; b < scene_->bodies.size(); ++b) {
+    const Body& body = scene_->bodies[b];
+    controls.activations.push_back(activations_[b] ? activations_[b]->At(time) : body.activation.At(time));
     if (const auto* shape = std::get_if<TetShape>(&body.shape)) {
       for (const Curve& activation : shape->activations.more) controls.activations.push_back(activation.At(time));
     }
-    for (const Load& load : body.loads) controls.load_scales.push_back(load.scale.At(time));
+    for (const fascicle::Load& load : body.loads) {
+      std::optional<SternForce>& pull = pulls_[controls.load_scales.size()];
+      controls.load_scales.push_back(pull ? pull->At(time) : load.scale.At(time));
+    }
     for (const Constraint& constraint : body.constraints) controls.motions.push_back(MotionAt(constraint.motion, time));
   }
 }
@@ -24,6 +70,34 @@ Controls ControlSource::At(double time) {
   Controls controls;
   Evaluate(time, controls);
   return controls;
+}
+
+template <class Self, class Call>
+void ControlSource::ForFound(Self& self, const Call& call) {
+  for (auto& activation : self.activations_) {
+    if (activation) call(*activation);
+  }
+  for (auto& pull : self.pulls_) {
+    if (pull) call(*pull);
+  }
+}
+
+bool ControlSource::RestsAt(double time) {
+  bool rests = time >= curves_end_;
+  ForFound(*this, [&](auto& curve) { rests = rests && curve.RestsAt(time); });
+  return rests;
+}
+
+void ControlSource::Forget(double time) {
+  ForFound(*this, [&](auto& curve) { curve.Forget(time); });
+}
+
+void ControlSource::Save(ArchiveWriter& archive) const {
+  ForFound(*this, [&](const auto& curve) { curve.Save(archive); });
+}
+
+void ControlSource::Load(ArchiveReader& archive) {
+  ForFound(*this, [&](auto& curve) { curve.Load(archive); });
 }
 
 }  // namespace fascicle

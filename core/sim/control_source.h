@@ -1,22 +1,44 @@
 #ifndef FASCICLE_CORE_SIM_CONTROL_SOURCE_H_
 #define FASCICLE_CORE_SIM_CONTROL_SOURCE_H_
 
+#include <optional>
+#include <vector>
+
+#include "core/base/archive.h"
 #include "core/scene/controls.h"
 
 namespace fascicle {
 
-// Evaluates the curves of a scene. Not thread-safe.
+// The controls of a scene: from its curves, and from the dynamics of its muscles, which are integrated with the run. Their
+// state is saved with the run, which continues with the same bits. Not thread-safe.
 class ControlSource {
  public:
-  // The scene must have passed CheckScene and must outlive the source.
-  explicit ControlSource(const Scene& scene) : scene_(&scene) {}
+  // CheckScene must have accepted the scene, which must outlive the source.
+  explicit ControlSource(const Scene& scene);
 
-  // Sets all controls to their values at a time [s]. Does not allocate if `controls` already has the scene's sizes.
+  // Sets all controls to their values at a time [s], which must not precede the last Forget. Does not allocate if
+  // `controls` already has the scene's sizes and no muscle has dynamics.
   void Evaluate(double time, Controls& controls);
   Controls At(double time);
 
+  // Whether no control changes any more from a time on [s].
+  bool RestsAt(double time);
+  // No earlier time will be asked for [s].
+  void Forget(double time);
+
+  void Save(ArchiveWriter& archive) const;
+  // Sets failed() of the archive when it is of another scene.
+  void Load(ArchiveReader& archive);
+
  private:
+  // Calls call(curve) for all that is integrated.
+  template <class Self, class Call>
+  static void ForFound(Self& self, const Call& call);
+
   const Scene* scene_;
+  double curves_end_;
+  std::vector<std::optional<FollowedActivation>> activations_;  // of each body with an excitation
+  std::vector<std::optional<SternForce>> pulls_;                // of each load that is a muscle's pull
 };
 
 }  // namespace fascicle

@@ -38,7 +38,7 @@ void AddBodySeries(const Body& body, std::vector<SeriesInfo>& series) {
     }
   }
   for (std::size_t k = 0; k < body.loads.size(); ++k) {
-    if (!body.loads[k].kept) continue;
+    if (!body.loads[k].stern) continue;
     const std::string& region = body.regions[body.loads[k].region].name;
     series.push_back(
         {body.name + "/load/" + std::to_string(k) + "/" + region, "N", "force of the muscle on `" + region + "`"});
@@ -53,7 +53,7 @@ void AddBodyValues(const Body& body, const BodyControls& controls, std::span<con
     values.insert(values.end(), sum.begin(), sum.end());
   }
   for (std::size_t k = 0; k < body.loads.size(); ++k) {
-    if (body.loads[k].kept) values.push_back(controls.load_scales[k]);
+    if (body.loads[k].stern) values.push_back(controls.load_scales[k]);
   }
 }
 

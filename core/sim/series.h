@@ -10,7 +10,7 @@
 // Series common to all methods: those of supports, loads and probes.
 namespace fascicle {
 
-// For a body: the reaction at each region, x, y and z, then the loads that are series.
+// For a body: the reaction at each region, x, y and z, then the force of each muscle (SternPull).
 void AddBodySeries(const Body& body, std::vector<SeriesInfo>& series);
 // Their values with the body's controls.
 //   forces  on the body by each of its constraints, in order [N]

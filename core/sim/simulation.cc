@@ -6,7 +6,6 @@
 
 #include "core/base/archive.h"
 #include "core/base/stop.h"
-#include "core/scene/curves.h"
 #include "core/sim/control_source.h"
 #include "core/sim/fingerprint.h"
 #include "core/sim/floor_bodies.h"
@@ -85,6 +84,7 @@ struct Simulation::Impl {
   }
 
   void Start() {
+    source = ControlSource(*scene);
     source.Evaluate(0, now);
     method->Start(now);
     next_frame = 0;
@@ -100,7 +100,7 @@ struct Simulation::Impl {
 
   bool IsSettled() const {
     const RunClock clock = method->clock();
-    return scene->output.settle_speed && clock.step > 0 && clock.time >= curves_end &&
+    return scene->output.settle_speed && clock.step > 0 && source.RestsAt(clock.time) &&
            method->LargestSpeed() <= *scene->output.settle_speed;
   }
 
@@ -127,6 +127,7 @@ struct Simulation::Impl {
     ++next_frame;
     iterations_at_frame = clock.iterations;
     settled = IsSettled();
+    source.Forget(clock.time);
     return frame;
   }
 
@@ -137,6 +138,7 @@ struct Simulation::Impl {
     archive.PutInt("next_frame", next_frame);
     archive.PutInt("iterations_at_frame", iterations_at_frame);
     archive.PutInt("settled", settled ? 1 : 0);
+    source.Save(archive);
     method->Save(archive);
     return archive.Finish();
   }
@@ -147,6 +149,7 @@ struct Simulation::Impl {
     next_frame = archive.GetInt("next_frame");
     iterations_at_frame = archive.GetInt("iterations_at_frame");
     settled = archive.GetInt("settled") != 0;
+    source.Load(archive);
     method->Load(archive);
     if (!archive.AtEnd()) return false;
     source.Evaluate(method->clock().time, now);
@@ -236,7 +239,6 @@ struct Simulation::Impl {
   std::unique_ptr<MethodRun> method;
   FrameLayout layout;
   Digest fingerprint = FingerprintOf(*scene);
-  const double curves_end = CurvesEnd(*scene);
   std::int64_t last_frame = 0;
 
   Controls now, next;  // at the current time; scratch memory

@@ -1,7 +1,5 @@
-#include <cmath>
 #include <utility>
 
-#include "core/muscle/activation.h"
 #include "server/translate/curves.h"
 #include "server/translate/number_files.h"
 #include "server/translate/parts.h"
@@ -12,41 +10,29 @@ namespace {
 
 const char kCurveHint[] = "give times [s] and values in [0, 1]";
 
-Curve TranslateExcitation(const v1::Excitation& excitation, double duration, const std::string& path,
-                          Problems& problems) {
-  Problems own;
-  Curve curve = Curve::Constant(0);
-  if (excitation.has_curve()) {
-    curve = TranslateCurve(excitation.curve(), kActivationCurve, JoinPath(path, "curve"), own);
-  } else {
-    own.Add(JoinPath(path, "curve"), "is missing", kCurveHint);
-  }
-  problems.Append("", own);
-  // Durations out of range are reported by the rules.
-  if (!own.empty() || !ObeysRules(excitation) || !(duration > 0 && duration <= 1000)) return Curve::Constant(0);
-  const ActivationDynamics dynamics = {excitation.activation_time(), excitation.deactivation_time(),
-                                       excitation.initial_activation()};
-  Problems dynamic;
-  Curve activation = ActivationOf(curve, dynamics, duration, dynamic);
-  problems.Append(path, dynamic);
-  return activation;
-}
-
 }  // namespace
 
 Curve TranslateActivation(const BodySource& source, Problems& problems) {
-  const v1::Body& wire = source.wire;
-  Curve activation = Curve::Constant(0);
-  if (wire.has_activation()) {
-    activation = TranslateCurve(wire.activation(), kActivationCurve, JoinPath(source.path, "activation"), problems);
-  }
-  if (!wire.has_excitation()) return activation;
+  if (!source.wire.has_activation()) return Curve::Constant(0);
+  return TranslateCurve(source.wire.activation(), kActivationCurve, JoinPath(source.path, "activation"), problems);
+}
+
+std::optional<Excitation> TranslateExcitation(const BodySource& source, Problems& problems) {
+  if (!source.wire.has_excitation()) return std::nullopt;
   const std::string path = JoinPath(source.path, "excitation");
-  if (wire.has_activation()) {
+  if (source.wire.has_activation()) {
     problems.Add(path, "is given beside an activation",
                  "the activation follows from the excitation: give only one of them");
   }
-  return TranslateExcitation(wire.excitation(), source.duration, path, problems);
+  const v1::Excitation& wire = source.wire.excitation();
+  Excitation excitation;
+  if (wire.has_curve()) {
+    excitation.curve = TranslateCurve(wire.curve(), kActivationCurve, JoinPath(path, "curve"), problems);
+  } else {
+    problems.Add(JoinPath(path, "curve"), "is missing", kCurveHint);
+  }
+  excitation.dynamics = {wire.activation_time(), wire.deactivation_time(), wire.initial_activation()};
+  return excitation;
 }
 
 Parts<Curve> TranslateActivationParts(const BodySource& source, std::optional<std::size_t> elements,

@@ -57,8 +57,9 @@ TranslatedBody TranslateBody(const BodySource& source, Method method, Problems& 
   const RegionSelectors selectors = TranslateRegions(wire, path, structure);
   const bool has_mesh = TranslateShape(source, method, selectors, body, structure, others);
   body.constraints = TranslateConstraints(wire, path, selectors.names, structure);
-  body.loads = TranslateLoads(wire, path, source.duration, selectors.names, structure);
+  body.loads = TranslateLoads(wire, path, selectors.names, structure);
   body.activation = TranslateActivation(source, others);
+  body.excitation = TranslateExcitation(source, others);
   result.complete = structure.empty() && has_mesh && AllObeyRules(wire.regions()) && AllObeyRules(wire.constraints()) &&
                     AllObeyRules(wire.loads());
   problems.Append("", structure);

@@ -15,7 +15,6 @@ namespace fascicle::server {
 struct BodySource {
   const v1::Body& wire;  // defaults filled in
   std::string path;      // `bodies[0]`
-  double duration;       // of the scene [s]
   const AssetReader& assets;
   std::int64_t& budget;  // elements left for the body; reduced by its number of elements
   const TranslateTools& tools;

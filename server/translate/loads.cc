@@ -1,4 +1,3 @@
-#include "core/muscle/stern_muscle.h"
 #include "server/translate/curves.h"
 #include "server/translate/supports_and_loads.h"
 #include "server/translate/values.h"
@@ -7,42 +6,31 @@ namespace fascicle::server {
 
 namespace {
 
-// A unit force, whose scale is the muscle's force [N].
-void TranslateStern(const v1::Load& wire_load, double duration, const std::string& load_path, Load& load,
-                    Problems& problems) {
+// A unit force, scaled by the muscle's pull [N].
+void TranslateStern(const v1::Load& wire_load, const std::string& load_path, Load& load, Problems& problems) {
   const v1::SternForce& wire = wire_load.stern();
   const std::string path = JoinPath(load_path, "stern");
   if (wire_load.has_scale()) {
     problems.Add(JoinPath(load_path, "scale"), "is given beside a muscle's force", "change its activation instead");
   }
-  Problems own;
-  const Vec3 direction = ToDirection(wire.direction(), JoinPath(path, "direction"), own);
-  Curve angle = Curve::Constant(0), activation = Curve::Constant(1);
+  load.kind = NodalForce{ToDirection(wire.direction(), JoinPath(path, "direction"), problems)};
+  SternPull& pull = load.stern.emplace();
   if (wire.has_angle()) {
-    angle = TranslateCurve(wire.angle(), kJointAngleCurve, JoinPath(path, "angle"), own);
+    pull.drive.angle = TranslateCurve(wire.angle(), kJointAngleCurve, JoinPath(path, "angle"), problems);
   } else {
-    own.Add(JoinPath(path, "angle"), "is missing", "give times [s] and values [rad]");
+    problems.Add(JoinPath(path, "angle"), "is missing", "give times [s] and values [rad]");
   }
   if (wire.has_activation()) {
-    activation = TranslateCurve(wire.activation(), kActivationCurve, JoinPath(path, "activation"), own);
+    pull.drive.activation = TranslateCurve(wire.activation(), kActivationCurve, JoinPath(path, "activation"), problems);
   }
-  problems.Append("", own);
-  load.kind = NodalForce{direction};
-  load.kept = true;
-  // Durations out of range are reported by the rules.
-  if (!own.empty() || !ObeysRules(wire) || !(duration > 0 && duration <= 1000)) return;
-  const SternMuscle muscle = {wire.origin_distance(), wire.insertion_distance(),   wire.peak_force(),
-                              wire.optimal_angle(),   wire.contractile_fraction(), wire.hill_curvature(),
-                              wire.hill_rate(),       wire.eccentric_force()};
-  Problems of_force;
-  load.scale = ForceOverTime(muscle, angle, activation, duration, of_force);
-  problems.Append(path, of_force);
+  pull.muscle = {wire.origin_distance(),      wire.insertion_distance(), wire.peak_force(), wire.optimal_angle(),
+                 wire.contractile_fraction(), wire.hill_curvature(),     wire.hill_rate(),  wire.eccentric_force()};
 }
 
 }  // namespace
 
-std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_path, double duration,
-                                 const Names& regions, Problems& problems) {
+std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_path, const Names& regions,
+                                 Problems& problems) {
   std::vector<Load> result;
   for (int i = 0; i < body.loads_size(); ++i) {
     const v1::Load& load = body.loads(i);
@@ -60,7 +48,7 @@ std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_p
         translated.kind = NodalForce{ToVec3(load.nodal_force().total())};
         break;
       case v1::Load::kStern:
-        TranslateStern(load, duration, path, translated, problems);
+        TranslateStern(load, path, translated, problems);
         break;
       case v1::Load::KIND_NOT_SET:
         break;  // reported by the rules

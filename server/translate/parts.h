@@ -21,8 +21,9 @@ namespace fascicle::server {
 Parts<Material> TranslateMaterialParts(const BodySource& source, std::optional<std::size_t> elements,
                                        const NamedRegions& regions, Problems& problems);
 
-// activation or excitation of the whole body, until the end of the scene.
+// activation and excitation of the whole body.
 Curve TranslateActivation(const BodySource& source, Problems& problems);
+std::optional<Excitation> TranslateExcitation(const BodySource& source, Problems& problems);
 
 // region_activations.
 Parts<Curve> TranslateActivationParts(const BodySource& source, std::optional<std::size_t> elements,

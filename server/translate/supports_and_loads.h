@@ -14,8 +14,8 @@ namespace fascicle::server {
 // The constraints and loads of a body. Entries with a problem may be missing from the result.
 std::vector<Constraint> TranslateConstraints(const v1::Body& body, const std::string& body_path, const Names& regions,
                                              Problems& problems);
-std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_path, double duration,
-                                 const Names& regions, Problems& problems);
+std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_path, const Names& regions,
+                                 Problems& problems);
 Gravity TranslateGravity(const v1::Scene& scene, Problems& problems);
 std::vector<Floor> TranslateFloors(const v1::Scene& scene, Problems& problems);
 std::vector<PlaneForceField> TranslatePlaneForceFields(const v1::Scene& scene, Problems& problems);

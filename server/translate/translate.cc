@@ -80,8 +80,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     ThrowIfStopped(tools.stop);
     const std::string path = IndexPath("bodies", static_cast<std::size_t>(i));
     names.Add(filled.bodies(i).name(), JoinPath(path, "name"), found);
-    TranslatedBody body =
-        TranslateBody({filled.bodies(i), path, filled.duration(), assets, budget, tools}, result->method, found);
+    TranslatedBody body = TranslateBody({filled.bodies(i), path, assets, budget, tools}, result->method, found);
     complete.push_back(body.complete);
     sources.push_back(SourcePath(filled.bodies(i).mesh(), path));
     AddCurvedEdgesNote(result->tet, path, body.body);

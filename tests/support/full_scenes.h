@@ -61,7 +61,10 @@ inline Scene FullScene(Method method, Shape shape) {
   body.shape = std::move(shape);
   body.regions = {FullRegion()};
   body.constraints = {{0, {true, true, true}, FullMotion()}};
-  body.loads = {{0, Traction{Vec3(0, 0, 1)}, Curve::Constant(1)}, {0, NodalForce{Vec3(0, 0, 1)}, Curve::Constant(1)}};
+  body.loads = {{0, Traction{Vec3(0, 0, 1)}, Curve::Constant(1), {}},
+                {0, NodalForce{Vec3(0, 0, 1)}, Curve::Constant(1), {}},
+                {0, NodalForce{Vec3(0, 0, 1)}, Curve::Constant(1), SternPull{{0.3, 0.03, 100, 1.5}, {}}}};
+  body.excitation = Excitation{};
   body.notes = {"a note"};
   Scene scene;
   scene.name = "full";

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,38 +16,36 @@ constexpr double kTolerance = 1e-4;  // promised
 const ActivationDynamics kThelen;
 const Curve kFull = Curve::Constant(1);
 
-Curve Activation(const Curve& excitation, const ActivationDynamics& dynamics, double duration) {
-  Problems problems;
-  const Curve curve = ActivationOf(excitation, dynamics, duration, problems);
-  EXPECT_TRUE(problems.empty()) << problems.ToString();
-  EXPECT_LE(curve.times.size(), 10'000u);
-  for (std::size_t i = 1; i < curve.times.size(); ++i) EXPECT_LT(curve.times[i - 1], curve.times[i]);
-  EXPECT_LE(curve.times.back(), duration);
-  return curve;
+std::string Saved(const FollowedActivation& activation) {
+  ArchiveWriter archive("activation", 1);
+  activation.Save(archive);
+  return archive.Finish();
 }
 
 // u = 1: t = tau_act (-2 ln(1 - a) - 1.5 a) from rest, by separation of the variables.
 TEST(Activation, RisesAsTheClosedForm) {
   for (const double time_constant : {0.002, 0.01, 0.3}) {
-    const Curve curve = Activation(kFull, {time_constant, 0.04, 0}, 20 * time_constant);
+    FollowedActivation activation(kFull, {time_constant, 0.04, 0}, 20 * time_constant);
     for (double a = 0.01; a < 0.9999; a += 0.01) {
       const double time = time_constant * (-2 * std::log(1 - a) - 1.5 * a);
-      EXPECT_NEAR(curve.At(time), a, kTolerance) << time;
+      EXPECT_NEAR(activation.At(time), a, kTolerance) << time;
     }
   }
 }
 
 // u = 0: t = 2 tau_deact ln((1 + 3 a)/(4 a)) from full activation.
 TEST(Activation, FallsAsTheClosedForm) {
-  const Curve curve = Activation(Curve::Constant(0), {0.01, 0.04, 1}, 1);
+  const Curve off = Curve::Constant(0);
+  FollowedActivation activation(off, {0.01, 0.04, 1}, 1);
   for (double a = 0.99; a > 0.001; a -= 0.01) {
     const double time = 2 * 0.04 * std::log((1 + 3 * a) / (4 * a));
-    EXPECT_NEAR(curve.At(time), a, kTolerance) << time;
+    EXPECT_NEAR(activation.At(time), a, kTolerance) << time;
   }
 }
 
 // The largest distance from Heun's method with steps so small that its own error is below 1e-6.
-double WorstError(const Curve& curve, const Curve& excitation, const ActivationDynamics& dynamics, double duration) {
+double WorstError(const Curve& excitation, const ActivationDynamics& dynamics, double duration) {
+  FollowedActivation activation(excitation, dynamics, duration);
   const double step = 2e-6 * std::min(dynamics.activation_time, dynamics.deactivation_time) / 0.01;
   const auto rate = [&](double time, double a) {
     const double u = excitation.At(time);
@@ -57,7 +56,7 @@ double WorstError(const Curve& curve, const Curve& excitation, const ActivationD
   const int steps = static_cast<int>(duration / step);
   for (int i = 0; i < steps; ++i) {
     const double time = i * step;
-    worst = std::max(worst, std::abs(curve.At(time) - a));
+    worst = std::max(worst, std::abs(activation.At(time) - a));
     const double slope = rate(time, a);
     a += step / 2 * (slope + rate(time + step, a + step * slope));
   }
@@ -82,34 +81,62 @@ TEST(Activation, FollowsEveryKindOfExcitation) {
   for (const Curve& excitation : {twitches, wave, smooth, slow}) {
     for (const ActivationDynamics& dynamics :
          {kThelen, ActivationDynamics{0.005, 0.2, 0.5}, ActivationDynamics{0.04, 0.01, 1}}) {
-      EXPECT_LE(WorstError(Activation(excitation, dynamics, 1.2), excitation, dynamics, 1.2), kTolerance);
+      EXPECT_LE(WorstError(excitation, dynamics, 1.2), kTolerance);
     }
   }
 }
 
-TEST(Activation, NeedsFewPointsAndEndsWhenItRests) {
-  const Curve pulse{{0, 0.01, 0.3, 0.31}, {0, 1, 1, 0}, Curve::Interpolation::kLinear};
-  const Curve curve = Activation(pulse, kThelen, 1000);
-  EXPECT_LT(curve.times.size(), 300u);
-  EXPECT_LT(curve.end(), 2);
-  EXPECT_NEAR(curve.At(900), 0, kTolerance);
+const Curve kPulse{{0, 0.01, 0.3, 0.31}, {0, 1, 1, 0}, Curve::Interpolation::kLinear};
+
+TEST(Activation, NeedsFewPointsAndRests) {
+  FollowedActivation activation(kPulse, kThelen, 1000);
+  EXPECT_FALSE(activation.RestsAt(0.31));
+  EXPECT_TRUE(activation.RestsAt(2));
+  EXPECT_LT(Saved(activation).size(), 300 * 2 * sizeof(double));
+  EXPECT_NEAR(activation.At(900), 0, kTolerance);
+  EXPECT_FALSE(activation.RestsAt(0.31)) << "whatever was asked for before";
 }
 
-TEST(Activation, StaysWhereItIsWhenNothingHappens) {
-  const Curve curve = Activation(Curve::Constant(0.3), {0.01, 0.04, 0.3}, 1000);
-  EXPECT_EQ(curve.values, std::vector<double>({0.3}));
+TEST(Activation, StaysConstantWhenExcitationEqualsActivation) {
+  const Curve same = Curve::Constant(0.3);
+  FollowedActivation activation(same, {0.01, 0.04, 0.3}, 1000);
+  EXPECT_TRUE(activation.RestsAt(0));
+  for (const double time : {0.0, 0.1, 1000.0}) EXPECT_EQ(activation.At(time), 0.3);
 }
 
-TEST(Activation, ThatTakesTooManyPointsIsAProblem) {
+// An excitation that never rests costs no memory for what lies behind.
+TEST(Activation, ForgetsThePast) {
   Curve shaking;
-  for (int k = 0; k < 500; ++k) {
+  for (int k = 0; k < 400; ++k) {
     shaking.times.push_back(0.05 * k);
     shaking.values.push_back(k % 2);
   }
-  Problems problems;
-  EXPECT_EQ(ActivationOf(shaking, kThelen, 1000, problems).times.size(), 1u);
-  ASSERT_EQ(problems.count(), 1u);
-  EXPECT_NE(problems.kept()[0].hint.find("10,000"), std::string::npos);
+  FollowedActivation all(shaking, kThelen, 20), last(shaking, kThelen, 20);
+  for (double time = 0; time < 20; time += 0.01) {
+    EXPECT_EQ(last.At(time), all.At(time));
+    last.Forget(time);
+  }
+  EXPECT_GT(Saved(all).size(), 2000 * sizeof(double));
+  EXPECT_LT(Saved(last).size(), 100 * sizeof(double));
+}
+
+// However far it was asked for before, and saved wherever: the same bits.
+TEST(Activation, HasTheSameBitsHoweverItIsAskedAndAfterALoad) {
+  FollowedActivation whole(kPulse, kThelen, 1);
+  whole.At(1);
+  for (const double saved_at : {0.0, 0.005, 0.05, 0.3, 0.305, 0.9}) {
+    FollowedActivation first(kPulse, kThelen, 1);
+    EXPECT_EQ(first.At(saved_at), whole.At(saved_at));
+    first.At(saved_at + 0.01);  // as a step ahead
+    first.Forget(saved_at);
+    FollowedActivation second(kPulse, kThelen, 1);
+    const std::string bytes = Saved(first);
+    ArchiveReader archive(bytes, "activation", 1);
+    second.Load(archive);
+    ASSERT_TRUE(archive.AtEnd());
+    for (double time = saved_at; time < 1; time += 0.0007) ASSERT_EQ(second.At(time), whole.At(time)) << saved_at;
+    EXPECT_TRUE(second.RestsAt(1));
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "core/materials/fibre_curves.h"
 
@@ -64,17 +65,33 @@ TEST(SternMuscleTest, LengtheningStaysBelowItsPlateau) {
   EXPECT_GT(last, 1.38 * 800);
 }
 
-TEST(SternMuscleTest, TheCurveIsWithinItsTolerance) {
-  const Curve angle = {{0.1, 0.3, 0.45}, {2.4, 1.3, 1.6}};
-  const Curve activation = {{0, 0.05, 0.4}, {0, 1, 0.5}, Curve::Interpolation::kSmooth};
-  Problems problems;
-  const Curve force = ForceOverTime(kMuscle, angle, activation, 0.6, problems);
-  EXPECT_TRUE(problems.empty());
-  EXPECT_LT(force.times.size(), 1000u);
+const SternDrive kDrive = {{{0.1, 0.3, 0.45}, {2.4, 1.3, 1.6}},
+                           {{0, 0.05, 0.4}, {0, 1, 0.5}, Curve::Interpolation::kSmooth}};
+
+TEST(SternMuscleTest, TheForceIsWithinItsTolerance) {
+  SternForce force(kMuscle, kDrive, 0.6);
+  const auto& [angle, activation] = kDrive;
   for (int k = 0; k < 5000; ++k) {
     const double t = 0.6 * (k + 0.37) / 5000;
     EXPECT_NEAR(force.At(t), ForceOf(kMuscle, angle.At(t), angle.RateAt(t), activation.At(t)), 2e-4 * 800) << t;
   }
+  ArchiveWriter archive("force", 1);
+  force.Save(archive);
+  EXPECT_LT(archive.Finish().size(), 1000 * 2 * sizeof(double));
+}
+
+TEST(SternMuscleTest, TheForceHasTheSameBitsAfterALoad) {
+  SternForce whole(kMuscle, kDrive, 0.6), first(kMuscle, kDrive, 0.6), second(kMuscle, kDrive, 0.6);
+  whole.At(0.6);
+  first.At(0.2);
+  first.Forget(0.2);
+  ArchiveWriter writer("force", 1);
+  first.Save(writer);
+  const std::string bytes = writer.Finish();
+  ArchiveReader archive(bytes, "force", 1);
+  second.Load(archive);
+  ASSERT_TRUE(archive.AtEnd());
+  for (double t = 0.2; t < 0.6; t += 0.0011) ASSERT_EQ(second.At(t), whole.At(t)) << t;
 }
 
 }  // namespace

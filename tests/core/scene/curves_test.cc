@@ -1,4 +1,4 @@
-// Every curve of a scene is found and checked, and counts for the time after which all curves are constant.
+// Every curve of a scene is found and checked.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,10 +24,12 @@ TEST(CurvesTest, AllAreVisitedWithTheirPaths) {
   for (const auto& [path, curve] : CurvesOf(scene)) paths.push_back(path);
   EXPECT_THAT(paths,
               ::testing::UnorderedElementsAre(
-                  "bodies[0].activation", "bodies[0].region_activations[0]",
+                  "bodies[0].activation", "bodies[0].excitation.curve", "bodies[0].region_activations[0]",
                   "bodies[0].constraints[0].motion.translation[0]", "bodies[0].constraints[0].motion.translation[1]",
                   "bodies[0].constraints[0].motion.translation[2]", "bodies[0].constraints[0].motion.rotation.angle",
-                  "bodies[0].loads[0].scale", "bodies[0].loads[1].scale", "gravity.scale", "squeezes[0].scale"));
+                  "bodies[0].loads[0].scale", "bodies[0].loads[1].scale", "bodies[0].loads[2].scale",
+                  "bodies[0].loads[2].stern.angle", "bodies[0].loads[2].stern.activation", "gravity.scale",
+                  "squeezes[0].scale"));
 }
 
 TEST(CurvesTest, EachIsChecked) {
@@ -45,25 +47,6 @@ TEST(CurvesTest, EachIsChecked) {
       *curve = good;
     }
   }
-}
-
-TEST(CurvesTest, TheLastToChangeEndsThem) {
-  for (Scene& scene : testing::FullScenes()) {
-    EXPECT_EQ(CurvesEnd(scene), 0);
-    double end = 1;
-    for (const auto& [path, curve] : CurvesOf(scene)) {
-      *curve = {{0, end}, {0, 1}, Curve::Interpolation::kLinear};
-      EXPECT_EQ(CurvesEnd(scene), end) << path;
-      end += 1;
-    }
-  }
-}
-
-// A curve of one point is constant for all times, wherever the point is.
-TEST(CurvesTest, AConstantNeverChanges) {
-  Scene scene = testing::FullScene(Method::kTet, testing::FullTetShape());
-  scene.gravity.scale.times = {5};
-  EXPECT_EQ(CurvesEnd(scene), 0);
 }
 
 }  // namespace

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
+#include <string>
 
 #include "core/sim/method_run.h"
 #include "eulerian_scenes.h"
+#include "same_bits.h"
 #include "tests/support/brick_bodies.h"
 #include "tests/support/tet_scenes.h"
 
@@ -62,7 +65,80 @@ TEST(ControlSourceTest, EvaluatesAllCurvesInTheOrderOfTheScene) {
   EXPECT_EQ(of_second.motions[1].translation, Vec3(0, 0.01, 0));
 }
 
-// The frame after some steps with the controls of the scene's curves, modified by `steer`.
+TEST(ControlSourceTest, RestsOnceNoCurveChanges) {
+  const auto ends_at = [](const Scene& scene, double end) {
+    ControlSource source(scene);
+    return source.RestsAt(end) && !source.RestsAt(std::nexttoward(end, 0));
+  };
+  EXPECT_TRUE(ends_at(TwoBodies(), 1));
+  const Curve late{{0, 7}, {0, 0.5}};
+  for (int k = 0; k < 5; ++k) {
+    Scene scene = TwoBodies();
+    Body& body = scene.bodies[1];
+    if (k == 0) scene.gravity.scale = late;
+    if (k == 1) body.activation = late;
+    if (k == 2) body.loads[0].scale = late;
+    if (k == 3) body.constraints[1].motion.rotation = Rotation{Vec3::Zero(), Vec3::UnitX(), late};
+    if (k == 4) scene.bodies[0].tet().activations.more[0] = late;
+    EXPECT_TRUE(ends_at(scene, 7)) << k;
+  }
+  // A curve of one point is constant, wherever the point is.
+  Scene constant = TwoBodies();
+  constant.gravity.scale = {{5}, {1}, Curve::Interpolation::kLinear};
+  EXPECT_TRUE(ends_at(constant, 1));
+}
+
+// A muscle's activation follows its excitation, and its pull across a joint the joint's motion.
+Scene Driven() {
+  Scene scene = TwoBodies();
+  scene.bodies[1].excitation = Excitation{Curve{{0, 0.01, 0.3, 0.31}, {0, 1, 1, 0}}, {}};
+  scene.bodies[1].loads[0].stern =
+      SternPull{{0.25, 0.04, 800, 1.7, 0.6}, {Curve{{0, 0.5}, {2.4, 1.6}}, Curve::Constant(0.5)}};
+  scene.duration = 2;
+  return scene;
+}
+
+TEST(ControlSourceTest, IntegratesTheDynamicsOfMuscles) {
+  const Scene scene = Driven();
+  ControlSource source(scene);
+  const SternPull& pull = *scene.bodies[1].loads[0].stern;
+  for (const double time : {0.0, 0.05, 0.2, 0.4}) {
+    const Controls controls = source.At(time);
+    FollowedActivation activation(scene.bodies[1].excitation->curve, {}, 2);
+    EXPECT_EQ(controls.activations[2], activation.At(time));
+    EXPECT_NEAR(controls.load_scales[2],
+                ForceOf(pull.muscle, pull.drive.angle.At(time), pull.drive.angle.RateAt(time), 0.5), 2e-4 * 800);
+  }
+  EXPECT_GT(source.At(0.2).activations[2], 0.9);
+  EXPECT_FALSE(source.RestsAt(1));
+}
+
+TEST(ControlSourceTest, GoesOnWhereItWasSaved) {
+  const Scene scene = Driven();
+  ControlSource whole(scene), first(scene), second(scene);
+  first.At(0.12);
+  first.Forget(0.1);
+  ArchiveWriter writer("controls", 1);
+  first.Save(writer);
+  const std::string bytes = writer.Finish();
+  ArchiveReader archive(bytes, "controls", 1);
+  second.Load(archive);
+  ASSERT_TRUE(archive.AtEnd());
+  for (double time = 0.1; time < 1; time += 0.013) {
+    EXPECT_EQ(second.At(time).activations, whole.At(time).activations) << time;
+    EXPECT_EQ(second.At(time).load_scales, whole.At(time).load_scales) << time;
+  }
+}
+
+// Frames of a run with muscles' dynamics: for any threads, and through a checkpoint.
+TEST(ControlSourceTest, ARunWithDynamicsHasTheSameBits) {
+  Scene scene = Driven();
+  scene.duration = 0.05;
+  scene.output.frame_interval = 0.01;
+  ExpectAnyThreadsAndRestartsGiveTheSameBits(scene, 6);
+}
+
+// The frame after some steps with the controls of the scene's curves, as `steer` leaves them.
 std::vector<BodyFrame> Stepped(const Scene& scene, const std::function<void(Controls&)>& steer) {
   ThreadTeam team(1);
   const auto method = MakeMethodRun(scene, team, nullptr);

@@ -419,18 +419,19 @@ TEST(TranslateScene, FloorsHoldBodiesThatNothingElseHolds) {
   EXPECT_THAT(problems.ToString(), ::testing::HasSubstr("inside of the floor"));
 }
 
-TEST(TranslateScene, AnExcitationBecomesAnActivation) {
+TEST(TranslateScene, ExcitationsKeepTheirDynamics) {
   v1::Scene wire = BoxScene();
   google::protobuf::TextFormat::MergeFromString(
       R"(excitation { curve { times: 0 values: 1 } activation_time: 0.02 initial_activation: 0.5 })",
       wire.mutable_bodies(0));
   const auto scene = Translate(wire);
   ASSERT_NE(scene, nullptr);
-  const Curve& activation = scene->bodies[0].activation;
-  EXPECT_EQ(activation.At(0), 0.5);
-  // t = tau (-2 ln(1 - a) - 1.5 a), less the same at the start.
-  const auto time = [](double a) { return 0.02 * (-2 * std::log(1 - a) - 1.5 * a); };
-  EXPECT_NEAR(activation.At(time(0.9) - time(0.5)), 0.9, 1e-4);
+  const std::optional<Excitation>& excitation = scene->bodies[0].excitation;
+  ASSERT_TRUE(excitation);
+  EXPECT_EQ(excitation->curve.values, std::vector<double>({1}));
+  EXPECT_EQ(excitation->dynamics.activation_time, 0.02);
+  EXPECT_EQ(excitation->dynamics.deactivation_time, 0.04);
+  EXPECT_EQ(excitation->dynamics.initial_activation, 0.5);
 }
 
 TEST(AssetsOf, NamesEachAssetOnce) {

@@ -209,7 +209,7 @@ TEST(VoxelScene, WrongImagesAreNamed) {
   EXPECT_THAT(At(ProblemsOf(without), "bodies[0].mesh.image"), HasSubstr("file, phantom"));
 }
 
-TEST(VoxelScene, TheForceOfAMuscleBecomesACurve) {
+TEST(VoxelScene, TheForceOfAMuscleIsAPull) {
   v1::Scene wire = VoxelBoxScene();
   ASSERT_TRUE(google::protobuf::TextFormat::MergeFromString(
       R"(regions { name: "top" plane { point: [0, 0, 4] normal: [0, 0, 1] } }
@@ -219,9 +219,13 @@ TEST(VoxelScene, TheForceOfAMuscleBecomesACurve) {
   const auto scene = Translate(wire);
   ASSERT_NE(scene, nullptr);
   const Load& load = scene->bodies[0].loads[0];
-  EXPECT_TRUE(load.kept);
   EXPECT_EQ(std::get<NodalForce>(load.kind).total, Vec3(0, 0, -1));
-  EXPECT_NEAR(load.scale.At(0.5), 400, 0.2);
+  ASSERT_TRUE(load.stern);
+  EXPECT_EQ(load.stern->muscle.insertion_distance, 0.04);
+  EXPECT_EQ(load.stern->muscle.peak_force, 800);
+  EXPECT_EQ(load.stern->muscle.hill_curvature, 0.25);
+  EXPECT_EQ(load.stern->drive.angle.At(0.5), 1.7);
+  EXPECT_EQ(load.stern->drive.activation.At(0.5), 0.5);
   wire.mutable_bodies(0)->mutable_loads(0)->mutable_stern()->clear_angle();
   wire.mutable_bodies(0)->mutable_loads(0)->mutable_scale()->add_times(0);
   const Problems problems = ProblemsOf(wire);
