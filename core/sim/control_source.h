@@ -9,8 +9,8 @@
 
 namespace fascicle {
 
-// The controls of a scene: from its curves, and from the dynamics of its muscles, which are integrated with the run. Their
-// state is saved with the run, which continues with the same bits. Not thread-safe.
+// The controls of a scene: from its curves, and from the dynamics of its muscles, which are integrated with the run.
+// Their state is saved with the run, which continues with the same bits. Not thread-safe.
 class ControlSource {
  public:
   // CheckScene must have accepted the scene, which must outlive the source.

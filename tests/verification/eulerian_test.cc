@@ -79,7 +79,8 @@ TEST(EulerianVerification, AStretchConverges) {
     EXPECT_NEAR(run.solid().reactions[0][2], force, 0.01 * force);
   }
   const double order = std::log2(errors[0] / errors[1]);
-  std::printf("stretch: off by %.2f %% at 14^3, %.2f %% at 28^3, order %.2f\n", 100 * errors[0], 100 * errors[1], order);
+  std::printf("stretch: off by %.2f %% at 14^3, %.2f %% at 28^3, order %.2f\n", 100 * errors[0], 100 * errors[1],
+              order);
   EXPECT_LT(errors[1], 0.016);
   EXPECT_NEAR(order, 1.75, 0.05);  // measured
 }
