@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/child_process.h"
+#include "tests/support/paths.h"
 
 namespace fascicle::testing {
 namespace {
@@ -18,7 +19,7 @@ TEST(FreshProcessTest, DirectSolvesHaveTheSameBits) {
       {{"OMP_NUM_THREADS", "1"}, {"OPENBLAS_NUM_THREADS", "1"}, {"SCOTCH_PTHREAD_NUMBER", "-1"}}};
   std::string first;
   for (std::size_t k = 0; k < std::size(environments); ++k) {
-    const Finished finished = RunProgram({DIRECT_SOLVE_DIGESTS, k % 2 == 0 ? "1" : "2"}, environments[k]);
+    const Finished finished = RunProgram({Program("direct_solve_digests"), k % 2 == 0 ? "1" : "2"}, environments[k]);
     ASSERT_EQ(finished.exit_code, 0) << finished.out << finished.err;
     if (k == 0) first = finished.out;
     EXPECT_EQ(finished.out, first) << "environment " << k;
