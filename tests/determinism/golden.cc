@@ -59,7 +59,7 @@ std::string AddData(const fs::path& scene) {
     if (fs::exists(wanted)) continue;
     const std::optional<fs::path> found = FindData(path);
     if (!found) return path;
-    fs::create_symlink(fs::absolute(*found), wanted);
+    fs::copy_file(*found, wanted);
   }
   return "";
 }
