@@ -18,15 +18,11 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* kExplanation =
-    R"(# The digest of each example of client/examples: SHA-256 of the digests of all frames, one a line.
-# Written by deploy/golden, which says what a commit that changes a line owes its readers; checked by golden_test and
-# golden_slow_test. slow: takes long, and is checked by the latter.
+    R"(# Digests of the scenes of client/examples: SHA-256 of the digests of all frames, one a line. Rewritten by
+# deploy/golden; the commit that changes a line gives the reason. Slow scenes are checked by golden_slow_test, all others
+# by golden_test.
 #
-# They hold on every x86-64 processor with AVX2 and FMA, for any number of threads and each set of instructions of the
-# project's kernels. The C library's exp, pow and others differ in bits without FMA. MUMPS's BLAS has kernels for each
-# family of processors, which add in different orders: tests ask OpenBLAS for those named Haswell
-# (OPENBLAS_CORETYPE), which run on all of them. Digests of a program that is left to choose differ from these on
-# processors with AVX-512, for all scenes in which something is factored.
+# They hold for x86-64 processors with AVX2 and FMA and OpenBLAS's kernels named Haswell (OPENBLAS_CORETYPE=Haswell).
 )";
 constexpr const char* kBlasKernels = "Haswell";
 
