@@ -1,31 +1,56 @@
-// Direct solves above 10,000 unknowns have the same bits in every process, whatever threads its environment allows to
-// the libraries below.
+// The same bits in processes of their own: whatever threads the environment allows to the libraries below, and with
+// each set of instructions that kernels are compiled for.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/base/instruction_set.h"
 #include "tests/support/child_process.h"
+#include "tests/support/paths.h"
 
 namespace fascicle::testing {
 namespace {
 
-TEST(FreshProcessTest, DirectSolvesHaveTheSameBits) {
-  const std::map<std::string, std::string> environments[] = {
-      {},
+using Environment = std::map<std::string, std::string>;
+
+std::string DigestsOf(const std::string& what, int threads, const Environment& environment) {
+  const Finished finished = RunProgram({Program("print_digests"), what, std::to_string(threads)}, environment);
+  EXPECT_EQ(finished.exit_code, 0) << finished.out << finished.err;
+  return finished.out;
+}
+
+TEST(FreshProcessTest, DirectSolvesDoNotDependOnTheEnvironment) {
+  const std::string first = DigestsOf("direct", 1, {});
+  for (const char* name : {"definite ", "saddle ", "dynamic_voxels ", "quasi_static_muscle "}) {
+    EXPECT_THAT(first, ::testing::HasSubstr(name));
+  }
+  const Environment environments[] = {
       {},
       {{"SCOTCH_PTHREAD_NUMBER", "1"}},
       {{"SCOTCH_PTHREAD_NUMBER", "4"}, {"SCOTCH_DETERMINISTIC", "0"}, {"SCOTCH_RANDOM_FIXED_SEED", "0"}},
       {{"OMP_NUM_THREADS", "4"}, {"OPENBLAS_NUM_THREADS", "4"}},
       {{"OMP_NUM_THREADS", "1"}, {"OPENBLAS_NUM_THREADS", "1"}, {"SCOTCH_PTHREAD_NUMBER", "-1"}}};
-  std::string first;
   for (std::size_t k = 0; k < std::size(environments); ++k) {
-    const Finished finished = RunProgram({DIRECT_SOLVE_DIGESTS, k % 2 == 0 ? "1" : "2"}, environments[k]);
-    ASSERT_EQ(finished.exit_code, 0) << finished.out << finished.err;
-    if (k == 0) first = finished.out;
-    EXPECT_EQ(finished.out, first) << "environment " << k;
+    EXPECT_EQ(DigestsOf("direct", 2 - static_cast<int>(k % 2), environments[k]), first) << "environment " << k;
   }
-  for (const char* name : {"definite ", "saddle ", "dynamic_voxels ", "quasi_static_muscle "}) {
-    EXPECT_THAT(first, ::testing::HasSubstr(name));
+}
+
+TEST(FreshProcessTest, AnyInstructionSet) {
+  constexpr const char* kNames[] = {"baseline", "avx2", "avx512"};
+  std::string first;
+  for (const InstructionSet set : kInstructionSets) {
+    const auto number = static_cast<int>(set);
+    if (!IsAvailable(set)) {
+      std::printf("%s is not available here\n", kNames[number]);
+      continue;
+    }
+    const std::string digests = DigestsOf("small", 2, {{"FASCICLE_INSTRUCTION_SET", kNames[number]}});
+    const std::string heading = "instruction set " + std::to_string(number) + '\n';
+    ASSERT_THAT(digests, ::testing::StartsWith(heading));
+    const std::string rest = digests.substr(heading.size());
+    if (first.empty()) first = rest;
+    EXPECT_EQ(rest, first) << kNames[number];
   }
+  EXPECT_THAT(first, ::testing::HasSubstr("eulerian_implicit "));
 }
 
 }  // namespace

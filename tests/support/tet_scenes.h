@@ -46,7 +46,7 @@ inline Constraint Fix(Side side, std::array<bool, 3> axes = {true, true, true}) 
   return Constraint{static_cast<std::int32_t>(side), axes, {}};
 }
 
-// Every law with usable parameters; soft enough that all have wave speeds of a few m/s.
+// Every law with usable parameters, in the order of the list; soft enough that all have wave speeds of a few m/s.
 inline std::vector<Material> EveryLaw() {
   return {LinearElastic(std::array{1e4, 0.3}),
           StVenantKirchhoff(std::array{1e4, 0.3}),
@@ -54,8 +54,10 @@ inline std::vector<Material> EveryLaw() {
           NeoHookean(std::array{1e4, 0.3}),
           MooneyRivlin(std::array{2e3, 1e3, 2e4}),
           Muscle(std::array{5e2, 5e2, 1e5, 3e4, 1.2, 0.05, 6.6, 1.4}),
-          Tendon(std::array{5e3, 5e3, 1e6, 2.7e4, 20.0, 1.03})};
+          Tendon(std::array{5e3, 5e3, 1e6, 2.7e4, 20.0, 1.03}),
+          TransIsoMooneyRivlin(std::array{2e3, 1e3, 5e2, 8.0, 5e4, 1.2, 2e4, 1e4})};
 }
+inline constexpr int kLaws = std::variant_size_v<Material>;
 
 // A scene of one body, with fibres along x where the law needs them.
 inline Scene OneBody(Body body) {

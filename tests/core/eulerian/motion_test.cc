@@ -103,7 +103,8 @@ TEST(EulerianMotion, ACrushedCubeKeepsItsVolumeIfAskedTo) {
   std::printf("volume changes by %.3f %% with none, %.3f %% with div v = 0, %.3f %% preserved\n", 100 * worst[0],
               100 * worst[1], 100 * worst[2]);
   EXPECT_GT(worst[0], 0.01);
-  EXPECT_LT(worst[2], 0.002);
+  EXPECT_LT(worst[1], 0.002);
+  EXPECT_LT(worst[2], 0.95 * worst[1]);  // div v = 0 does not correct what has drifted
 }
 
 // Hanging from above a row of nodes, without lateral strain (nu = 0): with P = mu (s - 1/s) = rho g Z at a distance Z

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "core/sim/method_run.h"
-#include "eulerian_scenes.h"
 #include "same_bits.h"
 #include "tests/support/brick_bodies.h"
+#include "tests/support/eulerian_scenes.h"
 #include "tests/support/tet_scenes.h"
 
 namespace fascicle {

@@ -7,8 +7,7 @@
 #include "core/eulerian/scene_body.h"
 #include "core/eulerian/world.h"
 #include "core/scene/rigid_motion.h"
-#include "eulerian_scenes.h"
-#include "same_bits.h"
+#include "tests/support/eulerian_scenes.h"
 #include "tests/support/tet_scenes.h"
 
 namespace fascicle {
@@ -114,22 +113,6 @@ TEST(EulerianSimulationTest, SupportsMove) {
     const double off = (run.frames.back().bodies[0].positions[n] - end.PositionOf(X)).norm();
     EXPECT_LT(off, (X[2] < 0.01 ? 0.05 : 0.15) * kCell) << n;
   }
-}
-
-TEST(EulerianSimulationTest, AnyThreadsAndRestartsGiveTheSameBits) {
-  Scene scene = Held();
-  // Two bodies; one flows and has fibres, and a plane force field acts on both.
-  Body second = EulerianCube("second");
-  second.material = Muscle(std::array{1e3, 0.0, 1e5, 1e4, 1.0, 0.05, 6.6, 1.4, 0.0, 0.25, 1.4});
-  second.surface().fibres = {Vec3::UnitX()};
-  second.activation = Curve{{0, 0.02}, {0, 0.5}};
-  second.surface().plasticity = Plasticity{50, 0};
-  second.constraints = {{0, {true, true, true}, {}}};
-  scene.bodies.push_back(std::move(second));
-  scene.squeezes.push_back({Vec3::Constant(0.03), Vec3::UnitX(), 1e4, 0.01, Curve::Constant(1)});
-  scene.output.fields = {OutputField::kVelocity, OutputField::kCauchyStress};
-  ExpectSound(scene);
-  ExpectAnyThreadsAndRestartsGiveTheSameBits(scene, 5);
 }
 
 TEST(EulerianSimulationTest, CheckpointsFitTheirSceneOnly) {

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "eulerian_scenes.h"
 #include "tests/support/brick_bodies.h"
+#include "tests/support/eulerian_scenes.h"
 #include "tests/support/stage_watch.h"
 #include "tests/support/tet_scenes.h"
 

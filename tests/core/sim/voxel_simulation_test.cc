@@ -7,7 +7,6 @@
 
 #include "core/voxel/dynamic_solver.h"
 #include "core/voxel/scene_body.h"
-#include "same_bits.h"
 #include "tests/support/brick_bodies.h"
 #include "tests/support/tet_scenes.h"
 
@@ -187,16 +186,6 @@ TEST(VoxelSimulationTest, StepsAreThePartsOfFrames) {
   EXPECT_EQ(run.frames.back().step, 6);
   EXPECT_EQ(run.frames.back().time, 0.01);
   EXPECT_DOUBLE_EQ(run.Last("solver/step"), 0.005 / 3);
-}
-
-TEST(VoxelSimulationTest, AnyThreadsAndRestartsGiveTheSameBits) {
-  for (const bool dynamic : {false, true}) {
-    Scene scene = dynamic ? Release() : Bar(LinearElastic(std::array{kYoung, 0.3}));
-    scene.duration = 0.02;
-    scene.output.frame_interval = 0.004;
-    SCOPED_TRACE(dynamic);
-    ExpectAnyThreadsAndRestartsGiveTheSameBits(scene, 6);
-  }
 }
 
 TEST(VoxelSimulationTest, WhatNothingHoldsIsNamed) {

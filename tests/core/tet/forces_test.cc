@@ -50,6 +50,12 @@ class EveryLawTest : public ::testing::TestWithParam<int> {
   }
 };
 
+TEST(EveryLaw, IsTheWholeList) {
+  const std::vector<Material> laws = EveryLaw();
+  ASSERT_EQ(laws.size(), Laws().size());
+  for (std::size_t i = 0; i < laws.size(); ++i) EXPECT_EQ(NameOf(laws[i]), Laws()[i].name);
+}
+
 // f = -dW/dx against a sixth-order central difference. Its error is round-off, 1e-11, unless a fibre curve has a kink
 // within the stencil; a short stencil makes that error small too.
 TEST_P(EveryLawTest, ForceIsMinusGradientOfEnergy) {
@@ -130,7 +136,7 @@ TEST_P(EveryLawTest, RigidMotionIsFree) {
   EXPECT_LT(report.dissipated_power, 1e-20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, EveryLawTest, ::testing::Range(0, 7),
+INSTANTIATE_TEST_SUITE_P(Laws, EveryLawTest, ::testing::Range(0, kLaws),
                          [](const auto& law) { return NameOf(EveryLaw()[law.param]); });
 
 // A linear displacement on an irregular mesh: uniform stress and no force on interior nodes.

@@ -91,7 +91,7 @@ TEST_P(StableStepTest, SeparatesStableFromUnstable) {
   EXPECT_GT(growth(1.1), 1e3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, StableStepTest, ::testing::Range(0, 7));
+INSTANTIATE_TEST_SUITE_P(Laws, StableStepTest, ::testing::Range(0, kLaws));
 
 // With explicit damping: (omega dt)^2 + 2 rate dt = 4.
 TEST(DampedStableStepTest, AgreesWithTheFormula) {

@@ -1,13 +1,15 @@
-// Prints a digest for each kind of direct solve above 10,000 unknowns, for fresh_process_test.cc: `NAME DIGEST` lines.
+// For fresh_process_test.cc: print_digests direct|small THREADS prints `NAME DIGEST` lines.
+//   direct  for each kind of direct solve above 10,000 unknowns
+//   small   for each of the small scenes; the first line says which set of instructions they run with
 #include <cstdio>
 #include <cstdlib>
 
 #include "core/base/digest.h"
+#include "core/base/instruction_set.h"
 #include "core/linalg/direct_solver.h"
 #include "core/linalg/lanczos.h"
 #include "core/linalg/lower_triangle.h"
-#include "tests/support/brick_bodies.h"
-#include "tests/support/tet_scenes.h"
+#include "tests/determinism/small_scenes.h"
 
 namespace fascicle::testing {
 namespace {
@@ -23,22 +25,22 @@ void SolveAndPrint(const char* name, std::int32_t size, const LowerTriangle& mat
   Print(name, {reinterpret_cast<const char*>(x.data()), x.size() * sizeof(double)});
 }
 
-// Adds c on the diagonal of each node of a grid of n^3, and springs of about 1 to its neighbours.
-void AddSprings(int n, double c, LowerTriangle& matrix) {
+// Springs of about 1 between the neighbours of a grid of n^3 nodes, and one more on each.
+void AddSprings(int n, LowerTriangle& matrix) {
   const std::int32_t strides[3] = {1, n, n * n};
   for (std::int32_t i = 0; i < n * n * n; ++i) {
-    matrix.Add(i, i, c + 7);
+    matrix.Add(i, i, 7);
     for (const std::int32_t stride : strides) {
       if (i / stride % n > 0) matrix.Add(i, i - stride, -1 + 0.1 * HashedUnit(i));
     }
   }
 }
 
-// Springs, and the sum over each block of 2^3 nodes as a constraint that gives way a little.
+// Springs, and the sum over each block of 2^3 nodes as a relaxed constraint.
 void SolveSaddle() {
   constexpr int kNodes = 22, kBlocks = kNodes / 2;
   LowerTriangle matrix;
-  AddSprings(kNodes, 0, matrix);
+  AddSprings(kNodes, matrix);
   std::int32_t row = kNodes * kNodes * kNodes;
   for (int block = 0; block < kBlocks * kBlocks * kBlocks; ++block, ++row) {
     const int corner =
@@ -52,8 +54,9 @@ void SolveSaddle() {
 void RunAndPrint(const char* name, const Scene& scene, int threads) {
   const RunResult run = RunScene(scene, threads);
   if (run.outcome.kind != Outcome::Kind::kSucceeded) std::exit(1);
-  const Digest& last = run.frames.back().digest;
-  Print(name, {reinterpret_cast<const char*>(last.data()), last.size()});
+  std::string digests;
+  for (const Frame& frame : run.frames) digests += Hex(frame.digest);
+  Print(name, digests);
 }
 
 // Dynamic and linear: factored once, 12,675 unknowns.
@@ -72,7 +75,7 @@ Scene DynamicVoxels() {
 // signs.
 Scene QuasiStaticMuscle() {
   Body body = BoxBody(Vec3(0.02, 0.02, 0.06), {5, 5, 17}, Muscle(std::array{3e4, 1e4, 8e6, 3e5, 1.0, 0.05, 6.6, 1.4}));
-  body.fibres = ConstantFibres(body.mesh, Vec3::UnitZ());
+  body.tet().fibres = ConstantFibres(body.tet().mesh, Vec3::UnitZ());
   body.constraints = {Fix(kZ0), Fix(kZ1)};
   body.activation = Curve{{0, 1}, {0, 0.1}};
   Scene scene = OneBody(std::move(body));
@@ -84,16 +87,29 @@ Scene QuasiStaticMuscle() {
   return scene;
 }
 
+void PrintDirectSolves(int threads) {
+  constexpr int kNodes = 24;
+  LowerTriangle definite;
+  AddSprings(kNodes, definite);
+  SolveAndPrint("definite", kNodes * kNodes * kNodes, definite);
+  SolveSaddle();
+  RunAndPrint("dynamic_voxels", DynamicVoxels(), threads);
+  RunAndPrint("quasi_static_muscle", QuasiStaticMuscle(), threads);
+}
+
+void PrintSmallScenes(int threads) {
+  std::printf("instruction set %d\n", static_cast<int>(PreferredInstructionSet()));
+  for (const NamedScene& named : SmallScenes()) RunAndPrint(named.name.c_str(), named.scene, threads);
+}
+
 }  // namespace
 }  // namespace fascicle::testing
 
 int main(int, char** arguments) {
-  using namespace fascicle::testing;
-  const int threads = std::atoi(arguments[1]);
-  fascicle::LowerTriangle definite;
-  AddSprings(24, 0, definite);
-  SolveAndPrint("definite", 24 * 24 * 24, definite);
-  SolveSaddle();
-  RunAndPrint("dynamic_voxels", DynamicVoxels(), threads);
-  RunAndPrint("quasi_static_muscle", QuasiStaticMuscle(), threads);
+  const int threads = std::atoi(arguments[2]);
+  if (std::string_view(arguments[1]) == "direct") {
+    fascicle::testing::PrintDirectSolves(threads);
+  } else {
+    fascicle::testing::PrintSmallScenes(threads);
+  }
 }

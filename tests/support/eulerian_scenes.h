@@ -1,5 +1,5 @@
-#ifndef FASCICLE_TESTS_CORE_SIM_EULERIAN_SCENES_H_
-#define FASCICLE_TESTS_CORE_SIM_EULERIAN_SCENES_H_
+#ifndef FASCICLE_TESTS_SUPPORT_EULERIAN_SCENES_H_
+#define FASCICLE_TESTS_SUPPORT_EULERIAN_SCENES_H_
 
 #include <string>
 #include <utility>
@@ -60,4 +60,4 @@ inline Scene EulerianScene(std::vector<Body> bodies) {
 
 }  // namespace fascicle::testing
 
-#endif  // FASCICLE_TESTS_CORE_SIM_EULERIAN_SCENES_H_
+#endif  // FASCICLE_TESTS_SUPPORT_EULERIAN_SCENES_H_
