@@ -43,7 +43,7 @@ Scene Ball() {
 Scene VoxelBox() {
   Body body = testing::VoxelBox(Vec3::Constant(0.07), {70, 70, 70}, LinearElastic(std::array{5e6, 0.4}));
   body.constraints = {{0, {true, true, true}, {}}};
-  body.loads = {{1, Traction{Vec3(0, 0, 100)}, Curve::Constant(1)}};
+  body.loads = {{1, Traction{Vec3(0, 0, 100)}, Curve::Constant(1), {}}};
   return testing::VoxelScene(std::move(body));
 }
 

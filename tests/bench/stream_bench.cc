@@ -21,6 +21,7 @@
 #include "ratio.h"
 #include "server/jobs/job_manager.h"
 #include "server/rpc/rpc_server.h"
+#include "server/store/result_store.h"
 #include "server/store/store.h"
 #include "server/translate/job_codec.h"
 #include "tests/support/files.h"
@@ -204,7 +205,9 @@ void Run() {
   const auto store = OpenSqliteStore(folder.path());
   const std::string name = "jobs/" + PutJob(*store, frame);
   JobManager jobs(*store, MakeJobCodec(nullptr), {});
-  RpcServer ours("127.0.0.1:0", *store, jobs, std::make_shared<spdlog::logger>("bench"), {});
+  const auto results = MakeMemoryResults(0);
+  ResultCache cache(*results);
+  RpcServer ours("127.0.0.1:0", *store, jobs, cache, std::make_shared<spdlog::logger>("bench"), {});
   const auto our_channel = ChannelTo(ours.port());
   const auto our_frames = v1::FrameService::NewStub(our_channel);
   const auto our_jobs = v1::JobService::NewStub(our_channel);

@@ -29,7 +29,7 @@ inline Scene BusyScene(Stepping stepping, ElementOrder element, int across) {
   Constraint turn = Fix(kX1);
   turn.motion.rotation = Rotation{Vec3(0, 0.01, 0.01), Vec3::UnitX(), Curve{{0, 0.01}, {0, 0.2}}};
   bar.constraints = {Fix(kX0), turn};
-  bar.loads.push_back({kY1, Traction{Vec3(0, 100, 0)}, Curve{{0, 0.003}, {0, 1}}});
+  bar.loads.push_back({kY1, Traction{Vec3(0, 100, 0)}, Curve{{0, 0.003}, {0, 1}}, {}});
   bar.damping = {.mass_proportional = 5, .stiffness_proportional = 1e-4};
   Scene scene;
   scene.bodies = {muscle, bar};
@@ -49,7 +49,7 @@ inline Scene BentBricks(VoxelStepping stepping, Material law) {
   Constraint turn = {1, {true, false, false}, {}};
   turn.motion.rotation = Rotation{Vec3(0, 0.015, 0.015), Vec3::UnitX(), Curve{{0, 0.01}, {0, 0.2}}};
   body.constraints = {{0, {true, true, true}, {}}, turn};
-  body.loads.push_back({1, NodalForce{Vec3(0, 0.1, 0.2)}, Curve{{0, 0.004}, {0, 1}}});
+  body.loads.push_back({1, NodalForce{Vec3(0, 0.1, 0.2)}, Curve{{0, 0.004}, {0, 1}}, {}});
   body.damping.mass_proportional = 10;
   Scene scene = VoxelScene(std::move(body));
   scene.gravity.acceleration = Vec3(0, 0, -9.81);
@@ -64,7 +64,7 @@ inline Scene BentBricks(VoxelStepping stepping, Material law) {
 inline Scene PressedCubes() {
   Body cube = EulerianCube();
   cube.constraints = {{0, {true, true, true}, {}}};
-  cube.loads.push_back({1, Traction{Vec3(0, 0, -100)}, Curve{{0, 0.01}, {0, 1}}});
+  cube.loads.push_back({1, Traction{Vec3(0, 0, -100)}, Curve{{0, 0.01}, {0, 1}}, {}});
   Body muscle = EulerianCube("muscle");
   muscle.material = Muscle(std::array{1e3, 0.0, 1e5, 1e4, 1.0, 0.05, 6.6, 1.4, 0.0, 0.25, 1.4});
   muscle.surface().fibres = {Vec3::UnitX()};

@@ -17,7 +17,7 @@ inline MooneyRivlin NearlyIncompressible() { return MooneyRivlin(std::array{0.03
 inline Body CantileverBody(int n, const Material& law, double force, const Curve& scale) {
   Body body = BoxBody(Vec3(0.01, 0.001, 0.001), {10 * n, n, n}, law);
   body.constraints = {Fix(kX0)};
-  body.loads.push_back({kX1, Traction{Vec3(0, 0, -force / 1e-6)}, scale});
+  body.loads.push_back({kX1, Traction{Vec3(0, 0, -force / 1e-6)}, scale, {}});
   return body;
 }
 // Problem a.

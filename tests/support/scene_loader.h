@@ -17,8 +17,8 @@ inline std::shared_ptr<const Scene> ReadScene(const std::filesystem::path& file,
   const auto package = client::LoadScene(file.string(), problems);
   if (!package) return nullptr;
   const auto asset = [&](const std::string& digest) -> std::optional<std::string> {
-    for (const client::AssetFile& asset : package->assets) {
-      if (asset.sha256_hex == digest) return asset.bytes;
+    for (const client::AssetFile& file : package->assets) {
+      if (file.sha256_hex == digest) return file.bytes;
     }
     return std::nullopt;
   };

@@ -31,7 +31,8 @@ TEST(FebioTest, CantileverNodeByNode) {
     ASSERT_EQ(elements[e].get<Tetrahedron>(), body.tet().mesh.tetrahedra[e]);
   }
   body.constraints = {Fix(kX0)};
-  body.loads.push_back({kX1, Traction{Vec3(0, 0, -1 / 1e-6)}, Curve{{0, 2e-3}, {0, 1}, Curve::Interpolation::kSmooth}});
+  body.loads.push_back(
+      {kX1, Traction{Vec3(0, 0, -1 / 1e-6)}, Curve{{0, 2e-3}, {0, 1}, Curve::Interpolation::kSmooth}, {}});
   body.density = 1000;
   body.damping.mass_proportional = 8000;
   Scene scene = OneBody(body);

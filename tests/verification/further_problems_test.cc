@@ -84,7 +84,7 @@ double CookDeflection(int n, ElementOrder element) {
   Constraint flat = Fix(kZ0), flat_too = Fix(kZ1);
   flat.axes = flat_too.axes = {false, false, true};
   body.constraints = {Fix(kX0), flat, flat_too};
-  body.loads.push_back({kX1, Traction{Vec3(0, 100e3 / 16e-3, 0)}, Ramp(1)});  // 100 N a millimetre of thickness
+  body.loads.push_back({kX1, Traction{Vec3(0, 100e3 / 16e-3, 0)}, Ramp(1), {}});  // 100 N a millimetre of thickness
   SteppedRun run(StaticScene(std::move(body), element));
   EXPECT_TRUE(run.To(1));
   const double deflection = run.DisplacementAt(Vec3(0.048, 0.06, 0))[1];
@@ -108,7 +108,7 @@ double RingDeflection(int n, ElementOrder element) {
     for (Triangle& t : region.triangles) std::swap(t[1], t[2]);
   }
   body.constraints = {Fix(kZ0)};
-  body.loads.push_back({kZ1, Traction{Vec3(0, 1500, 0)}, Ramp(1)});
+  body.loads.push_back({kZ1, Traction{Vec3(0, 1500, 0)}, Ramp(1), {}});
   SteppedRun run(StaticScene(std::move(body), element));
   EXPECT_TRUE(run.To(1));
   const Vec3 moved = run.DisplacementAt(Vec3(0, 0.02, 0.002));
@@ -173,7 +173,7 @@ TEST(FurtherProblems, AnArchSnapsThrough) {
 
   const double load = 1.2 * snap_load;
   Body pressed = Arch(1);
-  pressed.loads.push_back({kMiddle, NodalForce{Vec3(0, 0, -load)}, Ramp(1)});
+  pressed.loads.push_back({kMiddle, NodalForce{Vec3(0, 0, -load)}, Ramp(1), {}});
   for (const double time_step : {1.0, 0.05}) {
     Scene scene = StaticScene(pressed, ElementOrder::kQuadratic);
     scene.tet.time_step = time_step;

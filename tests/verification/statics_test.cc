@@ -16,7 +16,8 @@ Scene PulledBar(const Material& law, double traction, double density = 1000) {
   Body body = BoxBody(Vec3(0.04, 0.02, 0.02), {4, 2, 2}, law);
   body.density = density;
   body.constraints = {Fix(kX0, {true, false, false}), Fix(kY0, {false, true, false}), Fix(kZ0, {false, false, true})};
-  body.loads.push_back({kX1, Traction{Vec3(traction, 0, 0)}, Curve{{0, 0.05}, {0, 1}, Curve::Interpolation::kSmooth}});
+  body.loads.push_back(
+      {kX1, Traction{Vec3(traction, 0, 0)}, Curve{{0, 0.05}, {0, 1}, Curve::Interpolation::kSmooth}, {}});
   body.damping.mass_proportional = 150;
   Scene scene = OneBody(body);
   scene.output.settle_speed = 1e-9;

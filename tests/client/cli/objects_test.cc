@@ -111,7 +111,7 @@ void End(server::ActiveJob& job, server::JobState state, const std::string& fail
 std::vector<Frame> StoreRun(server::Store& store) {
   const server::JobRecord record = RecordOf(1, BoxOverGround());
   EXPECT_TRUE(store.CreateJob(record, nullptr));
-  const server::JobCodec codec = server::MakeJobCodec();
+  const server::JobCodec codec = server::MakeJobCodec(nullptr);
   const auto scene = codec.decode_scene(record.spec, store, nullptr);
   server::ActiveJob job(store, record);
   job.SetFrames(store.OpenFrames(record.id));
@@ -148,7 +148,7 @@ class ObjectsTest : public ::testing::Test {
       failure.reason = "NOT_CONVERGED";
       failure.object_kind = ObjectKind::kJoint;
       failure.object = "elbow";
-      StoreFailure(2, server::MakeJobCodec().encode_failure(failure), *store);
+      StoreFailure(2, server::MakeJobCodec(nullptr).encode_failure(failure), *store);
       v1::Failure of_older_server;
       of_older_server.set_reason("INVERTED_ELEMENT");
       of_older_server.set_body("belly");

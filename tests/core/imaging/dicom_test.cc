@@ -77,7 +77,7 @@ TEST(Dicom, SlicesOfDifferentFoldersMayHaveTheSameName) {
 }
 
 TEST(Dicom, HeedsStopRequests) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::vector<path> paths = WriteAll(folder, Sagittal(5));
   std::stop_source source;
   source.request_stop();

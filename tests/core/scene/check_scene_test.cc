@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 Scene GoodScene() {
   Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, Muscle(std::array{5e2, 5e2, 1e5, 3e4, 1.2, 0.05, 6.6, 1.4}));
   body.constraints.push_back(Fix(kX0));
-  body.loads.push_back({kX1, Traction{Vec3(0, 0, -50)}, Curve::Constant(1)});
+  body.loads.push_back({kX1, Traction{Vec3(0, 0, -50)}, Curve::Constant(1), {}});
   body.activation = {{0, 1}, {0, 1}, Curve::Interpolation::kSmooth};
   Scene scene = OneBody(body);
   scene.gravity.acceleration = Vec3(0, 0, -9.81);
@@ -210,8 +210,8 @@ TEST(CheckSceneTest, BodyThatWouldFlyAway) {
   CheckScene(scene, problems);
   EXPECT_TRUE(problems.empty()) << problems.ToString();
   // Balanced loads need no support.
-  scene.bodies[0].loads = {{kX1, Traction{Vec3(50, 0, 0)}, Curve::Constant(1)},
-                           {kX0, Traction{Vec3(-50, 0, 0)}, Curve::Constant(1)}};
+  scene.bodies[0].loads = {{kX1, Traction{Vec3(50, 0, 0)}, Curve::Constant(1), {}},
+                           {kX0, Traction{Vec3(-50, 0, 0)}, Curve::Constant(1), {}}};
   CheckScene(scene, problems);
   EXPECT_TRUE(problems.empty()) << problems.ToString();
   scene.bodies[0].loads[1].scale = Curve{{0, 1}, {0, 1}, Curve::Interpolation::kLinear};

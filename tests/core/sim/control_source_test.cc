@@ -22,7 +22,7 @@ Body MuscleBox() {
   Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, Muscle(std::array{5e2, 5e2, 1e5, 3e4, 1.2, 0.05, 6.6, 1.4}));
   body.tet().fibres = ConstantFibres(body.tet().mesh, Vec3::UnitX());
   body.constraints = {Fix(kX0)};
-  body.loads = {{kX1, NodalForce{Vec3(0, 0, -0.01)}, Curve::Constant(0)}};
+  body.loads = {{kX1, NodalForce{Vec3(0, 0, -0.01)}, Curve::Constant(0), {}}};
   return body;
 }
 
@@ -32,7 +32,7 @@ Scene TwoBodies() {
   first.activation = Curve{{0, 1}, {0, 0.4}};
   first.tet().activations.more = {Curve::Constant(0.7)};
   first.tet().activations.of.assign(first.tet().mesh.tetrahedra.size(), 1);
-  first.loads.push_back({kX1, Traction{Vec3(1, 0, 0)}, Curve{{0, 1}, {0, 3}}});
+  first.loads.push_back({kX1, Traction{Vec3(1, 0, 0)}, Curve{{0, 1}, {0, 3}}, {}});
   second.name = "second";
   second.activation = Curve::Constant(0.9);
   second.loads[0].scale = Curve{{0, 1}, {1, 5}};
@@ -195,7 +195,7 @@ Scene TetScene(Stepping stepping) {
 Scene VoxelBar() {
   Body body = VoxelBox(Vec3(0.04, 0.01, 0.02), {8, 2, 4}, LinearElastic(std::array{2e5, 0.25}));
   body.constraints = {{0, {true, true, true}, {}}};
-  body.loads.push_back({1, Traction{Vec3(0, 0, 100)}, Curve::Constant(0)});
+  body.loads.push_back({1, Traction{Vec3(0, 0, 100)}, Curve::Constant(0), {}});
   return VoxelScene(std::move(body));
 }
 

@@ -19,7 +19,7 @@ using namespace fascicle::testing;
 Scene Held() {
   Body body = EulerianCube();
   body.constraints = {{0, {true, true, true}, {}}};
-  body.loads.push_back({1, Traction{Vec3(0, 0, -100)}, Curve{{0, 0.01}, {0, 1}}});
+  body.loads.push_back({1, Traction{Vec3(0, 0, -100)}, Curve{{0, 0.01}, {0, 1}}, {}});
   Scene scene = EulerianScene({std::move(body)});
   scene.gravity.acceleration = Vec3(5, 0, 0);
   scene.output.fields = {OutputField::kVelocity, OutputField::kCauchyStress, OutputField::kVonMisesStress,

@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 Scene Beam() {
   Body body = BoxBody(Vec3(0.06, 0.02, 0.02), {6, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
   body.constraints.push_back(Fix(kX0));
-  body.loads.push_back({kX1, Traction{Vec3(0, 0, -50)}, Curve{{0, 0.05}, {0, 1}, Curve::Interpolation::kSmooth}});
+  body.loads.push_back({kX1, Traction{Vec3(0, 0, -50)}, Curve{{0, 0.05}, {0, 1}, Curve::Interpolation::kSmooth}, {}});
   body.damping.mass_proportional = 40;
   Scene scene = OneBody(body);
   scene.output.fields = {OutputField::kVelocity, OutputField::kVolumeRatio};

@@ -24,7 +24,7 @@ Scene Endless(Scene scene, double frame_interval) {
 Scene Beam(Stepping stepping) {
   Body body = BoxBody(Vec3(0.06, 0.02, 0.02), {6, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
   body.constraints.push_back(Fix(kX0));
-  body.loads.push_back({kX1, Traction{Vec3(0, 0, -50)}, Curve{{0, 1, 2}, {0, 1, 0.5}}});
+  body.loads.push_back({kX1, Traction{Vec3(0, 0, -50)}, Curve{{0, 1, 2}, {0, 1, 0.5}}, {}});
   body.damping.viscosity = stepping == Stepping::kMixed ? 2 : 0;
   Scene scene = OneBody(body);
   scene.tet.stepping = stepping;
@@ -35,7 +35,7 @@ Scene Beam(Stepping stepping) {
 Scene VoxelBar(VoxelStepping stepping) {
   Body body = VoxelBox(Vec3(0.04, 0.01, 0.02), {16, 4, 8}, CorotatedLinear(std::array{2e5, 0.25}));
   body.constraints = {{0, {true, true, true}, {}}};
-  body.loads.push_back({1, Traction{Vec3(0, 0, 100)}, Curve{{0, 1000}, {0, 1000}}});
+  body.loads.push_back({1, Traction{Vec3(0, 0, 100)}, Curve{{0, 1000}, {0, 1000}}, {}});
   Scene scene = VoxelScene(std::move(body));
   scene.voxel.stepping = stepping;
   return Endless(std::move(scene), 0.01);

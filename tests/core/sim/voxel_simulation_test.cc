@@ -27,7 +27,7 @@ Scene Bar(Material material) {
   body.regions.push_back(
       SelectRegion(body.voxel().mesh, surface, "line", BoxSelector{Vec3(0, 0.005, 0), Vec3(0, 0.005, 0.02)}));
   body.constraints = {{0, {true, false, false}, {}}, {2, {true, true, true}, {}}, {3, {false, true, false}, {}}};
-  body.loads.push_back({1, Traction{Vec3(kPull, 0, 0)}, Curve{{0, 1}, {0, 1}}});
+  body.loads.push_back({1, Traction{Vec3(kPull, 0, 0)}, Curve{{0, 1}, {0, 1}}, {}});
   Scene scene = VoxelScene(std::move(body));
   scene.output.frame_interval = 0.5;
   scene.output.fields = {OutputField::kCauchyStress, OutputField::kVonMisesStress, OutputField::kPressure,
@@ -70,7 +70,7 @@ TEST(VoxelSimulationTest, ABarStretchesAsHookeSays) {
 TEST(VoxelSimulationTest, ATurnedGridGivesTheTurnedAnswer) {
   Body body = VoxelBox(kSize, {8, 2, 4}, LinearElastic(std::array{kYoung, 0.25}));
   body.constraints = {{0, {true, true, true}, {}}};
-  body.loads.push_back({1, NodalForce{Vec3(0.01, 0.02, -0.03)}, Curve::Constant(1)});
+  body.loads.push_back({1, NodalForce{Vec3(0.01, 0.02, -0.03)}, Curve::Constant(1), {}});
   Scene scene = VoxelScene(body);
   scene.output.fields = {OutputField::kCauchyStress};
   scene.voxel.tolerance = 1e-12;
@@ -135,7 +135,7 @@ TEST(VoxelSimulationTest, CorotatedBricksTurnFreely) {
 Scene Release() {
   Body body = VoxelBox(kSize, {8, 2, 4}, LinearElastic(std::array{kYoung, 0.3}));
   body.constraints = {{0, {true, true, true}, {}}};
-  body.loads.push_back({1, NodalForce{Vec3(0, 0.01, 0)}, Curve{{0, 1e-9}, {1, 0}}});
+  body.loads.push_back({1, NodalForce{Vec3(0, 0.01, 0)}, Curve{{0, 1e-9}, {1, 0}}, {}});
   body.damping.mass_proportional = 10;
   Scene scene = VoxelScene(body);
   scene.voxel.stepping = VoxelStepping::kDynamic;

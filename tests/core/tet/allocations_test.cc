@@ -28,8 +28,8 @@ Scene BusyScene(Stepping stepping) {
     moved.motion.rotation =
         Rotation{Vec3(0.02, 0.01, 0.01), Vec3::UnitX(), Curve{{0, 0.02}, {0, 0.1}, Curve::Interpolation::kLinear}};
     body.constraints = {Fix(kX0), moved};
-    body.loads = {Load{kY1, Traction{Vec3(0, 50, 0)}, Curve::Constant(1)},
-                  Load{kZ1, NodalForce{Vec3(0, 0, 0.01)}, Curve::Constant(1)}};
+    body.loads = {Load{kY1, Traction{Vec3(0, 50, 0)}, Curve::Constant(1), {}},
+                  Load{kZ1, NodalForce{Vec3(0, 0, 0.01)}, Curve::Constant(1), {}}};
     body.damping = {20, 1e-5, 1};
     scene.bodies.push_back(std::move(body));
   }

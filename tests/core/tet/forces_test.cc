@@ -171,8 +171,8 @@ TEST(PatchTest, LinearDisplacementIsInEquilibrium) {
 // Traction on a side: its nodes get area / 3 of each triangle; the resultant is area times traction.
 TEST(LoadTest, TractionIsConsistent) {
   Scene scene = OneBody(BoxBody(kSize, kDivisions, NeoHookean(std::array{1e4, 0.3})));
-  scene.bodies[0].loads.push_back({kX1, Traction{Vec3(0, 0, -50)}, Curve::Constant(1)});
-  scene.bodies[0].loads.push_back({kX1, NodalForce{Vec3(3, 0, 0)}, Curve::Constant(2)});
+  scene.bodies[0].loads.push_back({kX1, Traction{Vec3(0, 0, -50)}, Curve::Constant(1), {}});
+  scene.bodies[0].loads.push_back({kX1, NodalForce{Vec3(3, 0, 0)}, Curve::Constant(2), {}});
   const TetModel model(scene);
   ThreadTeam team(1);
   NodalVector force;

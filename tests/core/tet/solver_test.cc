@@ -274,7 +274,7 @@ TEST(MomentumTest, IsConserved) {
 TEST(FixedStepTest, IsHalvedUntilItIsStable) {
   Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
   body.constraints.push_back(Fix(kX0));
-  body.loads.push_back({kX1, NodalForce{Vec3(0, 0, -0.02)}, Curve::Constant(1)});
+  body.loads.push_back({kX1, NodalForce{Vec3(0, 0, -0.02)}, Curve::Constant(1), {}});
   Scene scene = OneBody(body);
   const TetModel automatic(scene);
   ThreadTeam team(1);

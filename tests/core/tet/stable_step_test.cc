@@ -120,7 +120,7 @@ TEST(DampedStableStepTest, AgreesWithTheFormula) {
 // A run with strong explicit damping at the automatic step loses energy and comes to rest.
 TEST(DampedStableStepTest, IsStable) {
   Scene scene = TestScene(NeoHookean(std::array{1e4, 0.3}), {.viscosity = 20});
-  scene.bodies[0].loads.push_back({kX1, NodalForce{Vec3(0, 0, -0.01)}, Curve::Constant(1)});
+  scene.bodies[0].loads.push_back({kX1, NodalForce{Vec3(0, 0, -0.01)}, Curve::Constant(1), {}});
   scene.duration = 1;
   const RunResult run = RunScene(scene);
   ASSERT_EQ(run.outcome.kind, Outcome::Kind::kSucceeded);
