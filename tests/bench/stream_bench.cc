@@ -24,6 +24,7 @@
 #include "server/store/result_store.h"
 #include "server/store/store.h"
 #include "server/translate/job_codec.h"
+#include "server/translate/result_cache.h"
 #include "tests/support/files.h"
 
 namespace fascicle::server {
