@@ -13,8 +13,8 @@ namespace fascicle::testing {
 
 // Reads a scene file and its files with the client, and translates them with the server; nullptr and `problems` if that
 // fails.
-inline std::shared_ptr<const Scene> ReadScene(const std::filesystem::path& file, Problems& problems) {
-  const auto package = client::LoadScene(file.string(), problems);
+inline std::shared_ptr<const Scene> ReadScene(const std::filesystem::path& path, Problems& problems) {
+  const auto package = client::LoadScene(path.string(), problems);
   if (!package) return nullptr;
   const auto asset = [&](const std::string& digest) -> std::optional<std::string> {
     for (const client::AssetFile& file : package->assets) {
