@@ -37,7 +37,7 @@ ControlSource::ControlSource(const Scene& scene) : scene_(&scene), curves_end_(C
   for (const Body& body : scene.bodies) {
     std::optional<FollowedActivation>& activation = activations_.emplace_back();
     if (body.excitation) activation.emplace(body.excitation->curve, body.excitation->dynamics, scene.duration);
-    for (const Load& load : body.loads) {
+    for (const fascicle::Load& load : body.loads) {
       std::optional<SternForce>& pull = pulls_.emplace_back();
       if (load.stern) pull.emplace(load.stern->muscle, load.stern->drive, scene.duration);
     }

@@ -98,7 +98,7 @@ struct Simulation::Impl {
 
   bool AtEnd() const { return settled || next_frame > last_frame; }
 
-  bool IsSettled() const {
+  bool IsSettled() {
     const RunClock clock = method->clock();
     return scene->output.settle_speed && clock.step > 0 && source.RestsAt(clock.time) &&
            method->LargestSpeed() <= *scene->output.settle_speed;
