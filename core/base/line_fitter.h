@@ -36,11 +36,11 @@ class LineFitter {
     if (time_ > curve_.times.back()) Push(time_, value_);
   }
 
-  // As far as it is known: points that are added later leave it as it is up to its end. Empty before the first.
+  // The polyline so far; further points only append to it. Empty before the first point.
   const Curve& curve() const { return curve_; }
 
-  // Gives up the curve's points before a time, but for the last of them.
-  void Forget(double time) {
+  // Removes the polyline's points before a time, except for the last of them.
+  void DiscardBefore(double time) {
     const auto later = std::upper_bound(curve_.times.begin(), curve_.times.end(), time) - curve_.times.begin();
     if (later < 2) return;
     curve_.times.erase(curve_.times.begin(), curve_.times.begin() + (later - 1));

@@ -54,14 +54,14 @@ double StepBefore(const Curve& excitation, const ActivationDynamics& dynamics, d
 
 }  // namespace
 
-// The piece of the excitation from `begin` to its next point, or to the end.
-void ActivationPoints::BeginPiece(double begin) {
+// Begins the interval from `begin` to the next point of the excitation, or to the end.
+void ActivationPoints::BeginInterval(double begin) {
   begin_ = time_ = begin;
   const auto next = std::upper_bound(excitation_->times.begin(), excitation_->times.end(), begin);
   end_ = next == excitation_->times.end() ? duration_ : std::min(*next, duration_);
 }
 
-// The length of the next step in the piece; 0 where it is at its end, or rests under an excitation that is held.
+// The length of the next step in the interval; 0 at its end, or if excitation and activation are constant.
 double ActivationPoints::NextStep() const {
   if (!(time_ < end_)) return 0;
   const bool held = excitation_->At(begin_) == excitation_->At(end_);
@@ -75,7 +75,7 @@ bool ActivationPoints::AddNext(LineFitter& fitter) {
   if (!has_begun_) {
     has_begun_ = true;
     fitter.Add(0, activation_);
-    BeginPiece(0);
+    BeginInterval(0);
     return true;
   }
   if (const double step = NextStep(); step > 0) {
@@ -86,7 +86,7 @@ bool ActivationPoints::AddNext(LineFitter& fitter) {
   }
   if (!(end_ < duration_)) return false;
   fitter.Add(end_, activation_);
-  BeginPiece(end_);
+  BeginInterval(end_);
   return true;
 }
 
@@ -106,7 +106,7 @@ void ActivationPoints::Load(ArchiveReader& archive) {
   activation_ = archive.GetDouble("activation");
 }
 
-FollowedActivation::FollowedActivation(const Curve& excitation, const ActivationDynamics& dynamics, double duration)
-    : FoundCurve(ActivationPoints(excitation, dynamics, duration), kLeftOut) {}
+IntegratedActivation::IntegratedActivation(const Curve& excitation, const ActivationDynamics& dynamics, double duration)
+    : LazyCurve(ActivationPoints(excitation, dynamics, duration), kLeftOut) {}
 
 }  // namespace fascicle

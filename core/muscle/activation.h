@@ -1,7 +1,7 @@
 #ifndef FASCICLE_CORE_MUSCLE_ACTIVATION_H_
 #define FASCICLE_CORE_MUSCLE_ACTIVATION_H_
 
-#include "core/base/found_curve.h"
+#include "core/base/lazy_curve.h"
 
 namespace fascicle {
 
@@ -18,11 +18,11 @@ struct ActivationDynamics {
   double initial_activation = 0;     // at time 0
 };
 
-// Integrates the dynamics step by step from time 0 until the activation has come to rest after the excitation, at most
-// until `duration` [s].
+// The steps of an integration of the dynamics from time 0, until the excitation and the activation are constant, at
+// most until `duration` [s].
 class ActivationPoints {
  public:
-  // The excitation must outlive it.
+  // The excitation must outlive the points.
   ActivationPoints(const Curve& excitation, const ActivationDynamics& dynamics, double duration)
       : excitation_(&excitation), dynamics_(dynamics), duration_(duration), activation_(dynamics.initial_activation) {}
 
@@ -31,22 +31,22 @@ class ActivationPoints {
   void Load(ArchiveReader& archive);
 
  private:
-  void BeginPiece(double begin);
+  void BeginInterval(double begin);
   double NextStep() const;
 
   const Curve* excitation_;
   ActivationDynamics dynamics_;
   double duration_;
   bool has_begun_ = false;
-  double begin_ = 0, end_ = 0;  // of a piece of the excitation without a bend in between [s]
+  double begin_ = 0, end_ = 0;  // of an interval between two points of the excitation [s]
   double time_ = 0;             // [s]
-  double activation_;           // then
+  double activation_;           // at this time
 };
 
-// The activation over time, as straight lines that are nowhere more than 1e-4 from the solution.
-class FollowedActivation : public FoundCurve<ActivationPoints> {
+// The activation as a function of time: a polyline within 1e-4 of the solution.
+class IntegratedActivation : public LazyCurve<ActivationPoints> {
  public:
-  FollowedActivation(const Curve& excitation, const ActivationDynamics& dynamics, double duration);
+  IntegratedActivation(const Curve& excitation, const ActivationDynamics& dynamics, double duration);
 };
 
 }  // namespace fascicle

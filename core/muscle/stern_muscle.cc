@@ -79,6 +79,6 @@ void SternForcePoints::Load(ArchiveReader& archive) {
 }
 
 SternForce::SternForce(const SternMuscle& muscle, const SternDrive& drive, double duration)
-    : FoundCurve(SternForcePoints(muscle, drive, duration), kTolerance * muscle.peak_force) {}
+    : LazyCurve(SternForcePoints(muscle, drive, duration), kTolerance * muscle.peak_force) {}
 
 }  // namespace fascicle

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/base/found_curve.h"
+#include "core/base/lazy_curve.h"
 
 namespace fascicle {
 
@@ -34,16 +34,16 @@ double LengthOf(const SternMuscle& muscle, double angle);
 // constant length. Lengthening follows ForceVelocityCurve, because Stern's formula is unbounded there.
 double ForceOf(const SternMuscle& muscle, double angle, double rate, double activation);
 
-// How such a muscle is driven.
+// The inputs of such a muscle over time.
 struct SternDrive {
   Curve angle = Curve::Constant(0);       // of the joint [rad]
   Curve activation = Curve::Constant(1);  // in [0, 1]
 };
 
-// Samples the muscle's force from time 0 to `duration` [s].
+// Samples of the muscle's force from time 0 to `duration` [s].
 class SternForcePoints {
  public:
-  // The drive must outlive it.
+  // The drive must outlive the points.
   SternForcePoints(const SternMuscle& muscle, const SternDrive& drive, double duration);
 
   bool AddNext(LineFitter& fitter);
@@ -53,13 +53,13 @@ class SternForcePoints {
  private:
   SternMuscle muscle_;
   const SternDrive* drive_;
-  std::vector<double> bends_;  // times between which neither curve has a bend
-  std::size_t piece_ = 0;      // between two of them
-  int sample_ = 0;             // the next one in it
+  std::vector<double> bends_;  // times between which both curves are smooth [s]
+  std::size_t piece_ = 0;      // the interval between bends_[piece_] and the next
+  int sample_ = 0;             // the next sample in it
 };
 
-// The muscle's force over time [N], as straight lines that are nowhere more than 2e-4 of peak_force from it.
-class SternForce : public FoundCurve<SternForcePoints> {
+// The muscle's force as a function of time [N]: a polyline within 2e-4 peak_force of the force.
+class SternForce : public LazyCurve<SternForcePoints> {
  public:
   SternForce(const SternMuscle& muscle, const SternDrive& drive, double duration);
 };

@@ -35,7 +35,7 @@ double CurvesEnd(const Scene& scene) {
 
 ControlSource::ControlSource(const Scene& scene) : scene_(&scene), curves_end_(CurvesEnd(scene)) {
   for (const Body& body : scene.bodies) {
-    std::optional<FollowedActivation>& activation = activations_.emplace_back();
+    std::optional<IntegratedActivation>& activation = activations_.emplace_back();
     if (body.excitation) activation.emplace(body.excitation->curve, body.excitation->dynamics, scene.duration);
     for (const fascicle::Load& load : body.loads) {
       std::optional<SternForce>& pull = pulls_.emplace_back();
@@ -73,7 +73,7 @@ Controls ControlSource::At(double time) {
 }
 
 template <class Self, class Call>
-void ControlSource::ForFound(Self& self, const Call& call) {
+void ControlSource::ForLazy(Self& self, const Call& call) {
   for (auto& activation : self.activations_) {
     if (activation) call(*activation);
   }
@@ -84,20 +84,20 @@ void ControlSource::ForFound(Self& self, const Call& call) {
 
 bool ControlSource::RestsAt(double time) {
   bool rests = time >= curves_end_;
-  ForFound(*this, [&](auto& curve) { rests = rests && curve.RestsAt(time); });
+  ForLazy(*this, [&](auto& curve) { rests = rests && curve.RestsAt(time); });
   return rests;
 }
 
-void ControlSource::Forget(double time) {
-  ForFound(*this, [&](auto& curve) { curve.Forget(time); });
+void ControlSource::DiscardBefore(double time) {
+  ForLazy(*this, [&](auto& curve) { curve.DiscardBefore(time); });
 }
 
 void ControlSource::Save(ArchiveWriter& archive) const {
-  ForFound(*this, [&](const auto& curve) { curve.Save(archive); });
+  ForLazy(*this, [&](const auto& curve) { curve.Save(archive); });
 }
 
 void ControlSource::Load(ArchiveReader& archive) {
-  ForFound(*this, [&](auto& curve) { curve.Load(archive); });
+  ForLazy(*this, [&](auto& curve) { curve.Load(archive); });
 }
 
 }  // namespace fascicle

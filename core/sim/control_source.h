@@ -9,36 +9,36 @@
 
 namespace fascicle {
 
-// The controls of a scene: from its curves, and from the dynamics of its muscles, which are integrated with the run.
-// Their state is saved with the run, which continues with the same bits. Not thread-safe.
+// Evaluates the controls of a scene: its curves, and the dynamics of its muscles, which are integrated with the run and
+// are part of its checkpoints. Not thread-safe.
 class ControlSource {
  public:
   // CheckScene must have accepted the scene, which must outlive the source.
   explicit ControlSource(const Scene& scene);
 
-  // Sets all controls to their values at a time [s], which must not precede the last Forget. Does not allocate if
-  // `controls` already has the scene's sizes and no muscle has dynamics.
+  // Sets all controls to their values at a time [s], which must not precede that of the last DiscardBefore. Does not
+  // allocate if `controls` already has the scene's sizes and no muscle has dynamics.
   void Evaluate(double time, Controls& controls);
   Controls At(double time);
 
-  // Whether no control changes any more from a time on [s].
+  // Whether all controls are constant from a time on [s].
   bool RestsAt(double time);
-  // No earlier time will be asked for [s].
-  void Forget(double time);
+  // Frees memory: no earlier time [s] will be evaluated.
+  void DiscardBefore(double time);
 
   void Save(ArchiveWriter& archive) const;
   // Sets failed() of the archive when it is of another scene.
   void Load(ArchiveReader& archive);
 
  private:
-  // Calls call(curve) for all that is integrated.
+  // Calls call(curve) for all activations and forces that are integrated.
   template <class Self, class Call>
-  static void ForFound(Self& self, const Call& call);
+  static void ForLazy(Self& self, const Call& call);
 
   const Scene* scene_;
   double curves_end_;
-  std::vector<std::optional<FollowedActivation>> activations_;  // of each body with an excitation
-  std::vector<std::optional<SternForce>> pulls_;                // of each load that is a muscle's pull
+  std::vector<std::optional<IntegratedActivation>> activations_;  // of each body with an excitation
+  std::vector<std::optional<SternForce>> pulls_;                  // of each load that is a muscle's force
 };
 
 }  // namespace fascicle

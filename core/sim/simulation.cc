@@ -127,7 +127,7 @@ struct Simulation::Impl {
     ++next_frame;
     iterations_at_frame = clock.iterations;
     settled = IsSettled();
-    source.Forget(clock.time);
+    source.DiscardBefore(clock.time);
     return frame;
   }
 

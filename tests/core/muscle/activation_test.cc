@@ -16,7 +16,7 @@ constexpr double kTolerance = 1e-4;  // promised
 const ActivationDynamics kThelen;
 const Curve kFull = Curve::Constant(1);
 
-std::string Saved(const FollowedActivation& activation) {
+std::string Saved(const IntegratedActivation& activation) {
   ArchiveWriter archive("activation", 1);
   activation.Save(archive);
   return archive.Finish();
@@ -25,7 +25,7 @@ std::string Saved(const FollowedActivation& activation) {
 // u = 1: t = tau_act (-2 ln(1 - a) - 1.5 a) from rest, by separation of the variables.
 TEST(Activation, RisesAsTheClosedForm) {
   for (const double time_constant : {0.002, 0.01, 0.3}) {
-    FollowedActivation activation(kFull, {time_constant, 0.04, 0}, 20 * time_constant);
+    IntegratedActivation activation(kFull, {time_constant, 0.04, 0}, 20 * time_constant);
     for (double a = 0.01; a < 0.9999; a += 0.01) {
       const double time = time_constant * (-2 * std::log(1 - a) - 1.5 * a);
       EXPECT_NEAR(activation.At(time), a, kTolerance) << time;
@@ -36,7 +36,7 @@ TEST(Activation, RisesAsTheClosedForm) {
 // u = 0: t = 2 tau_deact ln((1 + 3 a)/(4 a)) from full activation.
 TEST(Activation, FallsAsTheClosedForm) {
   const Curve off = Curve::Constant(0);
-  FollowedActivation activation(off, {0.01, 0.04, 1}, 1);
+  IntegratedActivation activation(off, {0.01, 0.04, 1}, 1);
   for (double a = 0.99; a > 0.001; a -= 0.01) {
     const double time = 2 * 0.04 * std::log((1 + 3 * a) / (4 * a));
     EXPECT_NEAR(activation.At(time), a, kTolerance) << time;
@@ -45,7 +45,7 @@ TEST(Activation, FallsAsTheClosedForm) {
 
 // The largest distance from Heun's method with steps so small that its own error is below 1e-6.
 double WorstError(const Curve& excitation, const ActivationDynamics& dynamics, double duration) {
-  FollowedActivation activation(excitation, dynamics, duration);
+  IntegratedActivation activation(excitation, dynamics, duration);
   const double step = 2e-6 * std::min(dynamics.activation_time, dynamics.deactivation_time) / 0.01;
   const auto rate = [&](double time, double a) {
     const double u = excitation.At(time);
@@ -89,7 +89,7 @@ TEST(Activation, FollowsEveryKindOfExcitation) {
 const Curve kPulse{{0, 0.01, 0.3, 0.31}, {0, 1, 1, 0}, Curve::Interpolation::kLinear};
 
 TEST(Activation, NeedsFewPointsAndRests) {
-  FollowedActivation activation(kPulse, kThelen, 1000);
+  IntegratedActivation activation(kPulse, kThelen, 1000);
   EXPECT_FALSE(activation.RestsAt(0.31));
   EXPECT_TRUE(activation.RestsAt(2));
   EXPECT_LT(Saved(activation).size(), 300 * 2 * sizeof(double));
@@ -99,7 +99,7 @@ TEST(Activation, NeedsFewPointsAndRests) {
 
 TEST(Activation, StaysConstantWhenExcitationEqualsActivation) {
   const Curve same = Curve::Constant(0.3);
-  FollowedActivation activation(same, {0.01, 0.04, 0.3}, 1000);
+  IntegratedActivation activation(same, {0.01, 0.04, 0.3}, 1000);
   EXPECT_TRUE(activation.RestsAt(0));
   for (const double time : {0.0, 0.1, 1000.0}) EXPECT_EQ(activation.At(time), 0.3);
 }
@@ -111,10 +111,10 @@ TEST(Activation, ForgetsThePast) {
     shaking.times.push_back(0.05 * k);
     shaking.values.push_back(k % 2);
   }
-  FollowedActivation all(shaking, kThelen, 20), last(shaking, kThelen, 20);
+  IntegratedActivation all(shaking, kThelen, 20), last(shaking, kThelen, 20);
   for (double time = 0; time < 20; time += 0.01) {
     EXPECT_EQ(last.At(time), all.At(time));
-    last.Forget(time);
+    last.DiscardBefore(time);
   }
   EXPECT_GT(Saved(all).size(), 2000 * sizeof(double));
   EXPECT_LT(Saved(last).size(), 100 * sizeof(double));
@@ -122,14 +122,14 @@ TEST(Activation, ForgetsThePast) {
 
 // However far it was asked for before, and saved wherever: the same bits.
 TEST(Activation, HasTheSameBitsHoweverItIsAskedAndAfterALoad) {
-  FollowedActivation whole(kPulse, kThelen, 1);
+  IntegratedActivation whole(kPulse, kThelen, 1);
   whole.At(1);
   for (const double saved_at : {0.0, 0.005, 0.05, 0.3, 0.305, 0.9}) {
-    FollowedActivation first(kPulse, kThelen, 1);
+    IntegratedActivation first(kPulse, kThelen, 1);
     EXPECT_EQ(first.At(saved_at), whole.At(saved_at));
     first.At(saved_at + 0.01);  // as a step ahead
-    first.Forget(saved_at);
-    FollowedActivation second(kPulse, kThelen, 1);
+    first.DiscardBefore(saved_at);
+    IntegratedActivation second(kPulse, kThelen, 1);
     const std::string bytes = Saved(first);
     ArchiveReader archive(bytes, "activation", 1);
     second.Load(archive);

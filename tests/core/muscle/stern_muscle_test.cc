@@ -84,7 +84,7 @@ TEST(SternMuscleTest, TheForceHasTheSameBitsAfterALoad) {
   SternForce whole(kMuscle, kDrive, 0.6), first(kMuscle, kDrive, 0.6), second(kMuscle, kDrive, 0.6);
   whole.At(0.6);
   first.At(0.2);
-  first.Forget(0.2);
+  first.DiscardBefore(0.2);
   ArchiveWriter writer("force", 1);
   first.Save(writer);
   const std::string bytes = writer.Finish();

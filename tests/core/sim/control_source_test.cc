@@ -104,7 +104,7 @@ TEST(ControlSourceTest, IntegratesTheDynamicsOfMuscles) {
   const SternPull& pull = *scene.bodies[1].loads[0].stern;
   for (const double time : {0.0, 0.05, 0.2, 0.4}) {
     const Controls controls = source.At(time);
-    FollowedActivation activation(scene.bodies[1].excitation->curve, {}, 2);
+    IntegratedActivation activation(scene.bodies[1].excitation->curve, {}, 2);
     EXPECT_EQ(controls.activations[2], activation.At(time));
     EXPECT_NEAR(controls.load_scales[2],
                 ForceOf(pull.muscle, pull.drive.angle.At(time), pull.drive.angle.RateAt(time), 0.5), 2e-4 * 800);
@@ -117,7 +117,7 @@ TEST(ControlSourceTest, GoesOnWhereItWasSaved) {
   const Scene scene = Driven();
   ControlSource whole(scene), first(scene), second(scene);
   first.At(0.12);
-  first.Forget(0.1);
+  first.DiscardBefore(0.1);
   ArchiveWriter writer("controls", 1);
   first.Save(writer);
   const std::string bytes = writer.Finish();
