@@ -19,8 +19,8 @@ using nlohmann::json;
 
 constexpr const char* kExplanation =
     R"(# Digests of the scenes of client/examples: SHA-256 of the digests of all frames, one a line. Rewritten by
-# deploy/golden; the commit that changes a line gives the reason. Slow scenes are checked by golden_slow_test, all others
-# by golden_test.
+# deploy/golden; the commit that changes a line gives the reason. Slow scenes are checked by golden_slow_test,
+# all others by golden_test.
 #
 # They hold for x86-64 processors with AVX2 and FMA and OpenBLAS's kernels named Haswell (OPENBLAS_CORETYPE=Haswell).
 )";
