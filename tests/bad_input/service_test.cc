@@ -41,10 +41,8 @@ class BadInputService : public ::testing::Test {
     arguments.insert(arguments.begin(), Program("fascicle"));
     const Finished answer = RunProgram(arguments);
     const std::string output = answer.out + answer.err;
-    EXPECT_EQ(answer.exit_code, 2) << bad.name << ": " << arguments[1]
-                                   << "
-                                      " << output;
-        for (const Expectation& expected : bad.expected) {
+    EXPECT_EQ(answer.exit_code, 2) << bad.name << ": " << arguments[1] << "\n" << output;
+    for (const Expectation& expected : bad.expected) {
       EXPECT_THAT(output, AllOf(HasSubstr(expected.path), HasSubstr(expected.text)))
           << bad.name << ": " << arguments[1];
     }

@@ -298,11 +298,10 @@ TEST_F(CliTest, CompletionKnowsCommandsAndOptions) {
 class ServerTest : public CliTest {
  protected:
   void SetUp() override {
-    server_ = std::make_unique<ChildProcess>(
-        std::vector<std::string>{Program("fascicled"), "--listen", "127.0.0.1:0", "--data", folder_ / "server"});
-    const std::string line = server_->ReadLine();
-    ASSERT_THAT(line, HasSubstr("listening on ")) << server_->Wait().err;
-    address_ = line.substr(line.find("listening on ") + 13);
+    server_ = std::make_unique<ServerProcess>(
+        std::vector<std::string>{"--listen", "127.0.0.1:0", "--data", folder_ / "server"});
+    address_ = server_->AwaitAddress();
+    ASSERT_NE(address_, "") << server_->ErrorOutput();
   }
   Finished Call(const std::vector<std::string>& arguments) { return Fascicle(arguments, address_); }
   std::string Submit(int frames, int steps) {

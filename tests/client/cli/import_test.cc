@@ -7,6 +7,7 @@
 
 #include "fascicle_fixture.h"
 #include "tests/support/feb_writer.h"
+#include "tests/support/reference_file.h"
 
 namespace fascicle::testing {
 namespace {

@@ -112,7 +112,7 @@ std::vector<Frame> StoreRun(server::Store& store) {
   const server::JobRecord record = RecordOf(1, BoxOverGround());
   EXPECT_TRUE(store.CreateJob(record, nullptr));
   const server::JobCodec codec = server::MakeJobCodec(nullptr);
-  const auto scene = codec.decode_scene(record.spec, store, nullptr);
+  const auto scene = codec.decode_scene(record.spec, store, nullptr, {});
   server::ActiveJob job(store, record);
   job.SetFrames(store.OpenFrames(record.id));
   Simulation simulation(scene, 1);

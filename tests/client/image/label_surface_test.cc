@@ -58,7 +58,7 @@ std::string BallImage() { return MetaBytes(kSize, kTurned, Voxels<std::uint8_t>(
 std::optional<LabelSurface> Read(const std::string& name, const std::string& bytes, int label, double smoothing,
                                  Problems& problems) {
   const TemporaryFolder folder;
-  return ReadLabelSurface(folder.Write(name, bytes), label, smoothing, problems);
+  return ReadLabelSurface(folder.Write(name, bytes), label, smoothing, {}, problems);
 }
 
 LabelSurface ReadGood(const std::string& name, const std::string& bytes, int label, double smoothing = 0.6) {
