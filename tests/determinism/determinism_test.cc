@@ -4,7 +4,7 @@
 #include <random>
 #include <set>
 
-#include "tests/determinism/small_scenes.h"
+#include "small_scenes.h"
 
 namespace fascicle {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/linalg/direct_solver.h"
 #include "core/linalg/lanczos.h"
 #include "core/linalg/lower_triangle.h"
-#include "tests/determinism/small_scenes.h"
+#include "small_scenes.h"
 
 namespace fascicle::testing {
 namespace {

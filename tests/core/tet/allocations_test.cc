@@ -21,7 +21,7 @@ Scene BusyScene(Stepping stepping) {
   Scene scene;
   for (const Material& material : EveryLaw()) {
     Body body = BoxBody(Vec3(0.02, 0.02, 0.02), {6, 6, 6}, material);
-    body.fibres = ConstantFibres(body.mesh, Vec3(1, 0.3, 0.2));
+    body.tet().fibres = ConstantFibres(body.tet().mesh, Vec3(1, 0.3, 0.2));
     body.activation = Curve{{0, 0.02}, {0, 1}, Curve::Interpolation::kSmooth};
     Constraint moved = Fix(kX1);
     moved.motion.translation[0] = Curve{{0, 0.02}, {0, 1e-3}, Curve::Interpolation::kSmooth};

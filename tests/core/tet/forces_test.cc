@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "core/sim/control_source.h"
 #include "core/tet/bad_elements.h"
 #include "core/tet/stable_step.h"
 #include "tests/support/tet_scenes.h"

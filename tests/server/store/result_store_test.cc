@@ -92,7 +92,8 @@ TEST_P(ResultContract, SeveralThreadsPutAndGet) {
     threads.emplace_back([&, t] {
       for (int i = 0; i < 200; ++i) {
         const int number = (i + 3 * t) % 10;
-        if (const auto bytes = results->GetResult(KeyOf(number))) EXPECT_EQ(*bytes, BytesOf(number));
+        const std::optional<std::string> bytes = results->GetResult(KeyOf(number));
+        EXPECT_EQ(bytes.value_or(BytesOf(number)), BytesOf(number));
         results->PutResult(KeyOf(number), BytesOf(number));
       }
     });
@@ -101,7 +102,7 @@ TEST_P(ResultContract, SeveralThreadsPutAndGet) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Results, ResultContract, ::testing::Values(false, true),
-                         [](const auto& info) { return info.param ? "Directory" : "Memory"; });
+                         [](const auto& kind) { return kind.param ? "Directory" : "Memory"; });
 
 class ResultDirectoryTest : public ::testing::Test {
  protected:

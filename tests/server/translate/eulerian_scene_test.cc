@@ -139,9 +139,9 @@ TEST(EulerianScene, ASupportMayBeInside) {
   ASSERT_NE(scene, nullptr);
   ThreadTeam team(1);
   const EulerianBody body = MakeEulerianBody(*scene, scene->bodies[0], team);
-  EXPECT_EQ(body.support_of(Vec3(0.03, 0.03, 0.03)), 1);
-  EXPECT_EQ(body.support_of(Vec3(0.03, 0.03, 0.05)), -1);
-  EXPECT_EQ(body.support_of(Vec3(0.03, 0.03, 0)), 0);
+  EXPECT_EQ(body.SupportOf(Vec3(0.03, 0.03, 0.03)), 1);
+  EXPECT_EQ(body.SupportOf(Vec3(0.03, 0.03, 0.05)), -1);
+  EXPECT_EQ(body.SupportOf(Vec3(0.03, 0.03, 0)), 0);
 }
 
 TEST(EulerianScene, FibresOfTetrahedraStay) {
