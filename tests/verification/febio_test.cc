@@ -1,6 +1,7 @@
 // Problem a of the FEBio reference results: a neo-Hookean cantilever under a dead end load.
 #include <gtest/gtest.h>
 
+#include "core/sim/control_source.h"
 #include "core/tet/diagnostics.h"
 #include "tests/support/reference_file.h"
 #include "tests/support/tet_scenes.h"

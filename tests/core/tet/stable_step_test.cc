@@ -1,4 +1,5 @@
 #include "core/tet/stable_step.h"
+#include "core/sim/control_source.h"
 
 #include <gtest/gtest.h>
 
