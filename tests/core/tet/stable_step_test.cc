@@ -1,5 +1,4 @@
 #include "core/tet/stable_step.h"
-#include "core/sim/control_source.h"
 
 #include <gtest/gtest.h>
 
