@@ -47,8 +47,9 @@ TEST_F(SegmentTest, CtrlCStopsItWithoutAFile) {
     const Finished finished = child.Wait();
     EXPECT_EQ(finished.exit_code, 4) << finished.err;
     EXPECT_THAT(finished.err, HasSubstr("interrupted"));
-    const auto files = fs::directory_iterator(folder_.path());
-    EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "the phantom only";
+    for (const auto& file : fs::directory_iterator(folder_.path())) {
+      EXPECT_THAT(file.path().filename().string(), ::testing::AnyOf("arm.mha", "tmp"));
+    }
   }
 }
 
