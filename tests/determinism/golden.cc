@@ -1,4 +1,4 @@
-#include "tests/determinism/golden.h"
+#include "golden.h"
 
 #include <algorithm>
 #include <fstream>

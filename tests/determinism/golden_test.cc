@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/determinism/golden.h"
+#include "golden.h"
 #include "tests/support/paths.h"
 
 namespace fascicle::testing {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "tests/determinism/golden.h"
+#include "golden.h"
 #include "tests/support/files.h"
 
 namespace fascicle::testing {

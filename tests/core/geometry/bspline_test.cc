@@ -131,9 +131,9 @@ TEST(BsplineBasis, SaysWhatIsWrong) {
   EXPECT_THAT(knots({0, 0, 0.6, 0.5, 1, 1}), HasSubstr("descend"));
   EXPECT_THAT(knots({0, 0.1, 0.5, 1, 1}), HasSubstr("not clamped"));
   EXPECT_THAT(knots({0, 0, 0.5, 0.9, 1}), HasSubstr("not clamped"));
-  EXPECT_THAT(knots({0, 0, 0.5, 0.5, 1, 1}), HasSubstr("more than 1 knots"));
-  EXPECT_THAT(knots({0, 0, 0, 1, 1}), HasSubstr("more than 1 knots"));
-  EXPECT_THAT(knots({0, 0, 0, 0}), HasSubstr("more than 1 knots"));
+  EXPECT_THAT(knots({0, 0, 0.5, 0.5, 1, 1}), HasSubstr("more than 1 interior knots"));
+  EXPECT_THAT(knots({0, 0, 0, 1, 1}), HasSubstr("more than 1 interior knots"));
+  EXPECT_THAT(knots({0, 0, 0, 0}), HasSubstr("more than 1 interior knots"));
   EXPECT_EQ(knots({0, 0, 0.5, 1, 1}), "");
 }
 
