@@ -329,8 +329,8 @@ TEST(CheckSceneTest, NumbersOfPlaneForceFields) {
   scene.squeezes[0].width = -1;
   EXPECT_EQ(ProblemOf(scene).path, "squeezes[0].width");
   scene = good;
-  scene.squeezes[0].scale.times.clear();
-  EXPECT_EQ(ProblemOf(scene).path.substr(0, 17), "squeezes[0].scale");
+  scene.squeezes[0].scale.values[0] = std::nan("");
+  EXPECT_EQ(ProblemOf(scene).path, "squeezes[0].scale.values");
 }
 
 TEST(CheckSceneTest, AllProblemsAtOnce) {

@@ -54,8 +54,13 @@ class Change {
 
   template <class Value>
   void Visit(std::optional<Value>& value, const std::string& path) {
-    if (IsPlace(path)) return value.reset();
-    if (value) Visit(*value, path);
+    if (!IsPlace(path)) {
+      if (value) Visit(*value, path);
+    } else if (value) {
+      value.reset();
+    } else {
+      value.emplace();
+    }
   }
 
   template <class... Kinds>
@@ -66,6 +71,7 @@ class Change {
 
   template <class Value>
   void Visit(std::vector<Value>& list, const std::string& path) {
+    ASSERT_FALSE(list.empty()) << path << ": every list of these scenes has entries";
     if (IsPlace(path)) list.push_back(list.front());
     VisitEntries(list, path);
   }
