@@ -51,7 +51,7 @@ inline VoxelShape FullVoxelShape() {
 }
 
 inline SurfaceShape FullSurfaceShape() {
-  const TetMesh filling = MakeBox(Vec3::Zero(), Vec3::Ones(), {1, 1, 1});
+  const TetMesh filling = FullTetShape().mesh;
   return {{filling.nodes, BoundaryTriangles(filling)}, filling, FibreField(6, Vec3::UnitX()), Plasticity{1e3, 0.1}};
 }
 
