@@ -112,7 +112,7 @@ TEST(Dicom, ASliceAloneIsAVolumeOfOneLayer) {
 TEST(Dicom, RefusesWhatIsNoSeries) {
   std::vector<DicomSlice> slices = Sagittal(5);
   slices[2].series = "1.2.3.5";
-  EXPECT_THAT(Refusal(slices), HasSubstr("of 2 series"));
+  EXPECT_THAT(Refusal(slices), HasSubstr("belong to 2 series"));
   slices = Sagittal(5);
   slices[2].rows = 4;
   EXPECT_THAT(Refusal(slices), HasSubstr("slice2.dcm has a different size than slice0.dcm"));

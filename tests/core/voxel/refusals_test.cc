@@ -76,7 +76,8 @@ TEST(Refusals, SupportsThatDoNotExistOrContradict) {
               HasSubstr("supports[1].nodes: 2 of 3 nodes are not corners of a solid voxel, the first is (9, 0, 0)"));
   body = Body();
   body.supports.push_back({{{4, 0, 0}}, {false, true, false}, Vec3(0, 1e-3, 0)});
-  EXPECT_THAT(body.Problem(), HasSubstr("supports[1].displacement: 1 components are prescribed by an earlier support"));
+  EXPECT_THAT(body.Problem(),
+              HasSubstr("supports[1].displacement: 1 components have a different value in an earlier support"));
   body = Body();
   body.supports.push_back({{{4, 0, 0}}, {false, false, false}});
   EXPECT_THAT(body.Problem(), HasSubstr("supports[1].components"));
