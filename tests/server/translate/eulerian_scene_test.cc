@@ -254,7 +254,7 @@ TEST(EulerianScene, GridsThatCannotBe) {
   EXPECT_THAT(At(WithScene("eulerian { cell_size: 1e-300 }"), "eulerian.cell_size"), HasSubstr("cells are too many"));
   EXPECT_THAT(At(WithScene("eulerian { cell_size: 0 }"), "eulerian.cell_size"), HasSubstr("missing or 0"));
   EXPECT_THAT(At(WithScene("eulerian { lowest: [0.1, 0, 0] highest: [0, 1, 1] }"), "eulerian.lowest[0]"),
-              HasSubstr("exchange"));
+              HasSubstr("swap"));
   EXPECT_THAT(At(WithScene("eulerian { lowest: [0.1, 0, 0] }"), "eulerian.highest"), HasSubstr("both"));
   EXPECT_THAT(At(WithScene("eulerian { lowest: [-1, -1, -1] highest: [0.1, 0.05, 0.1] }"), "bodies[0].mesh"),
               HasSubstr("eulerian.lowest"));

@@ -256,7 +256,7 @@ TEST(Problems, ChecksOfTheCoreAreRunOnTheBodiesThatAreWhole) {
   EXPECT_THAT(At(problems, "bodies[0].mesh.box.size[0]"), HasSubstr("(0, inf)"));
   EXPECT_THAT(At(problems, "bodies[1].density"), HasSubstr("(0, 30000]"));
   EXPECT_THAT(At(problems, "bodies[1].constraints[1]"), HasSubstr("differently"));
-  EXPECT_THAT(At(problems, "bodies[2].constraints"), HasSubstr("no support holds"));
+  EXPECT_THAT(At(problems, "bodies[2].constraints"), HasSubstr("no support balances"));
   EXPECT_EQ(problems.count(), 4u) << problems.ToString();
 }
 
