@@ -73,7 +73,7 @@ TEST(CheckRules, NamesEveryProblemAtOnce) {
   EXPECT_THAT(At(problems, "bodies[0].mesh.box.divisions[0]").message, HasSubstr("outside the range [1, 1000]"));
   EXPECT_THAT(At(problems, "bodies[0].material.neo_hookean.poisson_ratio").message, HasSubstr("(-1, 0.5)"));
   EXPECT_THAT(At(problems, "bodies[0].damping.viscosity").message, HasSubstr("finite"));
-  EXPECT_THAT(At(problems, "bodies[0].unit").message, HasSubstr("no value of LengthUnit"));
+  EXPECT_THAT(At(problems, "bodies[0].unit").message, HasSubstr("not a value of LengthUnit"));
   EXPECT_THAT(At(problems, "bodies[0].activation.times").message, HasSubstr("missing"));
   EXPECT_THAT(At(problems, "bodies[0].activation.values[0]").message, HasSubstr("finite"));
   EXPECT_THAT(At(problems, "bodies[0].loads[0].traction.vector").message, HasSubstr("1 values instead of 3"));
