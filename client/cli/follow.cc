@@ -45,10 +45,11 @@ std::jthread PollProgress(Client& client, const std::string& name, ProgressBar& 
   });
 }
 
-// The geometry, unless the job ended before it had one.
-std::optional<v1::Geometry> FetchGeometry(Client& client, const v1::Job& job) {
+// The geometry, unless the job ended before it had one; `job` is then the final one.
+std::optional<v1::Geometry> FetchGeometry(Client& client, v1::Job& job) {
   Result<v1::Geometry> geometry = client.GetGeometry(job.name());
   if (geometry.ok()) return std::move(geometry.value());
+  job = Take(client.GetJob(job.name()));
   if (IsFinal(job.state()) && job.frame_count() == 0) return std::nullopt;
   throw CommandError(geometry.error());
 }

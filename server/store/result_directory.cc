@@ -57,13 +57,12 @@ class ResultDirectory final : public ResultStore {
     if (!IsSha256Hex(key)) return std::nullopt;
     std::optional<std::string> bytes = ReadChecked(PathOf(key));
     const std::lock_guard lock(mutex_);
-    std::error_code ignored;
     if (bytes) {
       order_.Use(key);
-      // File times preserve the order for the next process.
-      fs::last_write_time(PathOf(key), fs::file_time_type::clock::now(), ignored);
+      Touch(key);
     } else {
       order_.Remove(key);
+      std::error_code ignored;
       fs::remove(PathOf(key), ignored);
     }
     return bytes;
@@ -79,6 +78,7 @@ class ResultDirectory final : public ResultStore {
       fs::rename(written, PathOf(key), error);
       if (!error) {
         order_.Add(key, size);
+        Touch(key);
         Shrink();
         return;
       }
@@ -119,6 +119,12 @@ class ResultDirectory final : public ResultStore {
     } catch (const StoreError&) {
       return false;
     }
+  }
+
+  // File times preserve the order of use for the next process.
+  void Touch(std::string_view key) const {
+    std::error_code ignored;
+    fs::last_write_time(PathOf(key), fs::file_time_type::clock::now(), ignored);
   }
 
   // Call with mutex_ locked.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,14 @@ class FascicleTest : public ::testing::Test {
   std::string File(const std::string& name) const { return folder_ / name; }
   // Writes a file, and returns its path.
   std::string File(const std::string& name, const std::string& text) const { return folder_.Write(name, text); }
+  // The names of all files in the folder and below.
+  std::set<std::string> Files() const {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.path())) {
+      if (!entry.is_directory()) names.insert(entry.path().filename().string());
+    }
+    return names;
+  }
   bool HasFile(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
   // Where the program puts temporary files.
   std::string Temporary() const {

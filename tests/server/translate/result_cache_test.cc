@@ -197,11 +197,14 @@ class EveryLongStage : public ::testing::TestWithParam<int> {
   static LongStage Stage(int number) {
     switch (number) {
       case 0:
-        return {"meshes/segmentation", PhantomScene(), ""};
+        return {"meshes/segmentation", PhantomScene(),
+                "5a8e1528f91b86b5dedf76632a160339f0bfb5b95948f076294e85aa621c4541"};
       case 1:
-        return {"fibres/harmonic", FibreScene(kHarmonic), ""};
+        return {"fibres/harmonic", FibreScene(kHarmonic),
+                "3a50acafad79b17fc152b7ce7c6cab56942282b99975c1e4b96f09ae86b20200"};
       default:
-        return {"fibres/bspline", FibreScene(kFitted), ""};
+        return {"fibres/bspline", FibreScene(kFitted),
+                "11f550d09094302221dca86f69982f202488f5a2cf65b2fe313a8fc60ec4aa00"};
     }
   }
 
