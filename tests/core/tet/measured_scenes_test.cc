@@ -39,7 +39,7 @@ TEST(MeasuredScenes, TheIsometricMusclePulls) {
   EXPECT_EQ(run.FreeComponents(), static_cast<std::size_t>(kMuscleGrids[0].FreeComponents()));
   EXPECT_EQ(run.model.tetrahedra(), static_cast<std::size_t>(kMuscleGrids[0].Tetrahedra()));
   ASSERT_TRUE(run.To(0.3));
-  EXPECT_NEAR(run.Reaction(1)[2], 25.2, 1);  // [N] on fine grids; this one is 3 % too stiff
+  EXPECT_NEAR(run.Reaction(1)[2], 25.2, 0.04 * 25.2);  // [N] on the finest grid; this one, the coarsest, is 3 % off
 }
 
 }  // namespace
