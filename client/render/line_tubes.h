@@ -10,7 +10,8 @@
 
 namespace fascicle::client {
 
-// A round tube with closed ends along a path; empty if the path has zero length. Path and radius [m].
+// A round tube along a path: cylinders with spheres at the bends, closed at both ends. Empty if the path has zero
+// length. Path and radius [m].
 vtkSmartPointer<vtkPolyData> MakeTube(const std::vector<Vec3>& points, double radius);
 
 }  // namespace fascicle::client

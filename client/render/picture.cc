@@ -204,7 +204,7 @@ struct Setting {
   std::vector<LineInfo> lines;
   std::vector<Colouring> colourings;  // of each frame
   std::array<double, 6> bounds;       // of everything drawn in all frames except planes, in VTK's order [m]
-  Vec3 up = Vec3::UnitZ();            // outward normal of the first plane, if there is one
+  std::optional<Vec3> up;             // outward normal of the first plane
   double line_radius = 0;             // [m]
 };
 

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "core/base/types.h"
@@ -37,7 +38,7 @@ Aim FromAngles(double azimuth, double elevation) {
           {-std::sin(e) * std::cos(a), -std::sin(e) * std::sin(a), std::cos(e)}};
 }
 
-Aim ChooseAim(const PictureOptions& options, const Vec3& extent, const Vec3& up) {
+Aim ChooseAim(const PictureOptions& options, const Vec3& extent, const std::optional<Vec3>& up) {
   if (options.azimuth || options.elevation)
     return FromAngles(options.azimuth.value_or(-60), options.elevation.value_or(20));
   Eigen::Index longest = 0;
@@ -45,15 +46,16 @@ Aim ChooseAim(const PictureOptions& options, const Vec3& extent, const Vec3& up)
   Vec3 others = extent;
   others[longest] = 0;
   const bool slender = extent[longest] > 1.6 * others.maxCoeff();
-  if (!slender) {
+  const bool upright = up && std::abs((*up)[longest]) > 0.5;  // such as a body that falls
+  if (!slender || upright) {
     const Aim corner = FromAngles(-60, 20);
-    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), up);
+    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), up.value_or(Vec3::UnitZ()));
     return {turn * corner.eye, turn * corner.up};
   }
   // Across the picture from left to right, seen a little from above its side.
   const Vec3 along = Vec3::Unit(longest);
-  const Vec3 other = longest == 2 ? Vec3::UnitY() : Vec3::UnitZ();
-  const Vec3 above = std::abs(up.dot(along)) < 0.5 ? Vec3(up - up.dot(along) * along).normalized() : other;
+  Vec3 above = longest == 2 ? Vec3::UnitY() : Vec3::UnitZ();
+  if (up) above = (*up - up->dot(along) * along).normalized();
   const Vec3 side = along.cross(above);
   return {(side + 0.3 * above - 0.25 * along).normalized(), above};
 }
@@ -76,8 +78,8 @@ std::string LengthText(double metres) {
 
 }  // namespace
 
-void AimCamera(const PictureOptions& options, const double bounds[6], const Vec3& up_of_scene, double aspect,
-               vtkRenderer& renderer) {
+void AimCamera(const PictureOptions& options, const double bounds[6], const std::optional<Vec3>& up_of_scene,
+               double aspect, vtkRenderer& renderer) {
   const Vec3 low(bounds[0], bounds[2], bounds[4]), high(bounds[1], bounds[3], bounds[5]);
   const Vec3 middle = (low + high) / 2, half = (high - low) / 2;
   const Aim aim = ChooseAim(options, 2 * half, up_of_scene);

@@ -3,6 +3,8 @@
 
 #include <vtkRenderer.h>
 
+#include <optional>
+
 #include "client/render/picture.h"
 #include "core/base/types.h"
 
@@ -10,9 +12,10 @@ namespace fascicle::client {
 
 // The viewpoint and what fits into the picture. Parallel projection, so that lengths can be measured.
 
-// Points the camera of `renderer` at `bounds` [m] (in VTK's order: xmin, xmax, ...). `up`: the vertical (unit) if the
-// options do not define the view. `aspect` is the width of the panel over its height.
-void AimCamera(const PictureOptions& options, const double bounds[6], const Vec3& up, double aspect,
+// Points the camera of `renderer` at `bounds` [m] (in VTK's order: xmin, xmax, ...). If the options do not
+// define the view, `up` (unit), the normal of a floor, is the vertical. `aspect` is the width of the panel over its
+// height.
+void AimCamera(const PictureOptions& options, const double bounds[6], const std::optional<Vec3>& up, double aspect,
                vtkRenderer& renderer);
 
 // Draws a bar of a round length with its name into the lower right corner of a renderer of that size [pixel drawn]. The

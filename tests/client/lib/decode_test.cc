@@ -155,17 +155,36 @@ TEST(DecodeFrames, GiveDamagedMessagesWholeOrNotAtAll) {
     }
     return bytes;
   };
-  v1::Geometry geometry = SampleObjects();
   int read = 0, refused = 0;
   for (int i = 0; i < 20'000; ++i) {
-    v1::Geometry its_geometry = geometry;
-    v1::Frame frame;
-    if (i % 4 == 0 && !its_geometry.ParseFromString(damage(geometry.SerializeAsString()))) continue;
-    if (!frame.ParseFromString(damage(SampleObjectsFrame(i % 3).SerializeAsString()))) continue;
+    v1::Geometry geometry = SampleObjects();
+    v1::Frame frame = SampleObjectsFrame(1);
+    v1::RigidBodyGeometry& body = *geometry.mutable_rigid_bodies(static_cast<int>(random() % 3));
+    v1::LineFrame& line = *frame.mutable_lines(static_cast<int>(random() % 2));
+    switch (i % 6) {
+      case 0:
+        body.set_positions(damage(body.positions()));
+        break;
+      case 1:
+        body.set_triangles(damage(body.triangles()));
+        break;
+      case 2:
+        body.set_pose(damage(body.pose()));
+        break;
+      case 3:
+        frame.set_poses(damage(frame.poses()));
+        break;
+      case 4:
+        line.set_points(damage(line.points()));
+        break;
+      case 5:  // the whole message; most can't be parsed
+        if (!frame.ParseFromString(damage(frame.SerializeAsString()))) continue;
+        break;
+    }
     try {
-      const std::vector<RigidShape> bodies = DecodeRigidBodies(its_geometry);
+      const std::vector<RigidShape> bodies = DecodeRigidBodies(geometry);
       const std::vector<Pose> poses = PosesOf(frame, bodies);
-      const std::vector<LineInfo> infos = DecodeLineInfos(its_geometry);
+      const std::vector<LineInfo> infos = DecodeLineInfos(geometry);
       const std::vector<LinePath> lines = DecodeLines(frame, infos);
       ASSERT_EQ(poses.size(), bodies.size());
       for (std::size_t b = 0; b < bodies.size(); ++b) {

@@ -23,6 +23,7 @@
 namespace fascicle::client {
 namespace {
 
+using ::fascicle::testing::AddLine;
 using ::fascicle::testing::AddRigidBody;
 using ::fascicle::testing::Bytes;
 using ::fascicle::testing::SampleJob;
@@ -299,17 +300,18 @@ TEST_F(RenderTest, AnimationsAreGifsThatRepeat) {
   DGifCloseFile(gif, &error);
 }
 
-// The colour of bones is warm, the background cold.
-bool IsBone(const Pixel& p) { return p[0] > p[2] + 12 && p[0] < p[1] + 25 && p[0] > 90; }
+// Bone is warm, the background cold; the edges of lines are redder.
+bool IsBone(const Pixel& p) { return p[0] > p[2] + 12 && p[0] - p[2] > 2 * (p[0] - p[1]); }
 
-// The extent of the pixels that meet a condition.
+// The extent of the pixels that meet a condition, in columns [begin, end), without the axes in the lower left corner.
 struct Extent {
   int left = 1 << 20, right = -1, bottom = 1 << 20, top = -1;
   std::size_t count = 0;
 
-  Extent(const Image& image, const std::function<bool(const Pixel&)>& wanted) {
+  Extent(const Image& image, const std::function<bool(const Pixel&)>& wanted, int begin = 0, int end = 1 << 20) {
     for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) {
+      for (int x = begin; x < std::min(image.width, end); ++x) {
+        if (5 * x < image.height && 5 * y < image.height) continue;
         if (!wanted(image.pixels[static_cast<std::size_t>(y * image.width + x)])) continue;
         left = std::min(left, x);
         right = std::max(right, x);
@@ -358,7 +360,7 @@ TEST_F(ObjectsTest, RigidBodiesAreDrawnWhereTheyAre) {
   EXPECT_NEAR(static_cast<double>(moved.count), (0.04 * 0.02 + 0.02 * 0.02) * pixel * pixel, 80);
   PictureOptions options = FromAbove();
   options.rigid_bodies = false;
-  EXPECT_EQ(DrawObjects(options, 1).Count(IsBone), 0u);
+  EXPECT_EQ(Extent(DrawObjects(options, 1), IsBone).count, 0u);
 }
 
 TEST_F(ObjectsTest, LinesAreDrawnAsTubes) {
@@ -375,18 +377,24 @@ TEST_F(ObjectsTest, LinesAreDrawnAsTubes) {
   EXPECT_LT(line.count, 1.5 * area);
   PictureOptions options = FromAbove();
   options.lines = false;
-  EXPECT_EQ(DrawObjects(options, 0).Count(IsRed), 0u);
+  EXPECT_EQ(Extent(DrawObjects(options, 0), IsRed).count, 0u);
 }
 
 TEST_F(ObjectsTest, LinesHaveTheColoursOfTheirValues) {
   PictureOptions options = FromAbove();
+  options.size = {800, 400};
+  constexpr int kScale = 600;  // begins there
   options.colour = "activation";
   const Image image = DrawObjects(options, 1);
-  EXPECT_EQ(image.Count(IsRed), 0u);
-  EXPECT_GT(image.Count(IsViolet), 200u);  // flexor, 0.1
-  EXPECT_GT(image.Count(IsYellow), 80u);   // slack, 0.6
-  options.colour = "length";               // of the one alone
-  EXPECT_GT(DrawObjects(options, 1).Count(IsRed), 50u);
+  const Extent flexor(image, IsViolet, 0, kScale), slack(image, IsYellow, 0, kScale);
+  EXPECT_EQ(Extent(image, IsRed, 0, kScale).count, 0u);
+  EXPECT_GT(flexor.count, 400u);  // 0.1
+  EXPECT_GT(slack.count, 100u);   // 0.6
+  EXPECT_GT(slack.bottom, flexor.bottom + 50);
+  options.colour = "length";  // a value of the flexor only
+  const Extent plain(DrawObjects(options, 1), IsRed, 0, kScale);
+  EXPECT_NEAR(plain.x(), slack.x(), 3);
+  EXPECT_NEAR(plain.y(), slack.y(), 3);
   options.colour = "tension";
   try {
     DrawObjects(options, 1);
@@ -478,6 +486,30 @@ TEST_F(ObjectsTest, PlanesAreBehindEverything) {
   EXPECT_NEAR(static_cast<double>(draw(options).Count(IsRed)),
               static_cast<double>(DrawObjects(options, 1).Count(IsRed)), 60)
       << "at the same scale as without";
+}
+
+// A tall scene above a floor is drawn upright, not across the picture as a slender body.
+TEST_F(ObjectsTest, WhatFallsIsDrawnUpright) {
+  v1::Geometry geometry = SampleObjects();
+  const Pose pose = {Vec3(0, -0.15, 0), {std::sqrt(0.5), -std::sqrt(0.5), 0, 0}};  // its z axis is y
+  AddRigidBody("plane", pose, false, geometry).set_unbounded(true);
+  std::vector<v1::Frame> frames;
+  for (const double height : {0.0, 1.0}) {
+    v1::Frame& frame = frames.emplace_back(SampleObjectsFrame(0));
+    frame.clear_lines();
+    AddLine({}, {0, 0}, frame);
+    AddLine({Vec3(-0.1, height, 0), Vec3(0.1, height, 0)}, {0}, frame);
+  }
+  PictureOptions options = Small();
+  options.size = {800, 300};
+  options.colour = "";
+  options.time = false;
+  const std::string path = folder_ / "fall.png";
+  DrawPanels(geometry, frames, options, path);
+  const Image image = ReadPng(path);
+  const Extent low(image, IsRed, 0, 400), high(image, IsRed, 400);
+  EXPECT_GT(high.y(), low.y() + 100);
+  EXPECT_NEAR(high.x() - 400, low.x(), 3);
 }
 
 TEST_F(ObjectsTest, AFrameWithNothingToSeeIsRefused) {
