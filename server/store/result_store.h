@@ -14,6 +14,9 @@ namespace fascicle::server {
 // Thread-safe.
 class ResultStore {
  public:
+  // What an entry counts at least [byte], so that there are not too many.
+  static constexpr std::int64_t kLeastSize = 16 << 10;
+
   virtual ~ResultStore() = default;
   // The bytes stored under `key` (64 digits 0-9a-f), unchanged; nothing if they do not exist or are damaged.
   virtual std::optional<std::string> GetResult(std::string_view key) = 0;

@@ -1,5 +1,9 @@
 #include "server/store/use_order.h"
 
+#include <algorithm>
+
+#include "server/store/result_store.h"
+
 namespace fascicle::server {
 
 void UseOrder::Use(std::string_view key) {
@@ -9,6 +13,7 @@ void UseOrder::Use(std::string_view key) {
 
 void UseOrder::Add(std::string_view key, std::int64_t bytes) {
   Remove(key);
+  bytes = std::max(bytes, ResultStore::kLeastSize);
   keys_.emplace_back(key);
   entries_.emplace(key, Entry{bytes, std::prev(keys_.end())});
   bytes_ += bytes;

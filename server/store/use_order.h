@@ -15,7 +15,7 @@ class UseOrder {
  public:
   // Marks an entry as used last. No effect if it does not exist.
   void Use(std::string_view key);
-  // Adds or replaces an entry and marks it as used last.
+  // Adds or replaces an entry, which counts as ResultStore::kLeastSize at least, and marks it as used last.
   void Add(std::string_view key, std::int64_t bytes);
   void Remove(std::string_view key);
   // Removes the least recently used entries until the rest has at most that many bytes; returns their keys.

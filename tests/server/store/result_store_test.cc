@@ -21,7 +21,7 @@ constexpr std::int64_t kLarge = 1 << 20;
 std::string KeyOf(int number) { return Hex(Sha256Of("input " + std::to_string(number))); }
 
 // `size` bytes that depend on `number`.
-std::string BytesOf(int number, std::size_t size = 1000) { return SampleBytes(static_cast<unsigned>(number), size); }
+std::string BytesOf(int number, std::size_t size = 100'000) { return SampleBytes(static_cast<unsigned>(number), size); }
 
 class ResultContract : public ::testing::TestWithParam<bool> {
  protected:
@@ -51,13 +51,13 @@ TEST_P(ResultContract, TakesNothingButADigestForAKey) {
 }
 
 TEST_P(ResultContract, RemovesTheEntriesUsedLongestAgo) {
-  const auto results = Open(3500);
+  const auto results = Open(350'000);
   for (int i = 0; i < 3; ++i) results->PutResult(KeyOf(i), BytesOf(i));
   EXPECT_TRUE(results->GetResult(KeyOf(0)));
   results->PutResult(KeyOf(3), BytesOf(3));  // removes 1
   EXPECT_EQ(results->GetResult(KeyOf(1)), std::nullopt);
   for (const int i : {0, 2, 3}) EXPECT_EQ(results->GetResult(KeyOf(i)), BytesOf(i)) << i;
-  results->PutResult(KeyOf(4), BytesOf(4, 2000));  // removes 0 and 2
+  results->PutResult(KeyOf(4), BytesOf(4, 200'000));  // removes 0 and 2
   EXPECT_EQ(results->GetResult(KeyOf(0)), std::nullopt);
   EXPECT_EQ(results->GetResult(KeyOf(2)), std::nullopt);
   EXPECT_TRUE(results->GetResult(KeyOf(3)));
@@ -65,18 +65,25 @@ TEST_P(ResultContract, RemovesTheEntriesUsedLongestAgo) {
 }
 
 TEST_P(ResultContract, AnEntryThatIsReplacedCountsOnce) {
-  const auto results = Open(2500);
+  const auto results = Open(250'000);
   results->PutResult(KeyOf(0), BytesOf(0));
   for (int i = 0; i < 5; ++i) results->PutResult(KeyOf(1), BytesOf(i));
   EXPECT_EQ(results->GetResult(KeyOf(0)), BytesOf(0));
 }
 
 TEST_P(ResultContract, WhatIsTooLargeLeavesTheRest) {
-  const auto results = Open(2500);
+  const auto results = Open(250'000);
   results->PutResult(KeyOf(0), BytesOf(0));
-  results->PutResult(KeyOf(1), BytesOf(1, 3000));
+  results->PutResult(KeyOf(1), BytesOf(1, 300'000));
   EXPECT_EQ(results->GetResult(KeyOf(1)), std::nullopt);
   EXPECT_TRUE(results->GetResult(KeyOf(0)));
+}
+
+TEST_P(ResultContract, SmallEntriesCountAsTheLeastSize) {
+  const auto results = Open(3 * ResultStore::kLeastSize);
+  for (int i = 0; i < 4; ++i) results->PutResult(KeyOf(i), "x");
+  EXPECT_EQ(results->GetResult(KeyOf(0)), std::nullopt);
+  for (int i = 1; i < 4; ++i) EXPECT_EQ(results->GetResult(KeyOf(i)), "x");
 }
 
 TEST_P(ResultContract, OfNoBytesKeepsNothing) {
@@ -86,7 +93,7 @@ TEST_P(ResultContract, OfNoBytesKeepsNothing) {
 }
 
 TEST_P(ResultContract, SeveralThreadsPutAndGet) {
-  const auto results = Open(5000);
+  const auto results = Open(500'000);
   std::vector<std::thread> threads;
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([&, t] {
@@ -129,7 +136,7 @@ TEST_F(ResultDirectoryTest, TheOrderOfUseIsKept) {
     for (int i = 0; i < 3; ++i) results->PutResult(KeyOf(i), BytesOf(i));
     EXPECT_TRUE(results->GetResult(KeyOf(0)));
   }
-  const auto smaller = Open(2500);
+  const auto smaller = Open(250'000);
   EXPECT_EQ(Files(), 2);
   EXPECT_EQ(smaller->GetResult(KeyOf(1)), std::nullopt);
   EXPECT_TRUE(smaller->GetResult(KeyOf(0)));
