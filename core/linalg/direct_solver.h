@@ -11,9 +11,9 @@ namespace fascicle {
 // pivoting [Amestoy, Duff, L'Excellent & Koster 2001]. The pattern is analyzed once; values may change. Not
 // thread-safe. Calls of different solvers wait for each other, because the library has global state.
 //
-// The same input gives the same bits in any process, whatever the number of threads. This holds across processors for
-// which OpenBLAS has the same kernels: those for AVX-512 (SkylakeX, Cooperlake) add in another order than those for
-// AVX2 (Haswell, Zen).
+// The same input gives the same bits in any process, for any number of threads, on processors for which OpenBLAS has
+// the same kernels. Those for AVX-512 (SkylakeX, Cooperlake) add in a different order than those for AVX2 (Haswell,
+// Zen).
 class DirectSolver {
  public:
   DirectSolver();
@@ -22,7 +22,7 @@ class DirectSolver {
   DirectSolver& operator=(const DirectSolver&) = delete;
 
   // Entries (rows[k], columns[k]) of one triangle, diagonal included, counted from 0, without duplicates; size >= 1.
-  // False when memory runs out.
+  // False if memory runs out.
   bool Analyze(std::int32_t size, std::span<const std::int32_t> rows, std::span<const std::int32_t> columns);
 
   struct Factored {

@@ -4,27 +4,27 @@
 #include <cstdio>
 #include <mutex>
 
-// Needs <cstdio> before it.
+// scotch.h requires <cstdio>.
 #include <scotch.h>
 
 namespace fascicle {
 namespace {
 
-// Parts of up to 60 vertices are ordered by approximate minimum fill that sees their surroundings; larger ones are
-// bisected on coarsened graphs, and each separator is improved on every level by Fiduccia and Mattheyses's method.
+// Parts of up to 60 vertices are ordered by approximate minimum fill, including their boundary; larger ones are
+// bisected on coarsened graphs, and each separator is refined on every level by the method of Fiduccia and Mattheyses.
 constexpr const char* kStrategy =
     "n{sep=/(vert>60)?m{rat=0.7,vert=100,low=h{pass=10},asc=f{bal=0.2}};,"
     "ole=f{cmin=0,cmax=100000,frat=0.0},ose=g}";
 
 static_assert(sizeof(SCOTCH_Num) == sizeof(std::int32_t), "SCOTCH with 32-bit indices");
 
-// The parser of strategies keeps state of its own.
+// The parser of strategies has global state.
 std::mutex& LibraryMutex() {
   static std::mutex mutex;
   return mutex;
 }
 
-// Each edge at both of its ends; neighbours ascending.
+// Each edge at both of its ends; neighbours in ascending order.
 struct Graph {
   std::span<const std::int32_t> NeighboursOf(std::int32_t vertex) const {
     return std::span(neighbours).subspan(begin[vertex], begin[vertex + 1] - begin[vertex]);
@@ -54,7 +54,7 @@ Graph GraphOfPattern(std::int32_t size, std::span<const std::int32_t> rows, std:
   return graph;
 }
 
-// Neighbours a and b have the same neighbours, but for themselves.
+// Whether neighbours a and b have the same neighbours except for themselves.
 bool AreAlike(const Graph& graph, std::int32_t a, std::int32_t b) {
   const auto of_a = graph.NeighboursOf(a), of_b = graph.NeighboursOf(b);
   if (of_a.size() != of_b.size()) return false;
@@ -68,7 +68,7 @@ bool AreAlike(const Graph& graph, std::int32_t a, std::int32_t b) {
   return true;
 }
 
-// The group of alike unknowns that each belongs to; groups are counted in the order of their first ones.
+// The group of equivalent unknowns of each unknown; groups are numbered in the order of their first unknowns.
 struct Groups {
   std::vector<std::int32_t> of, first, size;
 };
@@ -92,7 +92,7 @@ Groups GroupsOf(const Graph& graph) {
   return groups;
 }
 
-// The graph of which each group is a vertex.
+// The graph with the groups as vertices.
 Graph GraphOfGroups(const Graph& graph, const Groups& groups) {
   Graph result;
   std::vector<std::int32_t> seen_from(groups.first.size(), -1);
@@ -109,11 +109,11 @@ Graph GraphOfGroups(const Graph& graph, const Groups& groups) {
   return result;
 }
 
-// SCOTCH's objects, each with its end.
+// Owners of SCOTCH's objects.
 struct Context {
   Context() { SCOTCH_contextInit(&scotch); }
   ~Context() { SCOTCH_contextExit(&scotch); }
-  // A thread and random numbers of its own.
+  // Its own thread and random numbers.
   bool Isolate() {
     if (SCOTCH_contextRandomClone(&scotch) != 0 || SCOTCH_contextThreadSpawn(&scotch, 1, nullptr) != 0) return false;
     SCOTCH_contextRandomSeed(&scotch, 1);
@@ -135,7 +135,7 @@ struct Strategy {
   SCOTCH_Strat scotch;
 };
 
-// The place of each vertex; false when memory runs out.
+// The position of each vertex; false if memory runs out.
 bool Dissect(const Graph& graph, const std::vector<std::int32_t>& weights, std::vector<std::int32_t>& place) {
   const std::lock_guard lock(LibraryMutex());
   Context context;
@@ -163,7 +163,7 @@ std::vector<std::int32_t> EliminationOrder(std::int32_t size, std::span<const st
     graph = GraphOfGroups(graph, groups);
     if (!Dissect(graph, groups.size, place)) return {};
   }
-  // Where the unknowns of each group begin.
+  // The first position of each group's unknowns.
   std::vector<std::int32_t> group_at(place.size()), start(place.size());
   for (std::size_t g = 0; g < place.size(); ++g) group_at[place[g]] = static_cast<std::int32_t>(g);
   std::int32_t next = 0;

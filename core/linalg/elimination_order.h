@@ -7,13 +7,13 @@
 
 namespace fascicle {
 
-// An order in which to eliminate the unknowns of a sparse symmetric matrix that keeps its factors sparse: nested
-// dissection with minimum fill at the leaves, by SCOTCH [Pellegrini, Roman & Amestoy 2000]. Unknowns with the same
-// neighbours, such as the components of a node, are one vertex of the dissected graph.
+// A fill-reducing elimination order of the unknowns of a sparse symmetric matrix: nested dissection with minimum fill
+// at the leaves, by SCOTCH [Pellegrini, Roman & Amestoy 2000]. Unknowns with the same neighbours, such as the
+// components of a node, are one vertex of the dissected graph.
 //
-// The entries (rows[k], columns[k]) are off-diagonal ones of one triangle and any of the diagonal, counted from 0, none
-// twice. Returns for each unknown its place in the order, from 0; nothing when memory runs out. The order depends on
-// the pattern alone: SCOTCH gets a single thread and random numbers of its own. Thread-safe; calls wait for each other.
+// Entries (rows[k], columns[k]) are off-diagonal ones of one triangle and any of the diagonal, counted from 0, without
+// duplicates. Returns the position of each unknown in the order, from 0; nothing if memory runs out. The order depends
+// only on the pattern: SCOTCH has a single thread and its own random numbers. Thread-safe; calls wait for each other.
 std::vector<std::int32_t> EliminationOrder(std::int32_t size, std::span<const std::int32_t> rows,
                                            std::span<const std::int32_t> columns);
 

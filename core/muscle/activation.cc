@@ -54,7 +54,7 @@ double StepBefore(const Curve& excitation, const ActivationDynamics& dynamics, d
 
 }  // namespace
 
-// Begins the interval from `begin` to the next point of the excitation, or to the end.
+// Starts the interval from `begin` to the next point of the excitation, or to the end.
 void ActivationPoints::BeginInterval(double begin) {
   begin_ = time_ = begin;
   const auto next = std::upper_bound(excitation_->times.begin(), excitation_->times.end(), begin);

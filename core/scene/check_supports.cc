@@ -40,7 +40,7 @@ std::array<bool, 3> HeldAxes(const Body& body) {
   return held;
 }
 
-// The factor of a load over time; a muscle pulls while it is active.
+// The factor of a load over time; a muscle's force is non-zero while it is active.
 const Curve& ScaleOf(const Load& load) { return load.stern ? load.stern->drive.activation : load.scale; }
 
 // Whether the loads on a body have a resultant along `axis` at any time, up to round-off. Between the points of their

@@ -9,7 +9,7 @@
 namespace fascicle {
 namespace {
 
-// The curves that muscles follow with dynamics of their own.
+// The curves of muscles with dynamics.
 std::set<const Curve*> FollowedCurves(const Scene& scene) {
   std::set<const Curve*> curves;
   for (const Body& body : scene.bodies) {
@@ -21,7 +21,7 @@ std::set<const Curve*> FollowedCurves(const Scene& scene) {
   return curves;
 }
 
-// The time after which no other curve changes any more [s].
+// The time after which all other curves are constant [s].
 double CurvesEnd(const Scene& scene) {
   const std::set<const Curve*> followed = FollowedCurves(scene);
   double end = 0;

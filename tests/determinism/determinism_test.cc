@@ -76,7 +76,7 @@ TEST(DigestTest, ChangesWithAnyPart) {
   EXPECT_TRUE(changed([](Frame& f) { f.series.back() += 1e-12; }));
 }
 
-// Under a sanitizer one scene for each kind of loop, in a quarter of the time.
+// Under a sanitizer, one scene for each kind of loop, with a quarter of the time.
 std::vector<NamedScene> Scenes() {
   std::vector<NamedScene> scenes = SmallScenes();
   if (!kSlow) return scenes;

@@ -1,5 +1,5 @@
-// The same bits in processes of their own: whatever threads the environment allows to the libraries below, and with
-// each set of instructions that kernels are compiled for.
+// The same bits in separate processes, for any number of threads that the environment gives to libraries, and with each
+// instruction set of the kernels.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -46,7 +46,7 @@ std::optional<fs::path> FindData(const std::string& name) {
   return std::nullopt;
 }
 
-// Puts the files beside a scene that are not part of the project; returns the first that is not on this machine.
+// Copies the files of a scene that are not part of the project; returns the first one missing on this machine.
 std::string AddData(const fs::path& scene) {
   std::vector<std::string> paths;
   FindPaths(json::parse(ReadFile(scene), nullptr, true, true), paths);

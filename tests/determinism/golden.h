@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-// The digests that the examples had when golden_digests.txt was last written. Thread-safe.
+// Reads the digests of the examples in golden_digests.txt. Thread-safe.
 namespace fascicle::testing {
 
 // A line of the file.
@@ -16,23 +16,23 @@ struct GoldenScene {
 };
 
 std::filesystem::path GoldenFile();
-// Throws std::runtime_error with the line that can't be read.
+// Throws std::runtime_error with the first malformed line.
 std::vector<GoldenScene> ReadGolden();
-// The whole file, its explanation included.
+// The whole file, including its explanation.
 std::string GoldenText(const std::vector<GoldenScene>& scenes);
 
 // Names of the built-in examples, ascending.
 std::vector<std::string> ExampleNames();
 
 struct GoldenRun {
-  std::string digest;   // SHA-256 of the digests of all frames in hexadecimal, a line each; empty without an answer
+  std::string digest;   // SHA-256 of the digests of all frames in hexadecimal, one line each; empty if there is none
   std::string missing;  // a file of the scene that is not on this machine
-  std::string problem;  // why there is no answer
+  std::string problem;  // why there is none
 };
 // Runs a built-in example by `fascicle run` on one thread.
 GoldenRun RunGolden(const std::string& name);
 
-// Why digests can't be compared on this machine; empty if they can.
+// The reason why digests cannot be compared on this machine; empty if they can.
 std::string WhyNotComparable();
 
 }  // namespace fascicle::testing

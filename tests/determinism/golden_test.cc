@@ -8,7 +8,7 @@
 namespace fascicle::testing {
 namespace {
 
-// Two programs are made of this file.
+// This file is compiled to two programs.
 #ifdef GOLDEN_SLOW
 constexpr bool kSlow = true;
 #else

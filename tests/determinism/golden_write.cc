@@ -1,4 +1,4 @@
-// Runs every example, or those named, and writes golden_digests.txt anew; for deploy/golden. Scenes whose data are not
+// Runs all or the given examples and rewrites golden_digests.txt; used by deploy/golden. Scenes whose data are missing
 // on this machine keep their lines.
 #include <algorithm>
 #include <chrono>
@@ -11,7 +11,7 @@
 namespace fascicle::testing {
 namespace {
 
-// Examples that are new and take longer are slow [s].
+// New examples that take longer than this are slow [s].
 constexpr double kQuick = 3;
 
 GoldenScene Renewed(const std::string& name, const GoldenScene* old) {

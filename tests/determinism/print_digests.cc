@@ -1,6 +1,6 @@
 // For fresh_process_test.cc: print_digests direct|small THREADS prints `NAME DIGEST` lines.
-//   direct  for each kind of direct solve above 10,000 unknowns
-//   small   for each of the small scenes; the first line says which set of instructions they run with
+//   direct  each kind of direct solve above 10,000 unknowns
+//   small   each of the small scenes; the first line names the instruction set
 #include <cstdio>
 #include <cstdlib>
 
@@ -25,7 +25,7 @@ void SolveAndPrint(const char* name, std::int32_t size, const LowerTriangle& mat
   Print(name, {reinterpret_cast<const char*>(x.data()), x.size() * sizeof(double)});
 }
 
-// Springs of about 1 between the neighbours of a grid of n^3 nodes, and one more on each.
+// Springs of about 1 between neighbours of a grid of n^3 nodes, and one to the ground at each node.
 void AddSprings(int n, LowerTriangle& matrix) {
   const std::int32_t strides[3] = {1, n, n * n};
   for (std::int32_t i = 0; i < n * n * n; ++i) {
@@ -36,7 +36,7 @@ void AddSprings(int n, LowerTriangle& matrix) {
   }
 }
 
-// Springs, and the sum over each block of 2^3 nodes as a relaxed constraint.
+// Springs, and a relaxed constraint on the sum over each block of 2^3 nodes.
 void SolveSaddle() {
   constexpr int kNodes = 22, kBlocks = kNodes / 2;
   LowerTriangle matrix;
@@ -71,7 +71,8 @@ Scene DynamicVoxels() {
   return scene;
 }
 
-// Muscle of quadratic elements, about 12,700 unknowns: a positive definite part for the nodes, pressures with minus
+// A muscle of quadratic elements, about 12,700 unknowns: a positive definite part for the nodes, and pressures with a
+// negative sign.
 // signs.
 Scene QuasiStaticMuscle() {
   Body body = BoxBody(Vec3(0.02, 0.02, 0.06), {5, 5, 17}, Muscle(std::array{3e4, 1e4, 8e6, 3e5, 1.0, 0.05, 6.6, 1.4}));

@@ -8,7 +8,7 @@
 #include "tests/support/eulerian_scenes.h"
 #include "tests/support/tet_scenes.h"
 
-// A small scene of nine frames for each stepping of each method, which every thread gets work from.
+// A small scene of nine frames for each stepping of each method, large enough that every thread has work.
 namespace fascicle::testing {
 
 // A contracting muscle beside a bar that is bent, twisted and loaded, with every feature of a step; `across`
@@ -43,7 +43,7 @@ inline Scene BusyScene(Stepping stepping, ElementOrder element, int across) {
   return scene;
 }
 
-// Bricks that are bent by a load that grows, and twisted. Enough for a hierarchy of grids.
+// Bricks that are bent by an increasing load, and twisted; large enough for a hierarchy of grids.
 inline Scene BentBricks(VoxelStepping stepping, Material law) {
   Body body = VoxelBox(Vec3(0.05, 0.03, 0.03), {15, 9, 9}, std::move(law));
   Constraint turn = {1, {true, false, false}, {}};
@@ -60,7 +60,7 @@ inline Scene BentBricks(VoxelStepping stepping, Material law) {
   return scene;
 }
 
-// Two cubes between planes that press: one neo-Hookean, the other with fibres and plastic flow.
+// Two cubes in plane force fields: one neo-Hookean, the other with fibres and plasticity.
 inline Scene PressedCubes() {
   Body cube = EulerianCube();
   cube.constraints = {{0, {true, true, true}, {}}};

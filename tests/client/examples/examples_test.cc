@@ -69,7 +69,7 @@ std::string TestOf(const std::string& example) {
   return name;
 }
 
-// Each example has a test below of its name; these have not.
+// Each example has a test of its name below, except for these.
 TEST_F(ExampleTest, NoneIsForgotten) {
   std::set<std::string> tests;
   const ::testing::TestSuite& suite = *::testing::UnitTest::GetInstance()->current_test_suite();

@@ -10,7 +10,8 @@
 namespace fascicle {
 namespace {
 
-// The lower triangle's pattern of a grid of n^3 nodes with three components each, every node joined to the 26 around.
+// The lower triangle's pattern of a grid of n^3 nodes with three components each, every node coupled to its 26
+// neighbours.
 struct Grid {
   explicit Grid(int n) : size(3 * n * n * n) {
     const auto node = [n](int i, int j, int k) { return i + n * (j + n * k); };
@@ -45,7 +46,7 @@ std::vector<std::int32_t> Identity(std::int32_t size) {
   return order;
 }
 
-// Entries of the factor L when unknowns are eliminated in an order, by eliminating them.
+// Number of entries of the factor L for an elimination order, by symbolic elimination.
 std::size_t EntriesOfFactor(const Grid& grid, const std::vector<std::int32_t>& order) {
   std::vector<std::vector<std::int32_t>> below(grid.size);  // of each column, ascending
   for (std::size_t k = 0; k < grid.rows.size(); ++k) {
@@ -58,7 +59,7 @@ std::size_t EntriesOfFactor(const Grid& grid, const std::vector<std::int32_t>& o
     column.erase(std::unique(column.begin(), column.end()), column.end());
     entries += column.size() + 1;
     if (column.empty()) continue;
-    // What is below is coupled from now on; the next of them hands it on.
+    // The remaining unknowns of this column become coupled; the next of them represents this.
     std::vector<std::int32_t>& next = below[column.front()];
     next.insert(next.end(), column.begin() + 1, column.end());
     std::vector<std::int32_t>().swap(column);

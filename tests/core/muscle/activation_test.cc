@@ -104,7 +104,7 @@ TEST(Activation, StaysConstantWhenExcitationEqualsActivation) {
   for (const double time : {0.0, 0.1, 1000.0}) EXPECT_EQ(activation.At(time), 0.3);
 }
 
-// An excitation that never rests costs no memory for what lies behind.
+// An excitation that never becomes constant needs no memory for past times.
 TEST(Activation, ForgetsThePast) {
   Curve shaking;
   for (int k = 0; k < 400; ++k) {
@@ -120,14 +120,14 @@ TEST(Activation, ForgetsThePast) {
   EXPECT_LT(Saved(last).size(), 100 * sizeof(double));
 }
 
-// However far it was asked for before, and saved wherever: the same bits.
+// The bits do not depend on earlier evaluations, nor on saving and loading.
 TEST(Activation, HasTheSameBitsHoweverItIsAskedAndAfterALoad) {
   IntegratedActivation whole(kPulse, kThelen, 1);
   whole.At(1);
   for (const double saved_at : {0.0, 0.005, 0.05, 0.3, 0.305, 0.9}) {
     IntegratedActivation first(kPulse, kThelen, 1);
     EXPECT_EQ(first.At(saved_at), whole.At(saved_at));
-    first.At(saved_at + 0.01);  // as a step ahead
+    first.At(saved_at + 0.01);  // as for the next step
     first.DiscardBefore(saved_at);
     IntegratedActivation second(kPulse, kThelen, 1);
     const std::string bytes = Saved(first);

@@ -88,7 +88,7 @@ TEST(ControlSourceTest, RestsOnceNoCurveChanges) {
   EXPECT_TRUE(ends_at(constant, 1));
 }
 
-// A muscle's activation follows its excitation, and its pull across a joint the joint's motion.
+// A muscle's activation follows from its excitation, and its force across a joint from the joint's motion.
 Scene Driven() {
   Scene scene = TwoBodies();
   scene.bodies[1].excitation = Excitation{Curve{{0, 0.01, 0.3, 0.31}, {0, 1, 1, 0}}, {}};
@@ -130,7 +130,7 @@ TEST(ControlSourceTest, GoesOnWhereItWasSaved) {
   }
 }
 
-// Frames of a run with muscles' dynamics: for any threads, and through a checkpoint.
+// Frames of a run with muscle dynamics, for any number of threads and through a checkpoint.
 TEST(ControlSourceTest, ARunWithDynamicsHasTheSameBits) {
   Scene scene = Driven();
   scene.duration = 0.05;
