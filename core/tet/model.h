@@ -10,7 +10,6 @@
 #include <variant>
 #include <vector>
 
-#include "core/base/stop.h"
 #include "core/linalg/nodal_vector.h"
 #include "core/scene/nodal_forces.h"
 #include "core/scene/scene.h"
@@ -181,26 +180,7 @@ class TetModel {
   bool depends_on_rate() const { return depends_on_rate_; }
 
  private:
-  void AddBody(const Body& body);
-  void AddNodes(const Body& body, TetBody& entry);
-  void AddElements(const Body& body, TetBody& entry);
-  template <class LawOf>
-  void SortIntoChunks(const TetMesh& mesh, const TetBody& entry, const LawOf& law, std::span<std::int32_t> sorted);
-  void FillGroup(const Body& body, TetGroup& group);
-  template <class Element>
-  double AddPoints(std::size_t tet);
-  void AddPatches(const TetGroup& group, std::span<const double> given);
-  void SetSmoothing();
-  void SetChunks();
-  template <class Element>
-  void AddLocalNumbers(const Chunk& chunk, std::span<const std::int32_t> local_of);
-  template <class S>
-  void SetBlocks();
-  std::vector<std::int32_t> NodesOfRegion(const Region& region, const TetBody& body) const;
-  LoadedRegion LoadedRegionIn(const Region& region, const TetBody& body) const;
-  void AddLoads(const Body& source, const TetBody& body);
-  void AddSupports(const Body& source, std::int32_t body_index);
-  void AddContactNodes(const TetBody& body);
+  friend class TetModelBuilder;
 
   const Scene* scene_;
   std::vector<TetBody> bodies_;
@@ -208,24 +188,8 @@ class TetModel {
   NodalVector rest_positions_;
   std::vector<Tetrahedron> tetrahedra_;
   std::vector<std::array<std::int32_t, 6>> edge_nodes_;  // for quadratic elements
-  // Used during construction only.
-  struct Building {
-    // The mid-edge node of the edge between two nodes, the lower one first.
-    std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
-    // For each point and each element.
-    std::vector<Mat3> Dm_inverse;
-    std::vector<double> rest_volume;
-    std::vector<Vec3> fibres;
-    std::vector<std::int32_t> activation_of;
-    std::vector<double> activation_scale;
-    std::vector<std::size_t> chunk_ends;  // in elements
-    std::stop_token stop;
-  };
-  void HeedStop() const { ThrowIfStopped(building_.stop); }
-  Building building_;
   std::vector<std::int32_t> source_tetrahedron_;
   std::vector<std::int32_t> law_of_;
-  std::size_t activations_ = 0;  // of the bodies so far, with those of their parts
   VolumePatches patches_;
   ElementChunks chunks_;
   std::variant<BlockArrays<double>, BlockArrays<float>> blocks_;

@@ -1,0 +1,102 @@
+#include <set>
+
+#include "core/tet/model_builder.h"
+
+namespace fascicle {
+
+// The nodes of a region, ascending: those of the mesh and, for quadratic elements, mid-edge nodes. A mid-edge node
+// belongs to the region if both ends of its edge do and the edge lies on the boundary or in an element all of whose
+// corners belong to the region. (An edge through the body between two sides of a region does not.)
+std::vector<std::int32_t> TetModelBuilder::NodesOfRegion(const Region& region, const TetBody& body) const {
+  const auto first = static_cast<std::int32_t>(body.node_begin);
+  std::vector<std::int32_t> nodes;
+  for (const std::int32_t n : region.nodes) nodes.push_back(first + n);
+  if (model_.order() == ElementOrder::kLinear) return nodes;
+  std::vector<bool> inside(body.node_end - body.node_begin, false);
+  for (const std::int32_t n : region.nodes) inside[n] = true;
+  std::set<std::int32_t> middles;
+  const auto add = [&](std::int32_t i, std::int32_t j) {
+    if (inside[i] && inside[j]) middles.insert(MiddleOf(first + i, first + j));
+  };
+  for (const Triangle& t : BoundaryTriangles(body.source->tet().mesh)) {
+    for (int c = 0; c < 3; ++c) add(t[c], t[(c + 1) % 3]);
+  }
+  for (const Tetrahedron& tet : body.source->tet().mesh.tetrahedra) {
+    if (!std::all_of(tet.begin(), tet.end(), [&](std::int32_t n) { return inside[n]; })) continue;
+    for (const auto& [i, j] : kTetEdges) add(tet[i], tet[j]);
+  }
+  nodes.insert(nodes.end(), middles.begin(), middles.end());
+  return nodes;
+}
+
+// The faces and nodes on which loads of a region act. With quadratic elements a face acts on its mid-edge nodes,
+// because the corner functions integrate to zero.
+LoadedRegion TetModelBuilder::LoadedRegionIn(const Region& region, const TetBody& body) const {
+  const auto first = static_cast<std::int32_t>(body.node_begin);
+  LoadedRegion loaded;
+  loaded.nodes = NodesOfRegion(region, body);
+  for (const Triangle& t : region.triangles) {
+    const Triangle n = {first + t[0], first + t[1], first + t[2]};
+    const Vec3& X0 = model_.rest_positions_[n[0]];
+    LoadedRegion::Face& face = loaded.faces.emplace_back();
+    face.area = 0.5 * (model_.rest_positions_[n[1]] - X0).cross(model_.rest_positions_[n[2]] - X0);
+    face.count = 3;
+    for (int c = 0; c < 3; ++c) {
+      face.nodes[c] = model_.order() == ElementOrder::kLinear ? n[c] : MiddleOf(n[c], n[(c + 1) % 3]);
+    }
+  }
+  return loaded;
+}
+
+void TetModelBuilder::AddLoads(const TetBody& body) {
+  const Body& source = *body.source;
+  for (const Load& load : source.loads) {
+    const auto forces = NodalForcesOf(load, LoadedRegionIn(source.regions[load.region], body));
+    NodalLoad& entry = model_.loads_.emplace_back();
+    for (const auto& [n, force] : forces) {
+      entry.nodes.push_back(n);
+      entry.forces.push_back(force);
+    }
+  }
+}
+
+void TetModelBuilder::AddSupports(std::int32_t body_index) {
+  const TetBody& body = model_.bodies_[body_index];
+  const Body& source = *body.source;
+  for (const Constraint& constraint : source.constraints) {
+    Support& support = model_.supports_.emplace_back();
+    support.body = body_index;
+    support.nodes = NodesOfRegion(source.regions[constraint.region], body);
+    for (const std::int32_t n : support.nodes) {
+      std::array<bool, 3> owned = {};
+      for (int c = 0; c < 3; ++c) {
+        owned[c] = constraint.axes[c] && model_.inverse_mass_[n][c] != 0;
+        if (owned[c]) model_.inverse_mass_[n][c] = 0;
+      }
+      support.owned.push_back(owned);
+    }
+  }
+}
+
+void TetModelBuilder::AddContactNodes(const TetBody& body) {
+  const auto first = static_cast<std::int32_t>(body.node_begin);
+  std::map<std::int32_t, double> areas;
+  for (const Triangle& t : BoundaryTriangles(body.source->tet().mesh)) {
+    const Triangle n = {first + t[0], first + t[1], first + t[2]};
+    const Vec3& X0 = model_.rest_positions_[n[0]];
+    const double area = 0.5 * (model_.rest_positions_[n[1]] - X0).cross(model_.rest_positions_[n[2]] - X0).norm();
+    // The consistent weights of quadratic triangles are zero at corners, which could then penetrate the floor.
+    const double corner = model_.order() == ElementOrder::kLinear ? 1. / 3 : 1. / 12;
+    for (int c = 0; c < 3; ++c) {
+      areas[n[c]] += corner * area;
+      if (model_.order() == ElementOrder::kQuadratic) areas[MiddleOf(n[c], n[(c + 1) % 3])] += area / 4;
+    }
+  }
+  const double modulus =
+      std::visit([](const auto& law) { return law.BulkModulus() + 4 * law.ShearModulus() / 3; }, body.source->material);
+  for (const auto& [node, area] : areas) {
+    model_.contact_nodes_.push_back({node, modulus * area * area * body.source->density / model_.mass_[node]});
+  }
+}
+
+}  // namespace fascicle
