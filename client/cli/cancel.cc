@@ -11,7 +11,7 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kCancelExamples =
     R"(  fascicle cancel jobs/3f2a           stops after the current step; frames until then are kept
 )";
 
@@ -29,7 +29,7 @@ int Cancel(const std::string& name, const Context& context) {
 }  // namespace
 
 void AddCancel(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "cancel", "Ask a job to stop", kExamples);
+  CLI::App* command = AddCommand(app, "cancel", "Ask a job to stop", kCancelExamples);
   const auto job = std::make_shared<std::string>();
   command->add_option("JOB", *job, "The job")->required();
   command->callback([job, &context] { context.action = [job, &context] { return Cancel(*job, context); }; });

@@ -10,7 +10,7 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kCompletionExamples =
     R"text(  source <(fascicle completion bash)                                    this shell
   fascicle completion bash > ~/.local/share/bash-completion/completions/fascicle
   fascicle completion zsh > "${fpath[1]}/_fascicle"
@@ -134,7 +134,7 @@ void PrintFish(const std::vector<Node>& nodes) {
 }  // namespace
 
 void AddCompletion(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "completion", "Print a completion script for a shell", kExamples);
+  CLI::App* command = AddCommand(app, "completion", "Print a completion script for a shell", kCompletionExamples);
   const auto shell = std::make_shared<std::string>();
   command->add_option("SHELL", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
   command->callback([shell, &app, &context] {

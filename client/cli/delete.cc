@@ -10,7 +10,7 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kDeleteExamples =
     R"(  fascicle delete jobs/3f2a           a finished job with all its frames; cancel it first if it runs
   fascicle delete 3f2a 77b0           several
 )";
@@ -31,7 +31,7 @@ int Delete(const std::vector<std::string>& names, const Context& context) {
 }  // namespace
 
 void AddDelete(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "delete", "Delete finished jobs with all of their data", kExamples);
+  CLI::App* command = AddCommand(app, "delete", "Delete finished jobs with all of their data", kDeleteExamples);
   const auto jobs = std::make_shared<std::vector<std::string>>();
   command->add_option("JOB", *jobs, "The jobs")->required();
   command->callback([jobs, &context] { context.action = [jobs, &context] { return Delete(*jobs, context); }; });

@@ -17,13 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExamples = R"(  fascicle examples                                   list the examples
+constexpr const char* kExamplesExamples = R"(  fascicle examples                                   list the examples
   fascicle examples show tension                      print a scene
   fascicle examples write fusiform_isometric          into fusiform_isometric.json
   fascicle examples write --all --out scenes          all of them, with their meshes, into scenes/
 )";
 
-struct Options {
+struct ExamplesOptions {
   std::string name;
   std::string out = ".";
   bool all = false;
@@ -111,7 +111,8 @@ Example FindExample(std::string name) {
   throw CommandError::Invalid("there is no example `" + name + "`; see `fascicle examples`");
 }
 
-void WriteFile(const std::string& name, std::string_view content, const Options& options, const Context& context) {
+void WriteFile(const std::string& name, std::string_view content, const ExamplesOptions& options,
+               const Context& context) {
   const fs::path path = fs::path(options.out) / name;
   if (fs::exists(path) && !options.force) {
     throw CommandError::Invalid(path.string() + " exists already; --force overwrites it");
@@ -124,7 +125,7 @@ void WriteFile(const std::string& name, std::string_view content, const Options&
   }
 }
 
-int Write(const Options& options, const Context& context) {
+int Write(const ExamplesOptions& options, const Context& context) {
   if (options.all == !options.name.empty()) throw CommandError::Invalid("give the name of an example, or --all");
   std::vector<Example> examples;
   if (options.all) {
@@ -155,17 +156,17 @@ int Show(const std::string& name) {
 }  // namespace
 
 void AddExamples(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "examples", "Example scenes: one for every feature", kExamples);
+  CLI::App* command = AddCommand(app, "examples", "Example scenes: one for every feature", kExamplesExamples);
   command->callback([command, &context] {
     if (command->get_subcommands().empty()) context.action = [&context] { return List(context); };
   });
-  const auto options = std::make_shared<Options>();
-  CLI::App* list = AddCommand(*command, "list", "List the examples", kExamples);
+  const auto options = std::make_shared<ExamplesOptions>();
+  CLI::App* list = AddCommand(*command, "list", "List the examples", kExamplesExamples);
   list->callback([&context] { context.action = [&context] { return List(context); }; });
-  CLI::App* show = AddCommand(*command, "show", "Print an example", kExamples);
+  CLI::App* show = AddCommand(*command, "show", "Print an example", kExamplesExamples);
   show->add_option("NAME", options->name, "The example")->required();
   show->callback([options, &context] { context.action = [options] { return Show(options->name); }; });
-  CLI::App* write = AddCommand(*command, "write", "Write an example, or all, as scene files", kExamples);
+  CLI::App* write = AddCommand(*command, "write", "Write an example, or all, as scene files", kExamplesExamples);
   write->add_option("NAME", options->name, "The example");
   write->add_option("--out", options->out, "Folder for the files")->type_name("DIR");
   write->add_flag("--all", options->all, "All examples");

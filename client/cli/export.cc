@@ -18,13 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExamples =
+constexpr const char* kExportExamples =
     R"(  fascicle export 3f2a --out results                  frames.pvd with its .vtu and .vtp files, and series.csv
   fascicle export 3f2a --out results --format csv     only the table
   fascicle export 3f2a --out results --from 10 --to 20 --every 2
 )";
 
-struct Options {
+struct ExportOptions {
   std::string job;
   std::string out;
   std::vector<std::string> formats = {"vtk", "csv"};
@@ -33,7 +33,7 @@ struct Options {
   std::int64_t every = 1;
 };
 
-int Export(const Options& options, const Context& context) {
+int Export(const ExportOptions& options, const Context& context) {
   const std::set<std::string> formats(options.formats.begin(), options.formats.end());
   Client client = Connect(context);
   std::optional<VtkSeriesWriter> writer;
@@ -68,8 +68,8 @@ int Export(const Options& options, const Context& context) {
 
 void AddExport(CLI::App& app, Context& context) {
   CLI::App* command =
-      AddCommand(app, "export", "Write a job's frames as a VTK series and its series as CSV", kExamples);
-  const auto options = std::make_shared<Options>();
+      AddCommand(app, "export", "Write a job's frames as a VTK series and its series as CSV", kExportExamples);
+  const auto options = std::make_shared<ExportOptions>();
   command->add_option("JOB", options->job, "The job")->required();
   command->add_option("--out", options->out, "Folder for the files")->required()->type_name("DIR");
   command->add_option("--format", options->formats, "What to write; may be repeated; both by default")

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExamples =
+constexpr const char* kImportExamples =
     R"(  fascicle import biceps.feb --out biceps                 biceps/scene.json, its mesh and its fibres
   fascicle import biceps.feb --out biceps --units SI      lengths in m, forces in N (FEBio has no units itself)
   fascicle import knee.feb --out knee --split-hexahedra   hexahedra, wedges and pyramids become tetrahedra
@@ -30,7 +30,7 @@ and tendon material, fixed and prescribed displacements, nodal forces, tractions
 curves of the first step. Everything else is listed at the end.
 )";
 
-struct Options {
+struct ImportOptions {
   std::string path;
   std::string out;
   FebioOptions febio;
@@ -103,7 +103,7 @@ Json SummaryOf(const ImportedScene& imported, const fs::path& folder) {
           {"notices", std::move(notices)}};
 }
 
-int Import(const Options& options, const Context& context) {
+int Import(const ImportOptions& options, const Context& context) {
   FebioOptions febio = options.febio;
   febio.name = fs::path(options.path).filename().string();
   Problems problems;
@@ -130,8 +130,8 @@ int Import(const Options& options, const Context& context) {
 
 void AddImport(CLI::App& app, Context& context) {
   CLI::App* command =
-      AddCommand(app, "import", "Convert a FEBio model (.feb, version 3.0 or 4.0) to a scene", kExamples);
-  const auto options = std::make_shared<Options>();
+      AddCommand(app, "import", "Convert a FEBio model (.feb, version 3.0 or 4.0) to a scene", kImportExamples);
+  const auto options = std::make_shared<ImportOptions>();
   command->add_option("MODEL", options->path, "The model file")->required()->type_name("MODEL.feb");
   command->add_option("--out", options->out, "Folder for scene.json and its files")->required()->type_name("DIR");
   command

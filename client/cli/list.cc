@@ -13,12 +13,12 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples = R"(  fascicle list                       the newest 50 jobs
+constexpr const char* kListExamples = R"(  fascicle list                       the newest 50 jobs
   fascicle list --state running       running jobs
   fascicle list --limit 500 --json    one object per line
 )";
 
-struct Options {
+struct ListOptions {
   int limit = 50;
   std::vector<std::string> states;
 };
@@ -32,7 +32,7 @@ std::map<std::string, v1::Job::State> KnownStates() {
   return states;
 }
 
-int List(const Options& options, const Context& context) {
+int List(const ListOptions& options, const Context& context) {
   std::vector<v1::Job::State> states;
   for (const std::string& name : options.states) states.push_back(KnownStates().at(name));
   Client client = Connect(context);
@@ -54,8 +54,8 @@ int List(const Options& options, const Context& context) {
 }  // namespace
 
 void AddList(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "list", "List the jobs of a server, newest first", kExamples);
-  const auto options = std::make_shared<Options>();
+  CLI::App* command = AddCommand(app, "list", "List the jobs of a server, newest first", kListExamples);
+  const auto options = std::make_shared<ListOptions>();
   command->add_option("--limit", options->limit, "Largest number of jobs to list")->check(CLI::Range(1, 1000000));
   std::vector<std::string> names;
   for (const auto& [name, state] : KnownStates()) names.push_back(name);

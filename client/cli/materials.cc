@@ -19,7 +19,7 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kMaterialsExamples =
     R"(  fascicle materials                                   the laws, their parameters and sources
   fascicle materials muscle                            one of them
   fascicle materials curve muscle --activation 0 0.5 1 --stretch 0.6 1.8
@@ -184,7 +184,8 @@ int List(const std::string& name, const Context& context) {
 }  // namespace
 
 void AddMaterials(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "materials", "The constitutive laws, and their stress-stretch curves", kExamples);
+  CLI::App* command =
+      AddCommand(app, "materials", "The constitutive laws, and their stress-stretch curves", kMaterialsExamples);
   const auto name = std::make_shared<std::string>();
   command->add_option("LAW", *name, "One law; all by default");
   command->callback([name, command, &context] {

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExamples =
+constexpr const char* kMeshExamples =
     R"(  fascicle mesh muscle.stl --out muscle.msh                   about 50,000 tetrahedra
   fascicle mesh muscle.stl --out muscle.msh --size 2.5        edges of about 2.5 at the surface, in the surface's unit
   fascicle mesh muscle.stl --out muscle.msh --region origin=near:femur.stl:3 --region insertion=near:tibia.stl:3 \
@@ -40,7 +40,7 @@ several bodies are refused with their location. Regions become physical tags, to
 command (exit code 4); files are written completely or not at all.
 )";
 
-struct Options {
+struct MeshOptions {
   std::string surface;
   std::string out;
   std::string unit = "mm";
@@ -66,7 +66,7 @@ Json PlaceJson(const SurfacePlace& place) {
 
 double AreaOf(const TetMesh& mesh, const Region& region) { return Area({mesh.nodes, region.triangles}); }
 
-Json ReportJson(const Options& options, const MeshingResult& result, const std::vector<Region>& regions) {
+Json ReportJson(const MeshOptions& options, const MeshingResult& result, const std::vector<Region>& regions) {
   const MeshingReport& report = result.report;
   Json holes = Json::array(), cuts = Json::array(), tags = Json::array();
   for (const SurfacePlace& hole : report.surface.holes) {
@@ -103,7 +103,7 @@ Json ReportJson(const Options& options, const MeshingResult& result, const std::
           {"regions", std::move(tags)}};
 }
 
-void PrintReport(const Options& options, const MeshingResult& result, const std::vector<Region>& regions) {
+void PrintReport(const MeshOptions& options, const MeshingResult& result, const std::vector<Region>& regions) {
   const MeshingReport& report = result.report;
   const char* unit = options.unit.c_str();
   for (const SurfacePlace& hole : report.surface.holes) {
@@ -145,7 +145,7 @@ void PrintReport(const Options& options, const MeshingResult& result, const std:
 }
 
 // A scene with a muscle between its first two regions, in equilibrium at increasing activation.
-Json SceneJson(const Options& options, const std::vector<Region>& regions) {
+Json SceneJson(const MeshOptions& options, const std::vector<Region>& regions) {
   Json list = Json::array(), constraints = Json::array();
   for (std::size_t i = 0; i < regions.size(); ++i) {
     list.push_back({{"name", regions[i].name}, {"physical_tag", i + 1}});
@@ -183,7 +183,7 @@ struct Input {
   std::optional<double> voxel_volume;  // of a label image
 };
 
-Input ReadInput(const Options& options, const std::stop_token& stop, Problems& problems) {
+Input ReadInput(const MeshOptions& options, const std::stop_token& stop, Problems& problems) {
   Input input;
   const bool is_image = IsImageName(options.surface);
   if (is_image && !options.label) {
@@ -205,7 +205,7 @@ Input ReadInput(const Options& options, const std::stop_token& stop, Problems& p
   return input;
 }
 
-int MakeMesh(const Options& options, const Context& context) {
+int MakeMesh(const MeshOptions& options, const Context& context) {
   const StopOnInterrupt interrupts;
   const std::stop_token stop = interrupts.token();
   Problems problems;
@@ -262,8 +262,8 @@ int MakeMesh(const Options& options, const Context& context) {
 }  // namespace
 
 void AddMesh(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "mesh", "Fill a closed surface with tetrahedra", kExamples);
-  const auto options = std::make_shared<Options>();
+  CLI::App* command = AddCommand(app, "mesh", "Fill a closed surface with tetrahedra", kMeshExamples);
+  const auto options = std::make_shared<MeshOptions>();
   command
       ->add_option("SURFACE", options->surface,
                    "The surface: .stl, .obj, .ply or .vtp; or a label image: .mha, .mhd, .nii or .nii.gz")

@@ -13,7 +13,7 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kPhantomExamples =
     R"(  fascicle phantom arm.mha                                    140 x 220 x 71 voxels of 0.5 mm
   fascicle phantom arm.nii.gz --noise 0.1 --truth truth.nii.gz
   fascicle segment arm.mha --filter wavelet --seed 98,119,35 --opening 0.6 --picture anconeus.png
@@ -22,7 +22,7 @@ A section of an arm near the elbow, as in a T1-weighted magnetic resonance image
 1 skin, 2 fat, 3 muscles, 4 anconeus, 5 cortical bone, 6 marrow.
 )";
 
-struct Options {
+struct PhantomOptions {
   std::string out, truth;
   ArmPhantomSettings settings;
 };
@@ -36,7 +36,7 @@ void Write(const VolumeImage& image, VoxelType type, const std::string& path) {
   throw CommandError(std::move(error));
 }
 
-int MakePhantom(const Options& options, const Context& context) {
+int MakePhantom(const PhantomOptions& options, const Context& context) {
   const ArmPhantom phantom = MakeArmPhantom(options.settings);
   Write(phantom.image, VoxelType::kInt16, options.out);
   if (!options.truth.empty()) {
@@ -61,8 +61,9 @@ int MakePhantom(const Options& options, const Context& context) {
 }  // namespace
 
 void AddPhantom(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "phantom", "Make a synthetic scan of an arm with known anatomy", kExamples);
-  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      AddCommand(app, "phantom", "Make a synthetic scan of an arm with known anatomy", kPhantomExamples);
+  const auto options = std::make_shared<PhantomOptions>();
   command->add_option("OUT", options->out, "The scan: .mha, .nrrd, .nii or .nii.gz")->required();
   command->add_option("--truth", options->truth, "Also write the tissue of each voxel")->type_name("FILE");
   command

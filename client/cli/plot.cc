@@ -17,7 +17,7 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kPlotExamples =
     R"(  fascicle plot 3f2a                                         every series that is not zero, in the terminal
   fascicle plot 3f2a --series '*/reaction/*' --series 'energy/*'
   fascicle plot 3f2a --series '*volume_ratio' --out volume.png
@@ -25,7 +25,7 @@ constexpr const char* kExamples =
   fascicle plot 3f2a --series 'probe/*' --json              times and values, one object per series
 )";
 
-struct Options {
+struct PlotOptions {
   std::vector<std::string> jobs;
   std::vector<std::string> series;
   std::string x;
@@ -48,7 +48,7 @@ const SeriesTable::Column& ColumnOf(const SeriesTable& table, const std::string&
 }
 
 // Replaces time by a series as the abscissa, and drops everything before `from`.
-void SetAbscissa(const SeriesTable& table, const Options& options, std::vector<PlotPanel>& panels) {
+void SetAbscissa(const SeriesTable& table, const PlotOptions& options, std::vector<PlotPanel>& panels) {
   const SeriesTable::Column* const x = options.x.empty() ? nullptr : &ColumnOf(table, options.x);
   const std::vector<double>& times = table.times();
   const auto first = std::lower_bound(times.begin(), times.end(), options.from) - times.begin();
@@ -77,7 +77,7 @@ void Merge(const v1::Job& job, std::vector<PlotPanel> own, std::vector<PlotPanel
   }
 }
 
-std::vector<PlotPanel> PanelsOfJobs(Client& client, const Options& options) {
+std::vector<PlotPanel> PanelsOfJobs(Client& client, const PlotOptions& options) {
   std::vector<PlotPanel> panels;
   for (const std::string& name : options.jobs) {
     const Followed job =
@@ -90,7 +90,7 @@ std::vector<PlotPanel> PanelsOfJobs(Client& client, const Options& options) {
   return panels;
 }
 
-int Plot(const Options& options, const Context& context) {
+int Plot(const PlotOptions& options, const Context& context) {
   Client client = Connect(context);
   const std::vector<PlotPanel> panels = PanelsOfJobs(client, options);
   if (panels.empty()) throw CommandError::Invalid("all series are zero; choose some with --series");
@@ -115,8 +115,8 @@ int Plot(const Options& options, const Context& context) {
 }  // namespace
 
 void AddPlot(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "plot", "Plot series of jobs over time, or over another series", kExamples);
-  const auto options = std::make_shared<Options>();
+  CLI::App* command = AddCommand(app, "plot", "Plot series of jobs over time, or over another series", kPlotExamples);
+  const auto options = std::make_shared<PlotOptions>();
   command->add_option("JOB", options->jobs, "The job; several are plotted together")->required();
   command->add_option("--series", options->series, "Series by name, with * and ?; may be repeated")
       ->type_name("GLOB")

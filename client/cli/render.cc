@@ -24,7 +24,7 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kRenderExamples =
     R"(  fascicle render 3f2a --out last.png                             the last frame, coloured by displacement
   fascicle render 3f2a --out f7.png --frame 7 --colour cauchy_stress/zz --wireframe
   fascicle render 3f2a --out fibres.png --fibres --view front --size 900x1200
@@ -42,7 +42,7 @@ eulerian method are surfaces: only the styles surface and wireframe apply, witho
 Needs no display: without one it uses a virtual display (Xvfb).
 )";
 
-struct Options {
+struct RenderOptions {
   std::string job;
   std::string out;
   std::string frame = "last";
@@ -67,7 +67,7 @@ struct Options {
   std::optional<std::string> title;
 };
 
-bool IsGif(const Options& options) { return std::filesystem::path(options.out).extension() == ".gif"; }
+bool IsGif(const RenderOptions& options) { return std::filesystem::path(options.out).extension() == ".gif"; }
 
 struct Angles {
   double azimuth, elevation;
@@ -104,7 +104,7 @@ std::int64_t FrameIndex(const std::string& text, const v1::Job& job) {
 }
 
 // "all", or numbers separated by commas. Any number for a GIF.
-std::vector<std::int64_t> FrameIndices(const Options& options, const v1::Job& job) {
+std::vector<std::int64_t> FrameIndices(const RenderOptions& options, const v1::Job& job) {
   if (options.frames.empty()) return {FrameIndex(options.frame, job)};
   std::vector<std::int64_t> indices;
   if (options.frames == "all") {
@@ -121,7 +121,7 @@ std::vector<std::int64_t> FrameIndices(const Options& options, const v1::Job& jo
   return indices;
 }
 
-PictureOptions PictureOf(const Options& options, const v1::Job& job, const v1::Frame& frame) {
+PictureOptions PictureOf(const RenderOptions& options, const v1::Job& job, const v1::Frame& frame) {
   PictureOptions picture = DefaultPicture(job, frame);
   picture.size = ParseSize(options.size);
   if (options.colour) picture.colour = *options.colour == "none" ? "" : *options.colour;
@@ -146,7 +146,7 @@ PictureOptions PictureOf(const Options& options, const v1::Job& job, const v1::F
 }
 
 // Bodies of the eulerian method are surfaces without an interior.
-void CheckCanBeSeen(const Options& options, const v1::Geometry& geometry) {
+void CheckCanBeSeen(const RenderOptions& options, const v1::Geometry& geometry) {
   const bool inside = options.style == "volume" || options.style == "slices";
   if (!inside && !options.fibres) return;
   for (const v1::BodyGeometry& body : geometry.bodies()) {
@@ -159,7 +159,7 @@ void CheckCanBeSeen(const Options& options, const v1::Geometry& geometry) {
 }
 
 // Draws the scan with the outline of a frame's bodies.
-void DrawOnScan(const Options& options, const v1::Geometry& geometry, const v1::Frame& frame,
+void DrawOnScan(const RenderOptions& options, const v1::Geometry& geometry, const v1::Frame& frame,
                 const PictureOptions& picture) {
   Problems problems;
   const std::vector<std::filesystem::path> paths(options.scan.begin(), options.scan.end());
@@ -189,7 +189,7 @@ void DrawOnScan(const Options& options, const v1::Geometry& geometry, const v1::
   DrawSlices(input, picture.size, options.out);
 }
 
-int Render(const Options& options, const Context& context) {
+int Render(const RenderOptions& options, const Context& context) {
   if ((options.style == "slices") != !options.scan.empty()) {
     throw CommandError::Invalid("--style slices and --scan must be used together: the outline is drawn on the scan");
   }
@@ -241,8 +241,8 @@ int Render(const Options& options, const Context& context) {
 }  // namespace
 
 void AddRender(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "render", "Draw frames of a job as PNG, or animate them as GIF", kExamples);
-  const auto options = std::make_shared<Options>();
+  CLI::App* command = AddCommand(app, "render", "Draw frames of a job as PNG, or animate them as GIF", kRenderExamples);
+  const auto options = std::make_shared<RenderOptions>();
   command->add_option("JOB", options->job, "The job")->required();
   command->add_option("--out", options->out, "The picture, or animation")->required()->type_name("FILE.png|FILE.gif");
   const auto frame = command->add_option("--frame", options->frame, "Index of the frame, or `last`");

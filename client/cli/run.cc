@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExamples = R"(  fascicle run scene.json                         simulate and print a summary
+constexpr const char* kRunExamples = R"(  fascicle run scene.json                         simulate and print a summary
   fascicle run scene.json --out out               and keep series.csv, series.png, frames.pvd and last.png in out/
   fascicle run scene.json --threads 2 --data db   on two threads; the server's database stays in db/
   fascicle run scene.json --profile               and print the time spent in each stage
@@ -35,7 +35,7 @@ constexpr const char* kExamples = R"(  fascicle run scene.json                  
 Ctrl-C cancels the job (exit code 4); results so far are kept.
 )";
 
-struct Options {
+struct RunOptions {
   SceneArgument scene;
   std::string out;
   std::string data;
@@ -74,7 +74,7 @@ void WriteResults(const Followed& followed, const fs::path& folder) {
               folder / "last.png");
 }
 
-int Run(const Options& options, const Context& context) {
+int Run(const RunOptions& options, const Context& context) {
   const ScenePackage package = LoadSceneOrFail(options.scene);
   // Created before the server, whose threads must not receive the signals.
   const StopOnInterrupt interrupts;
@@ -116,8 +116,8 @@ int Run(const Options& options, const Context& context) {
 }  // namespace
 
 void AddRun(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "run", "Simulate a scene on this machine, without a server", kExamples);
-  const auto options = std::make_shared<Options>();
+  CLI::App* command = AddCommand(app, "run", "Simulate a scene on this machine, without a server", kRunExamples);
+  const auto options = std::make_shared<RunOptions>();
   AddSceneArgument(*command, options->scene);
   command->add_option("--out", options->out, "Folder for results: series.csv, frames.pvd, pictures, summary.json")
       ->type_name("DIR");

@@ -23,7 +23,7 @@ using google::protobuf::Descriptor;
 using google::protobuf::EnumDescriptor;
 using google::protobuf::FieldDescriptor;
 
-constexpr const char* kExamples = R"(  fascicle schema                     all fields of a scene
+constexpr const char* kSchemaExamples = R"(  fascicle schema                     all fields of a scene
   fascicle schema Body                one message; also by field name: `fascicle schema fusiform`
   fascicle schema --json              the same for programs, one object for each message and enum
 )";
@@ -205,7 +205,7 @@ int Schema(const std::string& name, const Context& context) {
 }  // namespace
 
 void AddSchema(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "schema", "The fields of a scene: units, ranges, defaults", kExamples);
+  CLI::App* command = AddCommand(app, "schema", "The fields of a scene: units, ranges, defaults", kSchemaExamples);
   const auto name = std::make_shared<std::string>();
   command->add_option("NAME", *name, "One message, enum or field");
   command->callback([name, &context] { context.action = [name, &context] { return Schema(*name, context); }; });

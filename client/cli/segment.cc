@@ -18,7 +18,7 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kSegmentExamples =
     R"(  fascicle phantom arm.mha --truth truth.mha                  a synthetic arm
   fascicle segment arm.mha --filter wavelet --seed 98,119,35 --opening 0.6 --out anconeus.mha --picture anconeus.png
   fascicle segment arm.mha --seed 98,119,35 --truth truth.mha --truth-label 4     compare with the true anatomy
@@ -32,7 +32,7 @@ you trust the result. The label image has 1 where the body is, or 1, 2, ... for 
 stops the command (exit code 4); files are written completely or not at all.
 )";
 
-struct Options : ImageOptions {
+struct SegmentOptions : ImageOptions {
   std::string truth;
   int truth_label = 1;
 };
@@ -43,8 +43,8 @@ Json StatisticsJson(const ClassStatistics& statistics) {
 }
 
 // Dice coefficient with a label of a reference image of the same size.
-std::optional<double> OverlapWithTruth(const Options& options, const StagedImage& staged, const GivenImage& given,
-                                       Problems& problems) {
+std::optional<double> OverlapWithTruth(const SegmentOptions& options, const StagedImage& staged,
+                                       const GivenImage& given, Problems& problems) {
   if (options.truth.empty()) return std::nullopt;
   if (given.stage.resample) problems.Add("--truth", "cannot be compared with a resampled image", "");
   Problems found;
@@ -66,7 +66,7 @@ void PrintStatistics(const char* name, const ClassStatistics& s, const char* mar
               s.volume * 1e6, s.lowest, s.highest, s.mean, s.deviation, mark);
 }
 
-void PrintReport(const Options& options, const StagedImage& staged, const std::optional<double>& overlap) {
+void PrintReport(const SegmentOptions& options, const StagedImage& staged, const std::optional<double>& overlap) {
   const VolumeImage& image = staged.image;
   std::printf("image     %d x %d x %d voxels of %.4g x %.4g x %.4g mm\n", image.size[0], image.size[1], image.size[2],
               image.spacing[0] * 1e3, image.spacing[1] * 1e3, image.spacing[2] * 1e3);
@@ -93,7 +93,7 @@ void PrintReport(const Options& options, const StagedImage& staged, const std::o
   }
 }
 
-Json ReportJson(const Options& options, const StagedImage& staged, const std::optional<double>& overlap) {
+Json ReportJson(const SegmentOptions& options, const StagedImage& staged, const std::optional<double>& overlap) {
   Json classes = Json::array();
   for (const ClassStatistics& statistics : staged.statistics) classes.push_back(StatisticsJson(statistics));
   const VolumeImage& image = staged.image;
@@ -110,7 +110,7 @@ Json ReportJson(const Options& options, const StagedImage& staged, const std::op
   return report;
 }
 
-int Segment(const Options& options, const Context& context) {
+int Segment(const SegmentOptions& options, const Context& context) {
   const StopOnInterrupt interrupts;
   const std::stop_token stop = interrupts.token();
   Problems problems;
@@ -135,8 +135,8 @@ int Segment(const Options& options, const Context& context) {
 }  // namespace
 
 void AddSegment(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "segment", "Segment a body in a scan", kExamples);
-  const auto options = std::make_shared<Options>();
+  CLI::App* command = AddCommand(app, "segment", "Segment a body in a scan", kSegmentExamples);
+  const auto options = std::make_shared<SegmentOptions>();
   AddImageOptions(*command, *options);
   command->add_option("--out", options->out, "Write the body as a label image: .mha, .nrrd, .nii or .nii.gz")
       ->type_name("FILE");

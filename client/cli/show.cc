@@ -15,12 +15,12 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples = R"(  fascicle show jobs/3f2a             where a job stands, and why it failed
+constexpr const char* kShowExamples = R"(  fascicle show jobs/3f2a             where a job stands, and why it failed
   fascicle show 3f2a --scene          its scene, as a scene file
   fascicle show 3f2a --profile        the time spent in each stage
 )";
 
-struct Options {
+struct ShowOptions {
   std::string job;
   bool scene = false;
   bool profile = false;
@@ -36,7 +36,7 @@ std::string SceneText(const v1::Scene& scene) {
   return text;
 }
 
-int Show(const Options& options, const Context& context) {
+int Show(const ShowOptions& options, const Context& context) {
   Client client = Connect(context);
   const v1::Job job = Take(client.GetJob(JobName(options.job)));
   if (options.scene) {
@@ -74,8 +74,8 @@ int Show(const Options& options, const Context& context) {
 }  // namespace
 
 void AddShow(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "show", "Show one job", kExamples);
-  const auto options = std::make_shared<Options>();
+  CLI::App* command = AddCommand(app, "show", "Show one job", kShowExamples);
+  const auto options = std::make_shared<ShowOptions>();
   command->add_option("JOB", options->job, "The job")->required();
   CLI::Option* scene = command->add_flag("--scene", options->scene, "Print the job's scene instead");
   command->add_flag("--profile", options->profile, "Print the time spent in each stage instead")->excludes(scene);

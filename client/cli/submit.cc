@@ -10,19 +10,19 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kSubmitExamples =
     R"text(  fascicle --server lab:7300 submit scene.json             prints the job's name
   fascicle submit scene.json --threads 4                   with FASCICLE_SERVER set
   fascicle submit scene.json --set duration=2 --set 'name=twice as long'
   fascicle watch "$(fascicle submit scene.json)"           submit, then follow
 )text";
 
-struct Options {
+struct SubmitOptions {
   SceneArgument scene;
   int threads = 0;
 };
 
-int Submit(const Options& options, const Context& context) {
+int Submit(const SubmitOptions& options, const Context& context) {
   const ScenePackage package = LoadSceneOrFail(options.scene);
   Client client = Connect(context);
   const v1::Job job = Take(client.Submit(package, options.threads));
@@ -37,8 +37,8 @@ int Submit(const Options& options, const Context& context) {
 }  // namespace
 
 void AddSubmit(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "submit", "Send a scene to a server and return at once", kExamples);
-  const auto options = std::make_shared<Options>();
+  CLI::App* command = AddCommand(app, "submit", "Send a scene to a server and return at once", kSubmitExamples);
+  const auto options = std::make_shared<SubmitOptions>();
   AddSceneArgument(*command, options->scene);
   command->add_option("--threads", options->threads, "Number of threads; 0: the server's default")
       ->check(CLI::Range(0, 256));

@@ -10,7 +10,7 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kValidateExamples =
     R"(  fascicle validate scene.json            one line per problem, exit code 2
   fascicle validate scene.json --json     the same as one object
 )";
@@ -33,7 +33,7 @@ int Validate(const SceneArgument& scene, const Context& context) {
 }  // namespace
 
 void AddValidate(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "validate", "Check a scene and its files without running it", kExamples);
+  CLI::App* command = AddCommand(app, "validate", "Check a scene and its files without running it", kValidateExamples);
   const auto scene = std::make_shared<SceneArgument>();
   AddSceneArgument(*command, *scene);
   command->callback([scene, &context] { context.action = [scene, &context] { return Validate(*scene, context); }; });

@@ -14,7 +14,7 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kVoxelizeExamples =
     R"(  fascicle phantom arm.mha                                    a synthetic arm
   fascicle voxelize arm.mha --filter wavelet --seed 98,119,35 --opening 0.6       the levels of the muscle, as a table
   fascicle voxelize labels.mha --label 1 --fraction 0.25 --level 2 --out coarse.mha
@@ -25,13 +25,13 @@ fraction of them is solid. --out and --picture show the level given by --level. 
 (exit code 4); files are written completely or not at all.
 )";
 
-struct Options : ImageOptions {
+struct VoxelizeOptions : ImageOptions {
   int levels = 5;
   double fraction = ImageStage().fraction;
   int level = 0;
 };
 
-void PrintTable(const Options& options, const std::vector<VoxelLevel>& hierarchy) {
+void PrintTable(const VoxelizeOptions& options, const std::vector<VoxelLevel>& hierarchy) {
   std::printf("level  voxel size     mm                       voxels       nodes       cm^3\n");
   for (std::size_t l = 0; l < hierarchy.size(); ++l) {
     const VoxelLevel& level = hierarchy[l];
@@ -48,7 +48,7 @@ void PrintTable(const Options& options, const std::vector<VoxelLevel>& hierarchy
   }
 }
 
-Json TableJson(const Options& options, const std::vector<VoxelLevel>& hierarchy) {
+Json TableJson(const VoxelizeOptions& options, const std::vector<VoxelLevel>& hierarchy) {
   Json levels = Json::array();
   for (const VoxelLevel& level : hierarchy) {
     levels.push_back({{"voxel_size", level.voxel_size},
@@ -78,7 +78,7 @@ void ShowLevel(const VoxelGrid& level, StagedImage& staged) {
   }
 }
 
-int Voxelize(const Options& options, const Context& context) {
+int Voxelize(const VoxelizeOptions& options, const Context& context) {
   const StopOnInterrupt interrupts;
   const std::stop_token stop = interrupts.token();
   Problems problems;
@@ -112,8 +112,8 @@ int Voxelize(const Options& options, const Context& context) {
 }  // namespace
 
 void AddVoxelize(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "voxelize", "Coarsen a segmented body to levels of voxels", kExamples);
-  const auto options = std::make_shared<Options>();
+  CLI::App* command = AddCommand(app, "voxelize", "Coarsen a segmented body to levels of voxels", kVoxelizeExamples);
+  const auto options = std::make_shared<VoxelizeOptions>();
   AddImageOptions(*command, *options);
   command->add_option("--levels", options->levels, "Largest number of levels; 5")->check(CLI::Range(1, 11));
   command->add_option("--fraction", options->fraction, "Part of the eight voxels that must be solid, above 0; 0.5")

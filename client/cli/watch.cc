@@ -14,7 +14,7 @@
 namespace fascicle::client {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kWatchExamples =
     R"(  fascicle watch jobs/3f2a             follow a job to its end, then print what came out
   fascicle watch 3f2a --digests        also a line for each frame: index, time, SHA-256 of its numbers
   fascicle watch 3f2a --from 12        start with frame 12: frames do not depend on when one joins
@@ -22,14 +22,14 @@ constexpr const char* kExamples =
 Ctrl-C leaves (exit code 4); the job continues.
 )";
 
-struct Options {
+struct WatchOptions {
   std::string job;
   std::int64_t from = 0;
   bool digests = false;
   bool profile = false;
 };
 
-int Watch(const Options& options, const Context& context) {
+int Watch(const WatchOptions& options, const Context& context) {
   std::stop_source interrupted;
   const Interrupts interrupts([&] { interrupted.request_stop(); });
   Client client = Connect(context);
@@ -57,8 +57,8 @@ int Watch(const Options& options, const Context& context) {
 }  // namespace
 
 void AddWatch(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "watch", "Follow a job to its end", kExamples);
-  const auto options = std::make_shared<Options>();
+  CLI::App* command = AddCommand(app, "watch", "Follow a job to its end", kWatchExamples);
+  const auto options = std::make_shared<WatchOptions>();
   command->add_option("JOB", options->job, "The job, as `submit` and `list` print it")->required();
   command->add_option("--from", options->from, "First frame to read")->check(CLI::NonNegativeNumber);
   command->add_flag("--digests", options->digests, "Print a line with the digest of each frame");
