@@ -22,14 +22,14 @@ constexpr const char* kWatchExamples =
 Ctrl-C leaves (exit code 4); the job continues.
 )";
 
-struct WatchOptions {
+struct WatchArguments {
   std::string job;
   std::int64_t from = 0;
   bool digests = false;
   bool profile = false;
 };
 
-int Watch(const WatchOptions& options, const Context& context) {
+int Watch(const WatchArguments& options, const Context& context) {
   std::stop_source interrupted;
   const Interrupts interrupts([&] { interrupted.request_stop(); });
   Client client = Connect(context);
@@ -58,7 +58,7 @@ int Watch(const WatchOptions& options, const Context& context) {
 
 void AddWatch(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "watch", "Follow a job to its end", kWatchExamples);
-  const auto options = std::make_shared<WatchOptions>();
+  const auto options = std::make_shared<WatchArguments>();
   command->add_option("JOB", options->job, "The job, as `submit` and `list` print it")->required();
   command->add_option("--from", options->from, "First frame to read")->check(CLI::NonNegativeNumber);
   command->add_flag("--digests", options->digests, "Print a line with the digest of each frame");

@@ -54,7 +54,7 @@ function(fascicle_kernels sources)
   endif()
   set_property(SOURCE ${files} APPEND PROPERTY COMPILE_OPTIONS "-Wno-psabi")
   set_source_files_properties(${files} PROPERTIES
-    COMPILE_DEFINITIONS EIGEN_DONT_VECTORIZE SKIP_PRECOMPILE_HEADERS ON)
+    COMPILE_DEFINITIONS EIGEN_DONT_VECTORIZE SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
   set(${sources} ${files} PARENT_SCOPE)
 endfunction()
 
