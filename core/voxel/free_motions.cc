@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/base/stop.h"
+
 namespace fascicle {
 namespace {
 
@@ -49,8 +51,9 @@ std::int32_t Root(std::vector<Island>& islands, std::int32_t island) {
   return island;
 }
 
-Structure FindStructure(const VoxelGrid& grid, const VoxelMesh& mesh, const FixedComponents& fixed) {
-  const Islands found = FindIslands(grid);
+Structure FindStructure(const VoxelGrid& grid, const VoxelMesh& mesh, const FixedComponents& fixed,
+                        const std::stop_token& stop) {
+  const Islands found = FindIslands(grid, stop);
   Structure s;
   s.islands.resize(found.voxels.size());
   for (std::size_t a = 0; a < s.islands.size(); ++a) {
@@ -58,11 +61,13 @@ Structure FindStructure(const VoxelGrid& grid, const VoxelMesh& mesh, const Fixe
     s.islands[a].joined = static_cast<std::int32_t>(a);
   }
   std::int32_t known = 0;
-  ForVoxels(grid, [&](std::size_t v, const GridIndex& at) {
+  const auto note_first = [&](std::size_t v, const GridIndex& at) {
     if (found.island[v] == known) s.islands[known++].first_voxel = at;
-  });
+  };
+  ForVoxels(grid, note_first, stop);
   std::int32_t node = 0;
   for (const GridIndex& at : mesh.NodePlaces()) {
+    ThrowIfStopped(stop);
     const std::uint8_t fixed_here = fixed.empty() ? 0 : fixed[node];
     ++node;
     Tie tie = {grid.spacing.cwiseProduct(Vec3(at[0], at[1], at[2])), fixed_here, {}};
@@ -154,8 +159,9 @@ void AddFreeMotions(const Structure& s, const std::vector<std::int32_t>& members
 
 }  // namespace
 
-std::vector<FreeMotion> FindFreeMotions(const VoxelGrid& grid, const VoxelMesh& mesh, const FixedComponents& fixed) {
-  Structure s = FindStructure(grid, mesh, fixed);
+std::vector<FreeMotion> FindFreeMotions(const VoxelGrid& grid, const VoxelMesh& mesh, const FixedComponents& fixed,
+                                        const std::stop_token& stop) {
+  Structure s = FindStructure(grid, mesh, fixed, stop);
   std::vector<std::vector<std::int32_t>> members(s.islands.size());
   for (std::size_t a = 0; a < s.islands.size(); ++a) {
     members[Root(s.islands, static_cast<std::int32_t>(a))].push_back(static_cast<std::int32_t>(a));

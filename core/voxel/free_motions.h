@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_VOXEL_FREE_MOTIONS_H_
 #define FASCICLE_CORE_VOXEL_FREE_MOTIONS_H_
 
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,9 @@ struct FreeMotion {
 
 // All islands with rigid body modes that the supports leave free. Islands that touch in an edge or a corner constrain
 // each other at the shared nodes (an edge is a hinge, a corner a ball joint). In a chain of more than 60 such islands,
-// each must be supported by itself.
-std::vector<FreeMotion> FindFreeMotions(const VoxelGrid& grid, const VoxelMesh& mesh, const FixedComponents& fixed);
+// each must be supported by itself. Throws Stopped after a stop request.
+std::vector<FreeMotion> FindFreeMotions(const VoxelGrid& grid, const VoxelMesh& mesh, const FixedComponents& fixed,
+                                        const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

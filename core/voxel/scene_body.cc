@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "core/base/stop.h"
 #include "core/scene/nodal_forces.h"
 #include "core/voxel/free_motions.h"
 #include "core/voxel/prescribed.h"
@@ -161,13 +162,14 @@ void VoxelSceneBody::Prescribe(const BodyControls& controls, VoxelField<double>&
   }
 }
 
-void CheckVoxelSupports(const Scene& scene, Problems& problems) {
+void CheckVoxelSupports(const Scene& scene, Problems& problems, const std::stop_token& stop) {
   if (scene.method != Method::kVoxel) return;
   if (scene.voxel.stepping == VoxelStepping::kDynamic && !scene.voxel.start_loaded) return;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const VoxelSceneBody body(scene, scene.bodies[i]);
+    ThrowIfStopped(stop);
     const PrescribedComponents held(body.model().mesh(), body.supports());
-    for (const FreeMotion& motion : FindFreeMotions(body.model().grid(), body.model().mesh(), held.of_nodes())) {
+    for (const FreeMotion& motion : FindFreeMotions(body.model().grid(), body.model().mesh(), held.of_nodes(), stop)) {
       const Vec3 place = body.model().grid().CornerAt(motion.first_voxel);
       char where[96];
       std::snprintf(where, sizeof where, "[%.4g, %.4g, %.4g] m", place[0], place[1], place[2]);

@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_VOXEL_SCENE_BODY_H_
 
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 #include "core/base/problems.h"
@@ -55,8 +56,8 @@ class VoxelSceneBody {
 };
 
 // Reports unsupported parts of bodies with their rigid body modes, where the scene asks for an equilibrium. CheckScene
-// must have accepted the scene. Paths are `bodies[i].constraints`.
-void CheckVoxelSupports(const Scene& scene, Problems& problems);
+// must have accepted the scene. Paths are `bodies[i].constraints`. Throws Stopped after a stop request.
+void CheckVoxelSupports(const Scene& scene, Problems& problems, const std::stop_token& stop = {});
 
 }  // namespace fascicle
 

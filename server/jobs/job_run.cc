@@ -59,6 +59,14 @@ std::shared_ptr<const Scene> SceneOf(const RunContext& context, ActiveJob& job, 
   return scene;
 }
 
+void StoreGeometry(const RunContext& context, const ActiveJob& job, const Scene& scene, const FrameLayout& layout,
+                   Profile& profile) {
+  const StageTimer timer(&profile, "geometry");
+  const std::string geometry = context.codec.encode_geometry(scene, layout);
+  ThrowIfStopped(job.stop_token());
+  job.frames()->PutGeometry(geometry);
+}
+
 // Everything before the first step. Throws Stopped if the job is asked to stop.
 std::unique_ptr<Simulation> SetUp(const RunContext& context, ActiveJob& job, Profile& profile) {
   const StageTimer timer(&profile, "set-up");
@@ -72,8 +80,7 @@ std::unique_ptr<Simulation> SetUp(const RunContext& context, ActiveJob& job, Pro
 
   const int threads = record->threads > 0 ? record->threads : context.options.default_threads;
   std::unique_ptr<Simulation> simulation = MakeSimulation(scene, threads, *frames, profile, job.stop_token());
-  const StageTimer geometry(&profile, "geometry");
-  frames->PutGeometry(context.codec.encode_geometry(*scene, simulation->layout()));
+  StoreGeometry(context, job, *scene, simulation->layout(), profile);
   SetRunning(job);
   return simulation;
 }

@@ -96,7 +96,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     const StageTimer timer(tools.profile, "checks");
     CheckScene(*result, found, tools.stop);
     ThrowIfStopped(tools.stop);
-    if (found.empty()) CheckVoxelSupports(*result, found);
+    if (found.empty()) CheckVoxelSupports(*result, found, tools.stop);
   }
   if (found.empty()) return result;
   CheckEachBody(std::move(*result), complete, found);
