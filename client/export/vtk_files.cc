@@ -2,11 +2,9 @@
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkCellType.h>
 #include <vtkDoubleArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
@@ -19,6 +17,7 @@
 #include <stdexcept>
 
 #include "client/lib/replace_file.h"
+#include "client/vtk/body_grid.h"
 
 namespace fascicle::client {
 namespace {
@@ -37,37 +36,6 @@ vtkSmartPointer<vtkDoubleArray> MakeArray(const std::string& name, int component
   const auto array = MakeArray(name, components, values.size() / static_cast<std::size_t>(components));
   std::copy(values.begin(), values.end(), array->GetPointer(0));
   return array;
-}
-
-vtkSmartPointer<vtkPoints> MakePoints(const std::vector<Vec3>& positions) {
-  const auto coordinates = MakeArray("Points", 3, positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    coordinates->SetTypedTuple(static_cast<vtkIdType>(i), positions[i].data());
-  }
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetData(coordinates);
-  return points;
-}
-
-void AddTriangles(const std::vector<std::array<std::uint32_t, 3>>& triangles, vtkCellArray& cells) {
-  for (const auto& t : triangles) cells.InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}});
-}
-
-void SetMesh(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnstructuredGrid& grid) {
-  grid.SetPoints(MakePoints(positions));
-  vtkNew<vtkCellArray> cells;
-  cells->AllocateExact(
-      static_cast<vtkIdType>(shape.elements()),
-      static_cast<vtkIdType>(4 * shape.tetrahedra.size() + 8 * shape.bricks.size() + 3 * shape.triangles.size()));
-  for (const auto& t : shape.tetrahedra)
-    cells->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}, vtkIdType{t[3]}});
-  for (const auto& brick : shape.bricks) {
-    std::array<vtkIdType, 8> nodes;
-    for (std::size_t c = 0; c < 8; ++c) nodes[c] = brick[kHexahedronCorners[c]];
-    cells->InsertNextCell(8, nodes.data());
-  }
-  AddTriangles(shape.triangles, *cells);
-  grid.SetCells(CellTypeOf(shape), cells);
 }
 
 void AddDisplacement(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnstructuredGrid& grid) {
@@ -117,8 +85,7 @@ void WriteData(Data& data, const fs::path& path) {
 
 void WriteBody(const BodyShape& shape, const v1::BodyFrame& frame, const fs::path& path) {
   const std::vector<Vec3> positions = DecodePositions(frame, shape.positions.size());
-  vtkNew<vtkUnstructuredGrid> grid;
-  SetMesh(shape, positions, *grid);
+  const auto grid = MakeGrid(shape, positions);
   AddDisplacement(shape, positions, *grid);
   AddRegions(shape, *grid);
   AddRestFibres(shape, *grid);
@@ -133,9 +100,7 @@ void WriteBody(const BodyShape& shape, const v1::BodyFrame& frame, const fs::pat
 void WriteRigidBody(const RigidShape& body, const Pose& pose, const fs::path& path) {
   vtkNew<vtkPolyData> surface;
   surface->SetPoints(MakePoints(PositionsAt(body, pose)));
-  vtkNew<vtkCellArray> triangles;
-  AddTriangles(body.triangles, *triangles);
-  surface->SetPolys(triangles);
+  surface->SetPolys(MakeTriangles(body.triangles));
   WriteData<vtkXMLPolyDataWriter>(*surface, path);
 }
 

@@ -32,12 +32,6 @@ struct BodyShape {
   std::size_t elements() const { return tetrahedra.size() + bricks.size() + triangles.size(); }
 };
 
-// The corners of a brick in hexahedron order: around the lower side, then around the upper one.
-inline constexpr std::array<std::size_t, 8> kHexahedronCorners = {0, 1, 3, 2, 4, 5, 7, 6};
-
-// VTK's cell type for the elements of a body: tetrahedra (10), voxels as hexahedra (12) or triangles (5).
-inline int CellTypeOf(const BodyShape& shape) { return !shape.bricks.empty() ? 12 : !shape.triangles.empty() ? 5 : 10; }
-
 std::vector<BodyShape> DecodeGeometry(const v1::Geometry& geometry);
 
 // Positions [m] of a body with `nodes` nodes.

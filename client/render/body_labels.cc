@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "client/render/body_mesh.h"
+#include "client/vtk/body_grid.h"
 
 namespace fascicle::client {
 
@@ -37,7 +38,7 @@ void AddLabels(const BodyShape& shape, const std::vector<Vec3>& positions, const
     dimensions[d] = std::max(2, dimensions[d]);
   }
   vtkNew<vtkResampleToImage> resample;
-  resample->SetInputDataObject(MakeGrid(shape, in_voxels, {}));
+  resample->SetInputDataObject(MakeGrid(shape, in_voxels));
   resample->UseInputBoundsOff();
   resample->SetSamplingBounds(bounds.data());
   resample->SetSamplingDimensions(dimensions.data());

@@ -1,31 +1,20 @@
 #include "client/render/body_mesh.h"
 
-#include <vtkCellArray.h>
-#include <vtkCellType.h>
 #include <vtkDataSetSurfaceFilter.h>
 #include <vtkDoubleArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkPolyDataNormals.h>
 #include <vtkStreamTracer.h>
 #include <vtkWindowedSincPolyDataFilter.h>
 
 #include <algorithm>
-#include <array>
 
 #include "client/render/field_values.h"
+#include "client/vtk/body_grid.h"
 
 namespace fascicle::client {
 namespace {
-
-vtkSmartPointer<vtkPoints> MakePoints(const std::vector<Vec3>& positions) {
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(positions.size()));
-  for (std::size_t i = 0; i < positions.size(); ++i) points->SetPoint(static_cast<vtkIdType>(i), positions[i].data());
-  return points;
-}
 
 // Every n-th centroid; the same ones in every frame.
 vtkSmartPointer<vtkPolyData> MakeSeeds(const BodyShape& shape, const std::vector<Vec3>& positions, int seeds) {
@@ -45,19 +34,7 @@ vtkSmartPointer<vtkPolyData> MakeSeeds(const BodyShape& shape, const std::vector
 
 vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std::vector<Vec3>& positions,
                                               const std::vector<double>& values) {
-  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  grid->SetPoints(MakePoints(positions));
-  vtkNew<vtkCellArray> cells;
-  for (const auto& t : shape.tetrahedra) {
-    cells->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}, vtkIdType{t[3]}});
-  }
-  for (const auto& brick : shape.bricks) {
-    std::array<vtkIdType, 8> nodes;
-    for (std::size_t c = 0; c < 8; ++c) nodes[c] = brick[kHexahedronCorners[c]];
-    cells->InsertNextCell(8, nodes.data());
-  }
-  for (const auto& t : shape.triangles) cells->InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}});
-  grid->SetCells(CellTypeOf(shape), cells);
+  const auto grid = MakeGrid(shape, positions);
   if (!values.empty()) {
     vtkNew<vtkDoubleArray> colour;
     colour->SetName("colour");
@@ -71,7 +48,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std:
 vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const RigidShape& body, const Pose& pose) {
   BodyShape shape;
   shape.triangles = body.triangles;
-  return MakeGrid(shape, PositionsAt(body, pose), {});
+  return MakeGrid(shape, PositionsAt(body, pose));
 }
 
 vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid, bool smooth) {
@@ -95,7 +72,7 @@ vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid, bool smooth)
 
 vtkSmartPointer<vtkPolyData> MakeFibreLines(const BodyShape& shape, const std::vector<Vec3>& positions, int seeds) {
   if (shape.fibres.empty()) return vtkSmartPointer<vtkPolyData>::New();
-  const auto grid = MakeGrid(shape, positions, {});
+  const auto grid = MakeGrid(shape, positions);
   vtkNew<vtkDoubleArray> directions;
   directions->SetName("fibre");
   directions->SetNumberOfComponents(3);

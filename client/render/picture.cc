@@ -27,6 +27,7 @@
 #include "client/render/gif_writer.h"
 #include "client/render/line_tubes.h"
 #include "client/render/view.h"
+#include "client/vtk/body_grid.h"
 
 namespace fascicle::client {
 namespace {
@@ -138,7 +139,7 @@ void AddRestOutlines(const std::vector<BodyShape>& shapes, vtkRenderer& renderer
     vtkNew<vtkPolyDataSilhouette> silhouette;
     // For voxels only the silhouette, because their edges are everywhere.
     const bool voxels = !shape.bricks.empty();
-    silhouette->SetInputData(MakeSurface(*MakeGrid(shape, shape.positions, {}), voxels));
+    silhouette->SetInputData(MakeSurface(*MakeGrid(shape, shape.positions), voxels));
     silhouette->SetCamera(renderer.GetActiveCamera());
     silhouette->SetEnableFeatureAngle(voxels ? 0 : 60);
     silhouette->Update();

@@ -1,0 +1,27 @@
+#ifndef FASCICLE_CLIENT_VTK_BODY_GRID_H_
+#define FASCICLE_CLIENT_VTK_BODY_GRID_H_
+
+#include <vtkCellArray.h>
+#include <vtkPoints.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "client/lib/decode.h"
+
+// Decoded geometry as VTK's data, in double precision and metres. Thread-safe.
+namespace fascicle::client {
+
+vtkSmartPointer<vtkPoints> MakePoints(const std::vector<Vec3>& positions);
+
+vtkSmartPointer<vtkCellArray> MakeTriangles(const std::vector<std::array<std::uint32_t, 3>>& triangles);
+
+// The elements of a body with its nodes at `positions`: tetrahedra, bricks as hexahedra, or triangles.
+vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std::vector<Vec3>& positions);
+
+}  // namespace fascicle::client
+
+#endif  // FASCICLE_CLIENT_VTK_BODY_GRID_H_
