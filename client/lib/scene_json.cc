@@ -126,7 +126,7 @@ std::string Quoted(std::string_view text) {
   return "\"" + std::string(text.substr(0, kMaxShown)) + (text.size() > kMaxShown ? "..." : "") + "\"";
 }
 
-std::string KindOf(const json& value) {
+std::string KindOfValue(const json& value) {
   switch (value.type()) {
     case json::value_t::null:
       return "null";
@@ -164,7 +164,7 @@ class FieldReader {
   void Read(const json& value, const std::string& path) {
     if (!field_.is_repeated()) return ReadOne(value, path);
     if (!value.is_array()) {
-      problems_.Add(path, "expects a list, got " + KindOf(value), "write [ ... ]");
+      problems_.Add(path, "expects a list, got " + KindOfValue(value), "write [ ... ]");
       return;
     }
     for (std::size_t i = 0; i < value.size(); ++i) ReadOne(value[i], IndexPath(path, i));
@@ -237,7 +237,7 @@ class FieldReader {
   }
 
   void WrongType(const json& value, const std::string& expected, const std::string& path) {
-    problems_.Add(path, "expects " + expected + ", got " + KindOf(value));
+    problems_.Add(path, "expects " + expected + ", got " + KindOfValue(value));
   }
 
   template <class T>
@@ -359,7 +359,8 @@ std::string JsonText(const Message& message) {
 void ReadMessage(const json& value, Message& message, const std::string& path, Problems& problems) {
   const Descriptor& type = *message.GetDescriptor();
   if (!value.is_object()) {
-    problems.Add(path, "expects an object of " + Join(FieldNames(type)) + ", got " + KindOf(value), "write { ... }");
+    problems.Add(path, "expects an object of " + Join(FieldNames(type)) + ", got " + KindOfValue(value),
+                 "write { ... }");
     return;
   }
   std::set<const OneofDescriptor*> given;

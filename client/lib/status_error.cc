@@ -21,7 +21,7 @@ std::optional<Detail> DetailOf(const grpc::Status& status) {
   return std::nullopt;
 }
 
-Error::Kind KindOf(grpc::StatusCode code) {
+Error::Kind KindOfStatus(grpc::StatusCode code) {
   switch (code) {
     case grpc::StatusCode::INVALID_ARGUMENT:
       return Error::Kind::kInvalid;
@@ -66,7 +66,7 @@ void AddProblems(const google::rpc::BadRequest& bad, Problems& problems) {
 
 Error ErrorOf(const grpc::Status& status, const std::string& address) {
   Error error;
-  error.kind = KindOf(status.error_code());
+  error.kind = KindOfStatus(status.error_code());
   error.message = status.error_message();
   if (error.message.empty()) error.message = "error " + std::to_string(status.error_code());
   if (const auto info = DetailOf<google::rpc::ErrorInfo>(status)) error.reason = info->reason();

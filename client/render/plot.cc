@@ -22,17 +22,17 @@ namespace fascicle::client {
 namespace {
 
 // Distinguishable by colour-blind readers, too [Okabe and Ito].
-constexpr std::array<std::array<unsigned char, 3>, 8> kColours = {{{0, 114, 178},
-                                                                   {213, 94, 0},
-                                                                   {0, 158, 115},
-                                                                   {204, 121, 167},
-                                                                   {230, 159, 0},
-                                                                   {86, 180, 233},
-                                                                   {90, 90, 90},
-                                                                   {150, 60, 40}}};
+constexpr std::array<std::array<unsigned char, 3>, 8> kLineColours = {{{0, 114, 178},
+                                                                       {213, 94, 0},
+                                                                       {0, 158, 115},
+                                                                       {204, 121, 167},
+                                                                       {230, 159, 0},
+                                                                       {86, 180, 233},
+                                                                       {90, 90, 90},
+                                                                       {150, 60, 40}}};
 constexpr std::array<int, 3> kStyles = {vtkPen::SOLID_LINE, vtkPen::DASH_LINE, vtkPen::DOT_LINE};
 
-struct Extent {
+struct DataExtent {
   double lowest = INFINITY, highest = -INFINITY;
   void Add(double value) {
     lowest = std::min(lowest, value);
@@ -40,7 +40,7 @@ struct Extent {
   }
 };
 
-vtkSmartPointer<vtkTable> MakeTable(const PlotLine& line, Extent& x_extent, Extent& y_extent) {
+vtkSmartPointer<vtkTable> MakeTable(const PlotLine& line, DataExtent& x_extent, DataExtent& y_extent) {
   vtkNew<vtkDoubleArray> x, y;
   x->SetName("x");
   y->SetName(line.name.c_str());
@@ -71,7 +71,7 @@ void StyleAxis(vtkAxis& axis, const std::string& label) {
 }
 
 // Adds a margin, and a range around a line that is constant up to round-off.
-void SetRange(const Extent& extent, double margin, vtkAxis& axis) {
+void SetRange(const DataExtent& extent, double margin, vtkAxis& axis) {
   const double size = std::max(std::abs(extent.lowest), std::abs(extent.highest));
   double half = margin * (extent.highest - extent.lowest);
   if (!(extent.highest - extent.lowest > 1e-12 * size)) half = size > 0 ? 0.05 * size : 1;
@@ -85,16 +85,16 @@ vtkSmartPointer<vtkChartXY> MakeChart(const PlotPanel& panel) {
   chart->SetTitle(panel.title);
   chart->GetTitleProperties()->SetFontSize(17);
   chart->GetTitleProperties()->BoldOn();
-  Extent x_extent, y_extent;
+  DataExtent x_extent, y_extent;
   for (std::size_t i = 0; i < panel.lines.size(); ++i) {
     const auto table = MakeTable(panel.lines[i], x_extent, y_extent);
     if (table->GetNumberOfRows() == 0) continue;
     vtkPlot& plot = *chart->AddPlot(vtkChart::LINE);
     plot.SetInputData(table, 0, 1);
-    const auto& colour = kColours[i % kColours.size()];
+    const auto& colour = kLineColours[i % kLineColours.size()];
     plot.SetColor(colour[0], colour[1], colour[2], 255);
     plot.SetWidth(2 * Canvas::kSampling);
-    plot.GetPen()->SetLineType(kStyles[i / kColours.size() % kStyles.size()]);
+    plot.GetPen()->SetLineType(kStyles[i / kLineColours.size() % kStyles.size()]);
   }
   StyleAxis(*chart->GetAxis(vtkAxis::BOTTOM), panel.x_label);
   // The simple algorithm lets long labels overlap. On the vertical axis there is space, and its ranges are tighter.

@@ -20,13 +20,15 @@ namespace {
 using Colour = std::array<unsigned char, 3>;
 
 // Colours of outlines: bright on grey, and distinguishable by colour-blind readers.
-constexpr std::array<Colour, 6> kColours = {
+constexpr std::array<Colour, 6> kOutlineColours = {
     {{255, 176, 0}, {86, 180, 233}, {255, 80, 120}, {0, 210, 150}, {220, 130, 255}, {240, 228, 66}}};
 constexpr int kColumns = 3, kRows = 2;
 constexpr int kMargin = 10 * Canvas::kSampling, kCaption = 22 * Canvas::kSampling, kHead = 36 * Canvas::kSampling,
               kFoot = 40 * Canvas::kSampling;
 
-const Colour& ColourOf(int label) { return kColours[static_cast<std::size_t>(label - 1) % kColours.size()]; }
+const Colour& ColourOf(int label) {
+  return kOutlineColours[static_cast<std::size_t>(label - 1) % kOutlineColours.size()];
+}
 
 // A slice normal to one axis.
 struct Panel {
@@ -182,7 +184,7 @@ void Paint(const Slice& slice, double scale, int left, int bottom, std::pair<flo
   }
 }
 
-void AddText(const std::string& text, int x, int y, int size, bool bold, vtkRenderer& renderer) {
+void AddMark(const std::string& text, int x, int y, int size, bool bold, vtkRenderer& renderer) {
   vtkNew<vtkTextActor> actor;
   actor->SetInput(text.c_str());
   actor->SetPosition(x, y);
@@ -208,12 +210,12 @@ void AddFoot(const SlicesInput& input, double scale, int width, Raster& raster, 
   raster.Fill(right - bar, kMargin, bar, 3 * Canvas::kSampling, {40, 40, 40});
   char text[32];
   std::snprintf(text, sizeof text, "%.6g mm", length * 1e3);
-  AddText(text, right - bar, kMargin + 6 * Canvas::kSampling, 13, false, renderer);
+  AddMark(text, right - bar, kMargin + 6 * Canvas::kSampling, 13, false, renderer);
   int x = 2 * kMargin;
   for (std::size_t l = 0; l < input.names.size(); ++l) {
     const int side = 12 * Canvas::kSampling;
     raster.Fill(x, kMargin, side, side, ColourOf(static_cast<int>(l) + 1));
-    AddText(input.names[l], x + side + kMargin / 2, kMargin, 14, false, renderer);
+    AddMark(input.names[l], x + side + kMargin / 2, kMargin, 14, false, renderer);
     x += side + 2 * kMargin + static_cast<int>(input.names[l].size()) * 9 * Canvas::kSampling;
   }
 }
@@ -253,9 +255,9 @@ void DrawSlices(const SlicesInput& input, PictureSize size, const std::filesyste
     const int top = canvas.height() - kHead - row * cell_height - kCaption;
     Paint(slice, scale, left, top - static_cast<int>(slice.height() * scale), grey, raster);
     const std::string caption = std::string(1, "ijk"[panels[p].across]) + " = " + std::to_string(panels[p].at);
-    AddText(caption, left, top + 5 * Canvas::kSampling, 13, false, *renderer);
+    AddMark(caption, left, top + 5 * Canvas::kSampling, 13, false, *renderer);
   }
-  AddText(input.title, 2 * kMargin, canvas.height() - kHead + 8 * Canvas::kSampling, 17, true, *renderer);
+  AddMark(input.title, 2 * kMargin, canvas.height() - kHead + 8 * Canvas::kSampling, 17, true, *renderer);
   AddFoot(input, scale, canvas.width(), raster, *renderer);
   canvas.Save(path);
 }

@@ -3,7 +3,7 @@
 namespace fascicle {
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kAdvectionGrain = 256;
 
 // The departure point of the flow that arrives at a node.
 Vec3 Origin(const Flow& flow, std::size_t n) {
@@ -31,7 +31,7 @@ Vec3 Limited(const Vec3& value, const Flow& flow, const std::vector<Vec3>& field
 void Advect(const Flow& flow, const std::vector<Vec3>& field, ThreadTeam& team, std::vector<Vec3>& result) {
   result.resize(field.size());
   const KnownField values = {&field, flow.known};
-  team.For(field.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  team.For(field.size(), kAdvectionGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       result[n] = field[n];
       if ((*flow.known)[n] == 0) continue;
@@ -47,7 +47,7 @@ void AdvectMacCormack(const Flow& flow, const std::vector<Vec3>& field, ThreadTe
   reverse.dt = -flow.dt;
   Advect(reverse, there, team, back);
   result.resize(field.size());
-  team.For(field.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  team.For(field.size(), kAdvectionGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       result[n] = there[n];
       if ((*flow.known)[n] == 0) continue;

@@ -21,7 +21,7 @@ constexpr double kMostTravel = 0.5;    // fraction of a cell that the solid move
 constexpr double kLeastStep = 1e-6;    // relative to the step for waves at rest
 constexpr double kMostSurfaceGap = 1;  // largest distance between the map and its surface [cells]
 constexpr std::size_t kMostNamed = 16;
-constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kStepGrain = 1024;
 
 std::vector<std::uint8_t> NodesInside(const EulerianBody& body, const std::vector<Vec3>& X) {
   std::vector<std::uint8_t> inside(X.size(), 0);
@@ -125,7 +125,7 @@ Resultant BodyStepper::Conserve(const EulerianState& state, std::vector<Vec3>& v
 void BodyStepper::Accelerate(const EulerianState& state, const BodyControls& now, const BodyControls& next, double dt) {
   std::vector<Vec3>& v = made_.v;
   impulses_.assign(body_->supports.empty() ? 0 : v.size(), Vec3::Zero());
-  team_->For(v.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  team_->For(v.size(), kStepGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       if (roles_.IsPrescribed(n)) {
         const RigidMotion& from = now.motions[roles_.support[n]];

@@ -3,7 +3,7 @@
 namespace fascicle {
 namespace {
 
-constexpr std::size_t kGrain = 64;
+constexpr std::size_t kBlockGrain = 64;
 // Cells with a smaller solid part join a cell with a larger one.
 constexpr double kWhole = 0.5;
 
@@ -25,7 +25,7 @@ std::size_t RootOf(const EulerianGrid& grid, const EulerianCells& cells, std::si
 
 CellBlocks MakeCellBlocks(const EulerianGrid& grid, const EulerianCells& cells, ThreadTeam& team) {
   std::vector<std::size_t> roots(cells.solid.size());
-  team.For(roots.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  team.For(roots.size(), kBlockGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) roots[c] = RootOf(grid, cells, cells.solid[c]);
   });
   std::vector<int> block_of(grid.cell_count(), -1);  // of root cells

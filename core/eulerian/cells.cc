@@ -9,7 +9,7 @@ namespace {
 
 // A smaller solid part of a cell has neither mass nor force.
 constexpr double kSliver = 1e-3;
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kCellGrain = 256;
 
 void SetCell(const EulerianBody& body, const EulerianState& state, std::size_t number, EulerianCells& cells) {
   const GridIndex at = body.grid.CellAt(number);
@@ -41,13 +41,13 @@ void UpdateCells(const EulerianBody& body, const EulerianState& state, ThreadTea
   cells.F.resize(count);
   cells.J.assign(count, 1);
   cells.distance.resize(state.X.size());
-  team.For(state.X.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  team.For(state.X.size(), kCellGrain, [&](std::size_t begin, std::size_t end) {
     const double far = 10 * body.grid.spacing;
     for (std::size_t n = begin; n < end; ++n) {
       cells.distance[n] = state.known[n] != 0 ? body.shape.Distance(state.X[n]) : far;
     }
   });
-  team.For(count, kGrain, [&](std::size_t begin, std::size_t end) {
+  team.For(count, kCellGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) SetCell(body, state, c, cells);
   });
   cells.solid.clear();

@@ -8,7 +8,7 @@
 namespace fascicle {
 namespace {
 
-constexpr int kReach = 2;                 // [cells] along each axis
+constexpr int kSlopeReach = 2;            // [cells] along each axis
 constexpr int kSquareReach = 6;           // [cells^2]; includes four non-coplanar interior nodes at a cube's corner
 constexpr double kRegularization = 1e-6;  // relative to the weights, for slopes that known nodes do not determine
 
@@ -32,7 +32,7 @@ template <class IsKnown, class Value>
 Mat3 SlopeAt(const EulerianGrid& grid, const GridIndex& at, const IsKnown& is_known, const Value& value) {
   Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
   Eigen::Matrix<double, 4, 3> b = Eigen::Matrix<double, 4, 3>::Zero();
-  ForNeighbours(grid, at, kReach, [&](std::size_t number, const Vec3& offset) {
+  ForNeighbours(grid, at, kSlopeReach, [&](std::size_t number, const Vec3& offset) {
     if (!is_known(number)) return;
     const Eigen::Vector4d row(1, offset[0], offset[1], offset[2]);
     const Eigen::Vector4d weighted = row / std::max(offset.squaredNorm(), 0.25);
@@ -67,7 +67,7 @@ std::vector<NodeWeight> ExtrapolationWeights(const EulerianGrid& grid, const Gri
   std::vector<NodeWeight> weights;
   std::vector<Eigen::Vector4d> rows;
   double total = 0;
-  ForNeighbours(grid, at, kReach, [&](std::size_t number, const Vec3& offset) {
+  ForNeighbours(grid, at, kSlopeReach, [&](std::size_t number, const Vec3& offset) {
     if (known[number] == 0) return;
     const double weight = 1 / std::max(offset.squaredNorm(), 0.25);
     const Eigen::Vector4d row(1, offset[0], offset[1], offset[2]);

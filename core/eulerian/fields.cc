@@ -10,7 +10,7 @@ namespace fascicle {
 namespace {
 
 // Cells farther from a vertex than this do not contribute to its values [cells].
-constexpr double kReach = 2;
+constexpr double kFieldReach = 2;
 
 // Stress of a cell, with the pressure that kept its volume [Pa].
 Mat3 StressOf(const EulerianBody& body, const EulerianState& state, const BodyControls& now, const EulerianCells& cells,
@@ -54,7 +54,7 @@ std::vector<double> MeanAround(const EulerianGrid& grid, const EulerianCells& ce
     const GridIndex at = {centre[0] - 2 + n % 5, centre[1] - 2 + n / 5 % 5, centre[2] - 2 + n / 25};
     if (!grid.HasCell(at)) continue;
     const std::size_t cell = grid.CellNumber(at);
-    const double weight = cells.inside[cell] * (kReach - (grid.CellCentre(at) - x).norm() / grid.spacing);
+    const double weight = cells.inside[cell] * (kFieldReach - (grid.CellCentre(at) - x).norm() / grid.spacing);
     if (!(weight > 0)) continue;
     const std::vector<double>& value = value_of(cell);
     for (std::size_t k = 0; k < components; ++k) sum[k] += weight * value[k];

@@ -14,7 +14,7 @@ namespace fascicle {
 namespace {
 
 // Nodes farther outside than this are never interpolated from [spacings].
-constexpr double kReach = 1.8;
+constexpr double kAverageReach = 1.8;
 
 // The plastic increment of an elastic gradient: V (S / det(S)^(1/3))^-gamma V^T.
 Mat3 FlowOf(const Mat3& Fe, double gamma) {
@@ -44,7 +44,7 @@ void FlowPlastically(const EulerianBody& body, const BodyControls& controls, dou
   const KnownField map = {&state.X, &state.known};
   const auto flow_at = [&](const auto& law, std::size_t n) {
     const Vec3 X = samples.NodePosition(samples.NodeAt(n));
-    if (body.shape.Distance(X) > kReach * samples.spacing) return;
+    if (body.shape.Distance(X) > kAverageReach * samples.spacing) return;
     FindPoint(body.grid, map, X, state.plastic_places[n]);
     const auto here = InterpolateWithGradient(body.grid, map, state.plastic_places[n]);
     if (!here || !(here->gradient.determinant() > 0)) return;

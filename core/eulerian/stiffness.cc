@@ -10,7 +10,7 @@
 namespace fascicle {
 namespace {
 
-constexpr std::size_t kGrain = 64;
+constexpr std::size_t kStiffnessGrain = 64;
 
 // V/J (F x I) A (F^T x I) dt^2: maps L to T, both in column-major order.
 //   factor  dt^2 V/J
@@ -31,7 +31,7 @@ ElasticStiffness::ElasticStiffness(const EulerianBody& body, const EulerianState
     : roles_(&roles), number_(&number), team_(&team), cells_(cells.solid.size()) {
   std::visit(
       [&](const auto& law) {
-        team.For(cells_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        team.For(cells_.size(), kStiffnessGrain, [&](std::size_t begin, std::size_t end) {
           for (std::size_t c = begin; c < end; ++c) {
             cells_[c] = MakeCell(law, body, state, controls, cells, cells.solid[c], dt);
           }
@@ -90,7 +90,7 @@ ElasticStiffness::Cell ElasticStiffness::MakeCell(const Law& law, const Eulerian
 template <class VelocityOf>
 std::vector<ElasticStiffness::CellForces> ElasticStiffness::ForcesOf(const VelocityOf& velocity_of) const {
   std::vector<CellForces> forces(cells_.size());
-  team_->For(cells_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  team_->For(cells_.size(), kStiffnessGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       CellForces rates;
       rates.fill(Vec3::Zero());
@@ -120,7 +120,7 @@ Vec3 ElasticStiffness::SumAt(const std::vector<Place>& places, const std::vector
 template <class VelocityOf>
 void ElasticStiffness::Add(const VelocityOf& velocity_of, Eigen::Ref<Eigen::VectorXd> product) const {
   const std::vector<CellForces> forces = ForcesOf(velocity_of);
-  team_->For(places_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  team_->For(places_.size(), kStiffnessGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       product.segment<3>(static_cast<Eigen::Index>(3 * n)) += SumAt(places_[n], forces);
     }
@@ -153,7 +153,7 @@ void ElasticStiffness::AddPrescribedImpulses(const std::vector<Vec3>& velocity, 
 
 Eigen::VectorXd ElasticStiffness::Diagonal() const {
   Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * places_.size()));
-  team_->For(places_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  team_->For(places_.size(), kStiffnessGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       for (const Place& place : places_[n]) {
         const Cell& cell = cells_[place.cell];

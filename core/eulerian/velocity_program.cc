@@ -14,7 +14,7 @@ namespace fascicle {
 namespace {
 
 constexpr double kTolerance = 1e-7;
-constexpr std::size_t kGrain = 64;
+constexpr std::size_t kProgramGrain = 64;
 // Number of cells along each axis whose pressures are corrected together.
 constexpr std::int32_t kGroup = 4;
 // Largest relative change of a cell's volume in a step; the remaining error of the map is corrected later.
@@ -64,7 +64,7 @@ BlockFluxes Fluxes(const EulerianBody& body, const EulerianCells& cells, const N
                    const CellBlocks& blocks, ThreadTeam& team) {
   BlockFluxes fluxes;
   fluxes.size.resize(blocks.count());
-  team.For(blocks.count(), kGrain, [&](std::size_t begin, std::size_t end) {
+  team.For(blocks.count(), kProgramGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) fluxes.size[b] = MostNodes(body.grid, roles, blocks[b]);
   });
   fluxes.begin.resize(blocks.count());
@@ -72,7 +72,7 @@ BlockFluxes Fluxes(const EulerianBody& body, const EulerianCells& cells, const N
   // Left uninitialized, so that page faults are taken in parallel.
   fluxes.parts =
       std::make_unique_for_overwrite<NodeFlux[]>(blocks.count() == 0 ? 0 : fluxes.begin.back() + fluxes.size.back());
-  team.For(blocks.count(), kGrain, [&](std::size_t begin, std::size_t end) {
+  team.For(blocks.count(), kProgramGrain, [&](std::size_t begin, std::size_t end) {
     CellFluxes own;
     for (std::size_t b = begin; b < end; ++b) {
       own.clear();
@@ -124,7 +124,7 @@ VelocityProgram::Block::Block(const Part& p, int node, int row, double dt, Threa
   }
   of_block.resize(fluxes.count());
   free_nodes.resize(fluxes.count());
-  team.For(fluxes.count(), kGrain, [&](std::size_t begin, std::size_t end) {
+  team.For(fluxes.count(), kProgramGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       for (const NodeFlux& flux : fluxes[b]) free_nodes[b] += of_node[flux.node] >= 0 ? 1 : 0;
     }
@@ -140,7 +140,7 @@ void VelocityProgram::Block::AddVolumeRows(double dt, ThreadTeam& team, Constrai
   const int* const begin = all.G.outerIndexPtr();
   int* const column = all.G.innerIndexPtr();
   double* const value = all.G.valuePtr();
-  team.For(fluxes.count(), kGrain, [&](std::size_t first, std::size_t last) {
+  team.For(fluxes.count(), kProgramGrain, [&](std::size_t first, std::size_t last) {
     for (std::size_t b = first; b < last; ++b) {
       if (of_block[b] < 0) continue;
       const int row = first_row + of_block[b];
@@ -243,7 +243,7 @@ void VelocityProgram::SetMasses(QuadraticProgram& problem) const {
   Eigen::VectorXd mass(3 * nodes_);
   for (const auto& block : blocks_) {
     const std::vector<double>& of_body = block->part.forces->mass;
-    team_.For(of_body.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    team_.For(of_body.size(), kProgramGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
         if (block->of_node[n] < 0) continue;
         const int number = 3 * (block->first_node + block->of_node[n]);
@@ -309,7 +309,7 @@ void VelocityProgram::TakeBody(std::size_t body, std::vector<Vec3>& velocity, st
                                std::vector<Vec3>& impulses) const {
   const Block& block = *blocks_[body];
   if (block.nodes == 0) return;
-  team_.For(velocity.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  team_.For(velocity.size(), kProgramGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       if (block.of_node[n] >= 0) velocity[n] = solution_.v.segment<3>(3 * (block.first_node + block.of_node[n]));
     }

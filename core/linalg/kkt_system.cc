@@ -10,7 +10,7 @@
 namespace fascicle {
 namespace {
 
-constexpr double kRegularization = 1e-12;
+constexpr double kPressureRegularization = 1e-12;
 constexpr int kDirectRefinements = 3;
 // MINRES measures the residual in another norm than IsGood, so it may have to solve again for the remaining residual.
 constexpr int kMostRefinements = 6;
@@ -86,7 +86,7 @@ KktSystem::KktSystem(const QuadraticProgram& problem, const std::vector<bool>& a
     }
   };
   InRanges(team, static_cast<std::size_t>(G_->rows()), kRowGrain, rows_of_schur);
-  regularization_ = kRegularization * schur_;
+  regularization_ = kPressureRegularization * schur_;
 }
 
 Eigen::VectorXd KktSystem::Side() const {

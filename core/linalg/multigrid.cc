@@ -21,7 +21,7 @@ constexpr double kMostSpread = 3000;
 constexpr int kPowerIterations = 12;
 constexpr float kEigenvalueMargin = 1.15f;
 // Added to the coarsest diagonal, relative to it, for rotations that have no stiffness.
-constexpr double kRegularization = 1e-9;
+constexpr double kCoarseRegularization = 1e-9;
 
 // A pseudorandom vector, the same every time.
 Field StartVector(std::size_t size) {
@@ -201,7 +201,7 @@ bool Multigrid::FactorCoarsest(const BlockValues& values) {
             columns.push_back(static_cast<std::int32_t>(3 * j + b));
           }
           const bool diagonal = i == j && a == b;
-          coarsest_values_.push_back(values[k](a, b) * (diagonal ? 1 + kRegularization : 1));
+          coarsest_values_.push_back(values[k](a, b) * (diagonal ? 1 + kCoarseRegularization : 1));
         }
       }
     }

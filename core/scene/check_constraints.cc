@@ -25,7 +25,7 @@ bool Agree(const Constraint& a, const Constraint& b, int axis) {
          SameRotation(a.motion.rotation, b.motion.rotation);
 }
 
-void CheckBody(const Body& body, const std::string& path, Problems& problems) {
+void CheckConstraintsOf(const Body& body, const std::string& path, Problems& problems) {
   // Regions of a surface are volumes, which may contain none of its nodes.
   const bool volumes = std::holds_alternative<SurfaceShape>(body.shape);
   std::map<std::pair<std::int32_t, int>, std::size_t> holder;  // the first constraint on a node and axis
@@ -60,7 +60,7 @@ void CheckBody(const Body& body, const std::string& path, Problems& problems) {
 
 void CheckConstraints(const Scene& scene, Problems& problems) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    CheckBody(scene.bodies[i], IndexPath("bodies", i), problems);
+    CheckConstraintsOf(scene.bodies[i], IndexPath("bodies", i), problems);
   }
 }
 

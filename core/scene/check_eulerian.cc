@@ -41,7 +41,7 @@ void CheckPlace(const Body& body, std::int32_t region, const std::string& path, 
   }
 }
 
-void CheckBody(const Body& body, const std::string& path, Problems& problems) {
+void CheckEulerianBody(const Body& body, const std::string& path, Problems& problems) {
   if (const std::optional<Plasticity>& plasticity = body.surface().plasticity) {
     CheckPlasticity(*plasticity, JoinPath(path, "plasticity"), problems);
   }
@@ -78,7 +78,7 @@ void CheckEulerian(const Scene& scene, Problems& problems) {
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (!std::holds_alternative<SurfaceShape>(scene.bodies[i].shape)) continue;
-    CheckBody(scene.bodies[i], IndexPath("bodies", i), problems);
+    CheckEulerianBody(scene.bodies[i], IndexPath("bodies", i), problems);
   }
   if (!scene.floors.empty()) {
     problems.Add("floors", "the eulerian method does not support floors", "omit them, or use the tet method");

@@ -8,7 +8,7 @@
 namespace fascicle {
 namespace {
 
-constexpr const char* kAxes[] = {"x", "y", "z"};
+constexpr const char* kAxisNames[] = {"x", "y", "z"};
 
 std::size_t NodeOf(const TetModel& model, const Probe& probe) {
   return model.bodies()[probe.body].node_begin + static_cast<std::size_t>(probe.node);
@@ -29,7 +29,7 @@ std::vector<SeriesInfo> SeriesOf(const TetModel& model) {
     series.push_back({"energy/contact", "J", "energy stored in contacts with floors"});
   }
   for (const Floor& floor : model.scene().floors) {
-    for (const char* axis : kAxes) {
+    for (const char* axis : kAxisNames) {
       series.push_back(
           {"floor/" + floor.name + "/" + axis, "N", "force of the floor on all bodies along " + std::string(axis)});
     }

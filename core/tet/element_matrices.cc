@@ -10,8 +10,8 @@
 namespace fascicle {
 namespace {
 
-ChunkTask<double> TaskOf(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
-                         std::span<const double> acting, const Chunk& chunk) {
+ChunkTask<double> MatrixTaskOf(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
+                               std::span<const double> acting, const Chunk& chunk) {
   ChunkTask<double> task = TaskOf<double>(model, chunk, model.chunks().node_sums);
   const TetBody& body = model.bodies()[model.groups()[chunk.group].body];
   task.x = Numbers(x);
@@ -158,7 +158,7 @@ ElementEvaluation EvaluateElements(const TetModel& model, const IncrementalPoten
       });
       return;
     }
-    ChunkTask<double> task = TaskOf(model, potential, x, acting, chunk);
+    ChunkTask<double> task = MatrixTaskOf(model, potential, x, acting, chunk);
     task.sums = Numbers(force);
     task.slot_sums = workspace.slot_sums.data();
     workspace.reports[c] = KernelsOf(model, workspace).forces(task);
@@ -196,7 +196,7 @@ void AssembleStiffness(const TetModel& model, const IncrementalPotential& potent
           }
         });
       } else {
-        KernelsOf(model, workspace).stiffness(TaskOf(model, potential, x, acting, chunk), blocks);
+        KernelsOf(model, workspace).stiffness(MatrixTaskOf(model, potential, x, acting, chunk), blocks);
       }
       for (std::size_t i = 0; i < targets.size(); ++i) {
         const Eigen::Map<const Mat3> block(&sums[9 * i]);

@@ -6,9 +6,9 @@
 namespace fascicle::server {
 namespace {
 
-constexpr int kApplicationId = 0x46534343;  // "FSCC"
+constexpr int kControlApplicationId = 0x46534343;  // "FSCC"
 
-constexpr std::array<const char*, 2> kFormats = {
+constexpr std::array<const char*, 2> kControlFormats = {
     // Format 1. The specification has its own table: it may be large, and an update of the job must not rewrite it.
     R"(CREATE TABLE jobs (
          id TEXT PRIMARY KEY NOT NULL,
@@ -87,7 +87,7 @@ struct ControlDatabase::Reader {
 };
 
 ControlDatabase::ControlDatabase(const std::string& path)
-    : database_(OpenFormatted(path, kApplicationId, kFormats)),
+    : database_(OpenFormatted(path, kControlApplicationId, kControlFormats)),
       find_request_(database_.Prepare("SELECT id FROM jobs WHERE request_id = ?")),
       insert_job_(database_.Prepare(std::string("INSERT INTO jobs (") + kColumns +
                                     ") VALUES (?,nullif(?,''),?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")),

@@ -10,11 +10,11 @@
 namespace fascicle::server {
 namespace {
 
-constexpr int kApplicationId = 0x46534346;  // "FSCF"
+constexpr int kFrameApplicationId = 0x46534346;  // "FSCF"
 // A chunk of a frame fills 32 pages. Larger pages make large blobs faster, but small frames larger.
 constexpr int kPageSize = 32768;
 
-constexpr std::array<const char*, 1> kFormats = {
+constexpr std::array<const char*, 1> kFrameFormats = {
     // Format 1.
     R"(CREATE TABLE frames (
          idx INTEGER PRIMARY KEY,
@@ -67,7 +67,7 @@ struct FrameDatabase::Reader {
 
 struct FrameDatabase::Connections {
   explicit Connections(const std::string& path)
-      : database(OpenFormatted(path, kApplicationId, kFormats, kPageSize)),
+      : database(OpenFormatted(path, kFrameApplicationId, kFrameFormats, kPageSize)),
         readers([path] { return std::make_unique<Reader>(path); }) {}
 
   Database database;

@@ -55,11 +55,11 @@ std::optional<Selector> TranslateSelector(const v1::Region& region, double metre
 }
 
 std::string Listed(const std::string& what, const std::set<std::int32_t>& tags) {
-  constexpr std::size_t kMaxListed = 20;
+  constexpr std::size_t kMaxTagsListed = 20;
   std::string hint = what + ": ";
   std::size_t listed = 0;
   for (const std::int32_t tag : tags) {
-    if (listed == kMaxListed) return hint + ", ...";
+    if (listed == kMaxTagsListed) return hint + ", ...";
     hint += (listed++ > 0 ? ", " : "") + std::to_string(tag);
   }
   return hint;

@@ -83,7 +83,7 @@ std::vector<Case> AllCases() {
   return cases;
 }
 
-class LawBattery : public testing::TestWithParam<Case> {
+class LawBattery : public ::testing::TestWithParam<Case> {
  protected:
   LawBattery()
       : values_(ParameterValues(*GetParam().law, GetParam().set)),
@@ -105,7 +105,7 @@ class LawBattery : public testing::TestWithParam<Case> {
               if (std::isnan(worst)) return worst;
             }
           }
-          RecordProperty("worst", testing::PrintToString(worst));
+          RecordProperty("worst", ::testing::PrintToString(worst));
           return worst;
         },
         material_);
@@ -268,7 +268,7 @@ TEST_P(LawBattery, NeverTrapsOnInvertedOrBrokenGradients) {
       material_);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllLaws, LawBattery, testing::ValuesIn(AllCases()), [](const auto& instance) {
+INSTANTIATE_TEST_SUITE_P(AllLaws, LawBattery, ::testing::ValuesIn(AllCases()), [](const auto& instance) {
   return std::string(instance.param.law->name) + "_" + std::to_string(instance.param.set);
 });
 

@@ -11,7 +11,7 @@ namespace {
 
 using namespace fascicle::testing;
 
-std::string NameOf(ElementOrder element) { return element == ElementOrder::kLinear ? "linear" : "quadratic"; }
+std::string ElementName(ElementOrder element) { return element == ElementOrder::kLinear ? "linear" : "quadratic"; }
 
 class RobustnessTest : public ::testing::TestWithParam<ElementOrder> {
  protected:
@@ -21,7 +21,7 @@ class RobustnessTest : public ::testing::TestWithParam<ElementOrder> {
   static void Finish(SteppedRun& run, const std::string& what) {
     const bool arrived = run.To(1);
     std::printf("%s, %s: %lld steps, %lld iterations, smallest ratio %.3f%s\n", what.c_str(),
-                NameOf(run.model.order()).c_str(), static_cast<long long>(run.state.step),
+                ElementName(run.model.order()).c_str(), static_cast<long long>(run.state.step),
                 static_cast<long long>(run.state.iterations), run.state.smallest_ratio, arrived ? "" : ": FAILED");
     ASSERT_TRUE(arrived) << what << " stopped at " << run.state.time;
     EXPECT_LT(run.solver.EquilibriumResidual(run.state), 1e-6) << what;
@@ -65,7 +65,7 @@ TEST_P(RobustnessTest, CompressedCubes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, RobustnessTest, ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic),
-                         [](const auto& element) { return NameOf(element.param); });
+                         [](const auto& element) { return ElementName(element.param); });
 
 }  // namespace
 }  // namespace fascicle

@@ -13,7 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 
 // A soft cube, given as a surface file, that hangs by its upper side in a plane force field: `frames` frames of 2 ms.
-std::string SceneText(int frames) {
+std::string EulerianSceneText(int frames) {
   return R"({"bodies": [{"name": "cube", "unit": "mm", "mesh": {"surface": {"path": "cube.obj"}},
     "material": {"neo_hookean": {"young_modulus": 5000}},
     "regions": [{"name": "top", "box": {"min": [0, 0, 50], "max": [60, 60, 60]}}],
@@ -38,13 +38,15 @@ class EulerianTest : public ::testing::Test {
   DigestJob job_;
 };
 
-TEST_F(EulerianTest, SameDigestsAsRunAlsoWhenKilled) { job_.ExpectSameDigestsAsRunAlsoWhenKilled(SceneText(15), 15); }
+TEST_F(EulerianTest, SameDigestsAsRunAlsoWhenKilled) {
+  job_.ExpectSameDigestsAsRunAlsoWhenKilled(EulerianSceneText(15), 15);
+}
 
-TEST_F(EulerianTest, CanBeCancelled) { job_.ExpectCanBeCancelled(SceneText(50000)); }
+TEST_F(EulerianTest, CanBeCancelled) { job_.ExpectCanBeCancelled(EulerianSceneText(50000)); }
 
 TEST_F(EulerianTest, IsExportedAndDrawn) {
   job_.StartServer();
-  const std::string job = job_.Submit(SceneText(2));
+  const std::string job = job_.Submit(EulerianSceneText(2));
   EXPECT_EQ(job_.Call({"watch", job}).exit_code, 0);
   EXPECT_EQ(job_.Call({"export", job, "--out", folder() / "out"}).exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder() / "out/frames/cube_000002.vtu"));
@@ -68,7 +70,7 @@ TEST_F(EulerianTest, IsExportedAndDrawn) {
 }
 
 TEST_F(EulerianTest, SettingsCanBeChangedOnTheWay) {
-  WriteFile(folder() / "scene.json", SceneText(2));
+  WriteFile(folder() / "scene.json", EulerianSceneText(2));
   const auto digests = [&](const std::vector<std::string>& more) {
     std::vector<std::string> command = {Program("fascicle"), "run", folder() / "scene.json", "--digests"};
     command.insert(command.end(), more.begin(), more.end());

@@ -70,7 +70,7 @@ std::string NoticesOf(const ImportedScene& imported) {
   return text;
 }
 
-TetMesh MeshOf(const ImportedScene& imported, int body = 0) {
+TetMesh ImportedMeshOf(const ImportedScene& imported, int body = 0) {
   Problems problems;
   const std::string& name = imported.scene.bodies(body).mesh().file().path();
   for (const client::ImportedFile& file : imported.files) {
@@ -103,7 +103,7 @@ TEST(FebioUnitsTest, ScaleStressesLengthsAndForces) {
     EXPECT_NEAR(body.material().neo_hookean().young_modulus(), e.modulus, 1e-12 * e.modulus);
     EXPECT_NEAR(body.constraints(1).motion().translation(0).curve().values(1), e.displacement, 1e-12 * e.displacement);
     EXPECT_NEAR(body.loads(0).nodal_force().total(1), e.force, 1e-12 * e.force);
-    EXPECT_EQ(MeshOf(imported).nodes[1][0], e.coordinate);
+    EXPECT_EQ(ImportedMeshOf(imported).nodes[1][0], e.coordinate);
   }
 }
 
@@ -137,7 +137,7 @@ TEST(FebioUnitsTest, MicronsBecomeMillimetres) {
       "<node id=\"4\">0,0,500</node><node id=\"5\">500,500,500</node>";
   const ImportedScene imported = Import(pieces, options);
   EXPECT_EQ(imported.scene.bodies(0).unit(), v1::LENGTH_UNIT_MM);
-  EXPECT_NEAR(MeshOf(imported).nodes[1][0], 0.5, 1e-15);
+  EXPECT_NEAR(ImportedMeshOf(imported).nodes[1][0], 0.5, 1e-15);
   EXPECT_NEAR(imported.scene.bodies(0).material().neo_hookean().young_modulus(), 1e3, 1e-9);
 }
 
@@ -226,7 +226,7 @@ TEST(FebioMaterialTest, TendonAndMuscleInOneBody) {
   // The region's tag is that of the second tetrahedron.
   const auto& region = body.regions(0);
   EXPECT_EQ(region.name(), "end");
-  EXPECT_THAT(MeshOf(imported).tetrahedron_tags, ElementsAre(1, region.physical_tag()));
+  EXPECT_THAT(ImportedMeshOf(imported).tetrahedron_tags, ElementsAre(1, region.physical_tag()));
   // Fixed from the end of the first step on.
   EXPECT_THAT(body.activation().times(), ElementsAre(0, 0.25));
   EXPECT_THAT(body.activation().values(), ElementsAre(0, 0.5));
@@ -315,7 +315,7 @@ TEST(FebioLoadTest, NodeSetsMayBeSurfacesAndParts) {
       "<bc type=\"zero displacement\" node_set=\"@surface:f\"><x_dof>1</x_dof></bc>"
       "<bc type=\"zero displacement\" node_set=\"@elem_set:p\"><y_dof>1</y_dof></bc>";
   const ImportedScene imported = Import(pieces);
-  const TetMesh mesh = MeshOf(imported);
+  const TetMesh mesh = ImportedMeshOf(imported);
   const auto count = [&](int constraint) {
     const std::string& name = imported.scene.bodies(0).constraints(constraint).region();
     for (const v1::Region& region : imported.scene.bodies(0).regions()) {
@@ -440,7 +440,7 @@ TEST(FebioMeshTest, PartsThatShareNoFaceAreBodies) {
   const ImportedScene imported = Import(pieces);
   ASSERT_EQ(imported.scene.bodies_size(), 2);
   EXPECT_EQ(imported.scene.bodies(1).name(), "q_2");
-  EXPECT_EQ(MeshOf(imported, 1).nodes.size(), 4u);
+  EXPECT_EQ(ImportedMeshOf(imported, 1).nodes.size(), 4u);
   // Each body gets its fraction of the forces.
   EXPECT_THAT(imported.scene.bodies(0).loads(0).nodal_force().total(), ElementsAre(0, 4, 0));
   EXPECT_THAT(imported.scene.bodies(1).loads(0).nodal_force().total(), ElementsAre(0, 2, 0));
@@ -458,7 +458,7 @@ TEST(FebioMeshTest, RigidPartsAndShellsAreLeftOut) {
   pieces.domains += "<SolidDomain name=\"b\" mat=\"bone\"/><ShellDomain name=\"skin\" mat=\"m\"/>";
   pieces.boundary += "<bc type=\"zero displacement\" node_set=\"t\"><z_dof>1</z_dof></bc>";
   const ImportedScene imported = Import(pieces);
-  EXPECT_EQ(MeshOf(imported).tetrahedra.size(), 1u);
+  EXPECT_EQ(ImportedMeshOf(imported).tetrahedra.size(), 1u);
   const std::string notices = NoticesOf(imported);
   EXPECT_THAT(notices, HasSubstr("MeshDomains/SolidDomain `b`: a rigid body"));
   EXPECT_THAT(notices, HasSubstr("Mesh/Elements `skin`: elements of type `tri3` have no volume"));
@@ -488,7 +488,7 @@ TEST(FebioMeshTest, HexahedraWedgesAndPyramidsAreSplit) {
   options.split_hexahedra = true;
   const ImportedScene imported = Import(pieces, options);
   ASSERT_EQ(imported.scene.bodies_size(), 1);
-  const TetMesh mesh = MeshOf(imported);
+  const TetMesh mesh = ImportedMeshOf(imported);
   EXPECT_EQ(mesh.tetrahedra.size(), 6u + 3u + 2u);
   EXPECT_NEAR(TotalVolume(mesh), 1000 + 500 + 1000.0 / 3, 1e-9);
   // Ten outer squares of two triangles each, and six triangles: no face inside is left unmatched.
@@ -519,7 +519,7 @@ TEST(FebioImportTest, AModelWithMostOfWhatThereIs) {
   const v1::Body& body = imported->scene.bodies(0);
   EXPECT_EQ(body.loads_size(), 3);
   EXPECT_EQ(body.constraints_size(), 2);
-  EXPECT_EQ(MeshOf(*imported).tetrahedra.size(), 6u + 3u + 1u);
+  EXPECT_EQ(ImportedMeshOf(*imported).tetrahedra.size(), 6u + 3u + 1u);
   EXPECT_THAT(NoticesOf(*imported), HasSubstr(": Contact"));
 }
 

@@ -13,7 +13,7 @@ namespace fascicle {
 namespace {
 
 using std::chrono::milliseconds;
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 std::vector<std::string> NamesOf(const std::vector<ProfileStage>& stages) {
   std::vector<std::string> names;

@@ -9,7 +9,7 @@
 namespace fascicle {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 std::vector<std::pair<std::size_t, std::string_view>> LinesOf(std::string_view text) {
   std::vector<std::pair<std::size_t, std::string_view>> lines;

@@ -61,7 +61,7 @@ BsplineSolid BentSolid(const std::array<int, 3>& degrees = {3, 3, 3}) {
 
 // --- Basis -----------------------------------------------------------------------------------------------------------
 
-class BasisOfDegree : public testing::TestWithParam<int> {};
+class BasisOfDegree : public ::testing::TestWithParam<int> {};
 
 // Against Eigen's splines, an independent implementation.
 TEST_P(BasisOfDegree, AgreesWithEigen) {
@@ -109,7 +109,7 @@ TEST_P(BasisOfDegree, IsOneAtBothEndsAndSumsToOne) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BasisOfDegree, testing::Range(1, BsplineBasis::kMaxDegree + 1));
+INSTANTIATE_TEST_SUITE_P(All, BasisOfDegree, ::testing::Range(1, BsplineBasis::kMaxDegree + 1));
 
 TEST(BsplineBasis, SaysWhatIsWrong) {
   const auto size = [](std::int64_t degree, std::int64_t count) {
@@ -164,7 +164,7 @@ TEST(BsplineSolid, PassesThroughItsCornerControlPoints) {
 
 // --- Locator ---------------------------------------------------------------------------------------------------------
 
-class LocatorOfDegrees : public testing::TestWithParam<std::array<int, 3>> {};
+class LocatorOfDegrees : public ::testing::TestWithParam<std::array<int, 3>> {};
 
 TEST_P(LocatorOfDegrees, FindsTheParametersOfPointsInside) {
   const BsplineLocator locator(BentSolid(GetParam()));
@@ -183,12 +183,12 @@ TEST_P(LocatorOfDegrees, FindsTheParametersOfPointsInside) {
     ASSERT_TRUE(found[n].inside) << parameters[n].transpose();
     worst = std::max(worst, (found[n].parameters - parameters[n]).cwiseAbs().maxCoeff());
   }
-  RecordProperty("worst", testing::PrintToString(worst));
+  RecordProperty("worst", ::testing::PrintToString(worst));
   EXPECT_LE(worst, 1e-10);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LocatorOfDegrees,
-                         testing::Values(std::array{3, 3, 3}, std::array{2, 3, 5}, std::array{4, 5, 2}));
+                         ::testing::Values(std::array{3, 3, 3}, std::array{2, 3, 5}, std::array{4, 5, 2}));
 
 // Trilinear pieces: gradients jump between spans, which Newton's method must cross.
 TEST(BsplineLocator, CrossesTheKinksOfDegreeOne) {

@@ -135,7 +135,7 @@ std::vector<Malformed> MalformedFiles() {
   return files;
 }
 
-class MalformedMesh : public testing::TestWithParam<Malformed> {};
+class MalformedMesh : public ::testing::TestWithParam<Malformed> {};
 
 TEST_P(MalformedMesh, IsRefusedInWords) {
   const Malformed& file = GetParam();
@@ -143,10 +143,10 @@ TEST_P(MalformedMesh, IsRefusedInWords) {
   Problems problems;
   const auto mesh = ReadMesh({file.name, file.bytes, file.element_bytes}, problems);
   EXPECT_FALSE(mesh);
-  EXPECT_THAT(problems.ToString(), testing::HasSubstr(file.message));
+  EXPECT_THAT(problems.ToString(), ::testing::HasSubstr(file.message));
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, MalformedMesh, testing::ValuesIn(MalformedFiles()),
+INSTANTIATE_TEST_SUITE_P(Files, MalformedMesh, ::testing::ValuesIn(MalformedFiles()),
                          [](const auto& test) { return test.param.title; });
 
 // A header that announces 5 GB in the compressed blocks of a small file allocates almost nothing.
@@ -171,7 +171,7 @@ TEST(MalformedMeshTest, ClaimsOfHugeCompressedBlocks) {
     const std::string bytes = head + words(header) + tail;
     EXPECT_FALSE(ReadMesh({"m.vtu", bytes, ""}, problems));
     EXPECT_EQ(problems.count(), 1u) << problems.ToString();
-    EXPECT_THAT(problems.ToString(), testing::HasSubstr("the array `Points` "));
+    EXPECT_THAT(problems.ToString(), ::testing::HasSubstr("the array `Points` "));
   }
 }
 

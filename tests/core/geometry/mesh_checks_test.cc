@@ -13,7 +13,7 @@
 namespace fascicle {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TetMesh GoodMesh() { return MakeBox({0, 0, 0}, {0.2, 0.1, 0.1}, {4, 2, 2}); }
 
@@ -92,7 +92,7 @@ TEST(CheckMeshTest, Degenerate) {
   mesh.nodes[3].z() = -1e-3;  // thin, but not flat
   Problems problems;
   CheckMesh(mesh, problems);
-  EXPECT_THAT(problems.ToString(), testing::Not(HasSubstr("degenerate")));
+  EXPECT_THAT(problems.ToString(), ::testing::Not(HasSubstr("degenerate")));
 }
 
 // A long needle is not a sliver: its smallest height is in proportion to its thickness.

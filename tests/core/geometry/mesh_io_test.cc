@@ -27,7 +27,7 @@ void ExpectSampleMesh(const TetMesh& mesh, bool with_triangles) {
   EXPECT_EQ(mesh.triangle_tags, (std::vector<std::int32_t>{7}));
 }
 
-class EverySample : public testing::TestWithParam<MeshSample> {};
+class EverySample : public ::testing::TestWithParam<MeshSample> {};
 
 TEST_P(EverySample, IsRead) {
   const MeshSample& sample = GetParam();
@@ -103,7 +103,7 @@ TEST_P(EverySample, WindowsLineEnds) {
   ExpectSampleMesh(*mesh, !sample.name.ends_with(".node"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, EverySample, testing::ValuesIn(MeshSamples()), [](const auto& test) {
+INSTANTIATE_TEST_SUITE_P(Formats, EverySample, ::testing::ValuesIn(MeshSamples()), [](const auto& test) {
   std::string name = test.param.name;
   std::replace(name.begin(), name.end(), '.', '_');
   return name;

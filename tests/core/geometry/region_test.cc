@@ -33,7 +33,7 @@ void ExpectSortedAndComplete(const Region& region) {
   }
 }
 
-class RegionTest : public testing::Test {
+class RegionTest : public ::testing::Test {
  protected:
   Region Select(const Selector& selector) const {
     Region region = SelectRegion(mesh_, BoundaryTriangles(mesh_), "part", selector);
@@ -156,7 +156,7 @@ TEST_F(RegionTest, SideOfASphereIsACap) {
   for (const std::int32_t n : cap.nodes) EXPECT_LT(sphere.nodes[n].y(), -std::cos(0.6));
 }
 
-class TagRegionTest : public testing::Test {
+class TagRegionTest : public ::testing::Test {
  protected:
   Region Select(std::int32_t tag) { return SelectRegion(mesh_, BoundaryTriangles(mesh_), "tagged", TagSelector{tag}); }
   TetMesh mesh_ = [] {

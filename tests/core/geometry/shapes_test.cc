@@ -73,8 +73,8 @@ TEST(BoxTest, FillsItsBounds) {
 // The angles of round shapes do not get worse with refinement.
 constexpr double kSmallestAngle = 16 * kDegree;
 
-class RoundShapes : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Divisions, RoundShapes, testing::Values(2, 4, 6, 12));
+class RoundShapes : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Divisions, RoundShapes, ::testing::Values(2, 4, 6, 12));
 
 // Nodes lie on the surface and chords inside of it: a polygon of 4n corners in a unit circle has the area 2 n sin(pi /
 // (2n)), and the volume follows exactly where the radius is constant.

@@ -24,7 +24,7 @@ SurfaceReport Repair(TriangleMesh& surface, double largest_hole = 0.5) {
   return report;
 }
 
-std::string ProblemsOf(TriangleMesh surface, double largest_hole = 0.5) {
+std::string RepairProblemsOf(TriangleMesh surface, double largest_hole = 0.5) {
   Problems problems;
   RepairSurface(surface, largest_hole, problems);
   EXPECT_FALSE(problems.empty());
@@ -103,7 +103,7 @@ TEST(SurfaceRepairTest, FillsAFlatHoleExactly) {
 }
 
 TEST(SurfaceRepairTest, RefusesALargeHoleAndSaysWhere) {
-  const std::string problems = ProblemsOf(WithHole(Sphere(), {0, 0, 1}, 0.6));
+  const std::string problems = RepairProblemsOf(WithHole(Sphere(), {0, 0, 1}, 0.6));
   EXPECT_THAT(problems, AllOf(HasSubstr("the surface has a hole at ("), HasSubstr("edges")));
 }
 
@@ -143,7 +143,7 @@ TEST(SurfaceRepairTest, RefusesAOneSidedSurface) {
     strip.triangles.push_back({a, b, c});
     strip.triangles.push_back({c, b, d});
   }
-  EXPECT_THAT(ProblemsOf(strip), HasSubstr("one-sided"));
+  EXPECT_THAT(RepairProblemsOf(strip), HasSubstr("one-sided"));
 }
 
 TEST(SurfaceRepairTest, RefusesASheetThatHangsOnTheSurface) {
@@ -153,7 +153,7 @@ TEST(SurfaceRepairTest, RefusesASheetThatHangsOnTheSurface) {
   surface.nodes.push_back({0.5, -1, 0});
   surface.triangles.push_back({static_cast<std::int32_t>(corner), static_cast<std::int32_t>(next),
                                static_cast<std::int32_t>(surface.nodes.size() - 1)});
-  EXPECT_THAT(ProblemsOf(surface, 0.1), HasSubstr("three or more triangles"));
+  EXPECT_THAT(RepairProblemsOf(surface, 0.1), HasSubstr("three or more triangles"));
 }
 
 TEST(SurfaceRepairTest, SaysWhereASurfaceCutsItself) {
@@ -166,9 +166,10 @@ TEST(SurfaceRepairTest, SaysWhereASurfaceCutsItself) {
 }
 
 TEST(SurfaceRepairTest, RefusesWhatHasNoArea) {
-  EXPECT_THAT(ProblemsOf({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}), HasSubstr("no triangles with an area"));
+  EXPECT_THAT(RepairProblemsOf({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}),
+              HasSubstr("no triangles with an area"));
   // Back to back.
-  EXPECT_THAT(ProblemsOf({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}}), HasSubstr("no triangles"));
+  EXPECT_THAT(RepairProblemsOf({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}}), HasSubstr("no triangles"));
 }
 
 }  // namespace

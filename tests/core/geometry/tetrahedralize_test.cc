@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 MeshingResult Mesh(TriangleMesh surface, std::int64_t tetrahedra, double size = 0, int threads = 1) {
   ThreadTeam team(threads);
@@ -27,7 +27,7 @@ MeshingResult Mesh(TriangleMesh surface, std::int64_t tetrahedra, double size = 
   return result ? std::move(*result) : MeshingResult{};
 }
 
-std::string ProblemsOf(TriangleMesh surface, double size = 0) {
+std::string MeshingProblemsOf(TriangleMesh surface, double size = 0) {
   ThreadTeam team(1);
   Problems problems;
   MeshingOptions options;
@@ -51,9 +51,9 @@ TEST_P(ClosedForms, HaveTheirVolumeAndGoodAngles) {
   const MeshingReport& report = result.report;
   // A lattice cannot have a number of tetrahedra between these two of a box.
   EXPECT_NEAR(static_cast<double>(result.mesh.tetrahedra.size()) / 6000, 1, form.name == "box" ? 0.1 : 0.05);
-  EXPECT_GT(report.angles.smallest, 14 * kDegree);
-  EXPECT_GT(report.angles.median, 40 * kDegree);
-  EXPECT_LT(report.angles.largest, 165 * kDegree);
+  EXPECT_GT(report.angles.smallest, 14 * kRadiansPerDegree);
+  EXPECT_GT(report.angles.median, 40 * kRadiansPerDegree);
+  EXPECT_LT(report.angles.largest, 165 * kRadiansPerDegree);
   // The surface's triangles themselves enclose 0.3 % less than the round shapes.
   EXPECT_NEAR(report.volume / form.volume, 1, 5e-3);
   EXPECT_NEAR(report.VolumeError(), 0, 1e-4);
@@ -136,22 +136,23 @@ TEST(TetrahedralizeTest, CavitiesStayEmpty) {
 
 TEST(TetrahedralizeTest, RefusesSeveralBodies) {
   const TriangleMesh sphere = SurfaceOf(MakeSphere(1, 8));
-  EXPECT_THAT(ProblemsOf(Joined(sphere, Moved(sphere, {3, 0, 0}))), HasSubstr("more than one body"));
+  EXPECT_THAT(MeshingProblemsOf(Joined(sphere, Moved(sphere, {3, 0, 0}))), HasSubstr("more than one body"));
 }
 
 // Two bodies that overlap: the volume inside of both counts twice.
 TEST(TetrahedralizeTest, RefusesSurfacesThatCutThemselvesDeeply) {
   const TriangleMesh sphere = SurfaceOf(MakeSphere(1, 8));
-  const std::string problems = ProblemsOf(Joined(sphere, Moved(sphere, {1.03, 0.02, 0.01})));
+  const std::string problems = MeshingProblemsOf(Joined(sphere, Moved(sphere, {1.03, 0.02, 0.01})));
   EXPECT_THAT(problems, HasSubstr("the surface intersects itself at (0.5"));
   EXPECT_THAT(problems, HasSubstr("pairs of triangles"));
 }
 
 TEST(TetrahedralizeTest, RefusesSizesThatMakeNoSense) {
   const TriangleMesh sphere = SurfaceOf(MakeSphere(1, 8));
-  EXPECT_THAT(ProblemsOf(sphere, 1e-4), HasSubstr("is the unit right?"));
-  EXPECT_THAT(ProblemsOf(sphere, 1e4), HasSubstr("too large for this surface"));
-  EXPECT_THAT(ProblemsOf({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}}}), HasSubstr("hole at"));
+  EXPECT_THAT(MeshingProblemsOf(sphere, 1e-4), HasSubstr("is the unit right?"));
+  EXPECT_THAT(MeshingProblemsOf(sphere, 1e4), HasSubstr("too large for this surface"));
+  EXPECT_THAT(MeshingProblemsOf({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}}}),
+              HasSubstr("hole at"));
 }
 
 }  // namespace

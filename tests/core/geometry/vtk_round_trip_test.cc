@@ -84,7 +84,7 @@ void ExpectSame(const std::string& name, const std::string& bytes, double tolera
 // [m]. Single precision has 24 bits; VTK prints numbers of ascii files with 6 (legacy) or 11 digits.
 double Tolerance(bool single_precision, bool ascii_digits) { return single_precision || ascii_digits ? 1e-6 : 0; }
 
-class Legacy : public testing::TestWithParam<std::tuple<int, int, bool>> {};
+class Legacy : public ::testing::TestWithParam<std::tuple<int, int, bool>> {};
 
 TEST_P(Legacy, IsReadBack) {
   const auto [version, file_type, single_precision] = GetParam();
@@ -100,13 +100,13 @@ TEST_P(Legacy, IsReadBack) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, Legacy,
-                         testing::Combine(testing::Values(vtkDataWriter::VTK_LEGACY_READER_VERSION_4_2,
-                                                          vtkDataWriter::VTK_LEGACY_READER_VERSION_5_1),
-                                          testing::Values(VTK_ASCII, VTK_BINARY), testing::Bool()));
+                         ::testing::Combine(::testing::Values(vtkDataWriter::VTK_LEGACY_READER_VERSION_4_2,
+                                                              vtkDataWriter::VTK_LEGACY_READER_VERSION_5_1),
+                                            ::testing::Values(VTK_ASCII, VTK_BINARY), ::testing::Bool()));
 
 // data mode, base64 in the appended part, compressor, header type, byte order, single precision
 using XmlWay = std::tuple<int, bool, int, int, int, bool>;
-class Xml : public testing::TestWithParam<XmlWay> {};
+class Xml : public ::testing::TestWithParam<XmlWay> {};
 
 TEST_P(Xml, IsReadBack) {
   const auto [mode, encode, compressor, header, order, single_precision] = GetParam();
@@ -127,10 +127,10 @@ TEST_P(Xml, IsReadBack) {
 
 INSTANTIATE_TEST_SUITE_P(
     Ways, Xml,
-    testing::Combine(testing::Values(vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended),
-                     testing::Bool(), testing::Values(vtkXMLWriter::NONE, vtkXMLWriter::ZLIB),
-                     testing::Values(vtkXMLWriter::UInt32, vtkXMLWriter::UInt64),
-                     testing::Values(vtkXMLWriter::LittleEndian, vtkXMLWriter::BigEndian), testing::Bool()));
+    ::testing::Combine(::testing::Values(vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended),
+                       ::testing::Bool(), ::testing::Values(vtkXMLWriter::NONE, vtkXMLWriter::ZLIB),
+                       ::testing::Values(vtkXMLWriter::UInt32, vtkXMLWriter::UInt64),
+                       ::testing::Values(vtkXMLWriter::LittleEndian, vtkXMLWriter::BigEndian), ::testing::Bool()));
 
 TEST(XmlTest, OtherCompressorsAreNamed) {
   vtkNew<vtkXMLUnstructuredGridWriter> writer;

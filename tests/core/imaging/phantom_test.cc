@@ -158,9 +158,9 @@ TEST(ArmPhantom, LevelsAreAsThePapersTable) {
   ASSERT_TRUE(staged);
   const std::vector<VoxelLevel> levels = MakeHierarchy(staged->grid, 0.5, 5);
   ASSERT_EQ(levels.size(), 5u);
-  constexpr double kVoxels[] = {116630, 14578, 1840}, kNodes[] = {128924, 17723, 2664};
+  constexpr double kPhantomVoxels[] = {116630, 14578, 1840}, kNodes[] = {128924, 17723, 2664};
   for (int l = 0; l < 3; ++l) {
-    EXPECT_NEAR(static_cast<double>(levels[l].voxels), kVoxels[l], 0.1 * kVoxels[l]) << l;
+    EXPECT_NEAR(static_cast<double>(levels[l].voxels), kPhantomVoxels[l], 0.1 * kPhantomVoxels[l]) << l;
     EXPECT_NEAR(static_cast<double>(levels[l].nodes), kNodes[l], 0.1 * kNodes[l]) << l;
   }
 }

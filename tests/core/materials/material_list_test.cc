@@ -15,8 +15,8 @@ namespace {
 TEST(Laws, AreThoseOfTheSceneInItsOrder) {
   std::vector<std::string_view> names;
   for (const LawInfo& law : Laws()) names.push_back(law.name);
-  EXPECT_THAT(names, testing::ElementsAre("linear_elastic", "st_venant_kirchhoff", "corotated_linear", "neo_hookean",
-                                          "mooney_rivlin", "muscle", "tendon", "trans_iso_mooney_rivlin"));
+  EXPECT_THAT(names, ::testing::ElementsAre("linear_elastic", "st_venant_kirchhoff", "corotated_linear", "neo_hookean",
+                                            "mooney_rivlin", "muscle", "tendon", "trans_iso_mooney_rivlin"));
 }
 
 TEST(Laws, AreFoundByName) {

@@ -10,7 +10,7 @@
 namespace fascicle {
 namespace {
 
-class RotationTest : public testing::Test {
+class RotationTest : public ::testing::Test {
  protected:
   Mat3 Random() {
     Mat3 a;

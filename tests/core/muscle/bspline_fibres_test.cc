@@ -22,6 +22,7 @@
 #include "core/geometry/shapes.h"
 #include "core/muscle/muscle_solid.h"
 #include "tests/support/files.h"
+#include "tests/support/nodes_where.h"
 #include "tests/support/paths.h"
 
 namespace fascicle {
@@ -32,14 +33,6 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 constexpr double kDegree = std::numbers::pi / 180;
-
-std::vector<std::int32_t> NodesWhere(const TetMesh& mesh, const auto& predicate) {
-  std::vector<std::int32_t> nodes;
-  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
-    if (predicate(mesh.nodes[n])) nodes.push_back(static_cast<std::int32_t>(n));
-  }
-  return nodes;
-}
 
 double AngleOfLines(const Vec3& a, const Vec3& b) { return std::acos(std::min(1.0, std::abs(a.dot(b)))); }
 

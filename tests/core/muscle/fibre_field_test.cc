@@ -18,6 +18,7 @@
 #include "core/geometry/region.h"
 #include "core/geometry/shapes.h"
 #include "tests/support/files.h"
+#include "tests/support/nodes_where.h"
 #include "tests/support/paths.h"
 
 namespace fascicle {
@@ -26,14 +27,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
-
-std::vector<std::int32_t> NodesWhere(const TetMesh& mesh, const auto& predicate) {
-  std::vector<std::int32_t> nodes;
-  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
-    if (predicate(mesh.nodes[n])) nodes.push_back(static_cast<std::int32_t>(n));
-  }
-  return nodes;
-}
 
 // --- Constant --------------------------------------------------------------------------------------------------------
 

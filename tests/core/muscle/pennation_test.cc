@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-class PennationTest : public testing::Test {
+class PennationTest : public ::testing::Test {
  protected:
   const TetMesh mesh_ = MakeBox(Vec3::Zero(), Vec3(1, 1, 2), {4, 3, 3});
   Problems problems_;

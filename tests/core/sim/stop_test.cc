@@ -21,7 +21,7 @@ Scene Endless(Scene scene, double frame_interval) {
   return scene;
 }
 
-Scene Beam(Stepping stepping) {
+Scene StoppedBeam(Stepping stepping) {
   Body body = BoxBody(Vec3(0.06, 0.02, 0.02), {6, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
   body.constraints.push_back(Fix(kX0));
   body.loads.push_back({kX1, Traction{Vec3(0, 0, -50)}, Curve{{0, 1, 2}, {0, 1, 0.5}}, {}});
@@ -96,11 +96,11 @@ TEST_P(StopTest, EndsWithinAStageAndCanBeRunOn) {
 }
 
 const StopCase kCases[] = {
-    {"explicit", [] { return Beam(Stepping::kExplicit); }, "step/elastic force", 20},
-    {"mixed", [] { return Beam(Stepping::kMixed); }, "step/damping", 20},
-    {"stable_step", [] { return Beam(Stepping::kExplicit); }, "step/stable step", 2},
-    {"newton", [] { return Beam(Stepping::kBackwardEuler); }, "step/Newton/iterative solve", 5},
-    {"assembly", [] { return Beam(Stepping::kQuasiStatic); }, "step/Newton/assembly", 3},
+    {"explicit", [] { return StoppedBeam(Stepping::kExplicit); }, "step/elastic force", 20},
+    {"mixed", [] { return StoppedBeam(Stepping::kMixed); }, "step/damping", 20},
+    {"stable_step", [] { return StoppedBeam(Stepping::kExplicit); }, "step/stable step", 2},
+    {"newton", [] { return StoppedBeam(Stepping::kBackwardEuler); }, "step/Newton/iterative solve", 5},
+    {"assembly", [] { return StoppedBeam(Stepping::kQuasiStatic); }, "step/Newton/assembly", 3},
     {"static_voxels", [] { return VoxelBar(VoxelStepping::kStatic); }, "step/static solve", 3},
     {"dynamic_voxels", [] { return VoxelBar(VoxelStepping::kDynamic); }, "step/dynamic solve", 3},
     {"eulerian", Block, "step/constraints", 5},
@@ -112,8 +112,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, StopTest, ::testing::ValuesIn(kCases),
 TEST(SetUpTest, EndsOnRequest) {
   std::stop_source stop;
   stop.request_stop();
-  for (const Scene& scene : {Beam(Stepping::kExplicit), Beam(Stepping::kQuasiStatic), VoxelBar(VoxelStepping::kDynamic),
-                             VoxelBar(VoxelStepping::kStatic), Block()}) {
+  for (const Scene& scene : {StoppedBeam(Stepping::kExplicit), StoppedBeam(Stepping::kQuasiStatic),
+                             VoxelBar(VoxelStepping::kDynamic), VoxelBar(VoxelStepping::kStatic), Block()}) {
     Profile profile;
     EXPECT_THROW(Simulation(std::make_shared<const Scene>(scene), 1, &profile, stop.get_token()), Stopped);
     EXPECT_EQ(CallsOf(profile, "initial state"), 0) << "the model was made";

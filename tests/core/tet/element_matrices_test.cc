@@ -13,8 +13,8 @@ namespace {
 using namespace fascicle::testing;
 
 // A potential with everything the kernels support: activation, rate, viscous increment, pressures of patches.
-struct Loaded : Setting {
-  Loaded(const Material& law, ElementOrder element, VolumeForm volume, int divisions)
+struct LoadedMatrix : Setting {
+  LoadedMatrix(const Material& law, ElementOrder element, VolumeForm volume, int divisions)
       : Setting(law, element, volume, divisions) {
     potential.drive = drive;
     potential.previous = &previous;
@@ -82,7 +82,7 @@ struct PointOracle {
 using Case = std::tuple<int, ElementOrder, VolumeForm>;
 class ElementMatricesTest : public ::testing::TestWithParam<Case> {
  protected:
-  Loaded s_{LawsOfKernels()[std::get<0>(GetParam())], std::get<1>(GetParam()), std::get<2>(GetParam()), 3};
+  LoadedMatrix s_{LawsOfKernels()[std::get<0>(GetParam())], std::get<1>(GetParam()), std::get<2>(GetParam()), 3};
 };
 
 TEST_P(ElementMatricesTest, EvaluationIsThatOfThePotentialAtEveryPoint) {
@@ -148,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, ElementMatricesTest,
                                             ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic),
                                             ::testing::Values(VolumeForm::kNodal, VolumeForm::kElement)));
 
-NodalVector Product(Loaded& s, const NodalVector& p) {
+NodalVector Product(LoadedMatrix& s, const NodalVector& p) {
   NodalVector product;
   Multiply(s.pattern, s.Stiffness(0), p, s.team, product);
   return product;
@@ -158,7 +158,7 @@ class DerivativesTest : public ::testing::TestWithParam<std::tuple<ElementOrder,
 
 TEST_P(DerivativesTest, BlocksAreThoseOfTheForce) {
   const auto [element, untangling] = GetParam();
-  Loaded s(LawsOfKernels()[5], element, VolumeForm::kNodal, 3);
+  LoadedMatrix s(LawsOfKernels()[5], element, VolumeForm::kNodal, 3);
   s.potential.untangling = untangling;
   if (untangling) std::fill(s.acting.begin(), s.acting.end(), 0.0);
   const NodalVector p = RandomVectors(s.x.size(), 11), product = Product(s, p);
@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(Potentials, DerivativesTest,
 class AssembleStiffnessTest : public ::testing::TestWithParam<ElementOrder> {};
 
 TEST_P(AssembleStiffnessTest, AddsEveryBlockInItsPlace) {
-  Loaded s(LawsOfKernels()[5], GetParam(), VolumeForm::kElement, GetParam() == ElementOrder::kLinear ? 11 : 6);
+  LoadedMatrix s(LawsOfKernels()[5], GetParam(), VolumeForm::kElement, GetParam() == ElementOrder::kLinear ? 11 : 6);
   ASSERT_GT(s.model.chunks().chunks.size(), 1u);
   std::vector<BlockValues> results;
   for (const int threads : {1, 2, 3}) {

@@ -46,7 +46,7 @@ Vec3 AreaVector(const NodalVector& points, const int face[3]) {
   return 0.5 * (points[face[1]] - points[face[0]]).cross(points[face[2]] - points[face[0]]);
 }
 
-double LargestDifference(const CornerValues& a, const CornerValues& b) {
+double LargestCornerDifference(const CornerValues& a, const CornerValues& b) {
   double largest = 0, scale = 0;
   for (int n = 0; n < 4; ++n) {
     largest = std::max(largest, (a[n] - b[n]).norm());
@@ -77,7 +77,7 @@ TEST_P(ElementTest, FaceAreaForm) {
     }
     by_faces[i] = -P * sum / 3;
   }
-  EXPECT_LT(LargestDifference(by_faces, Forces(P)), kRoundOff);
+  EXPECT_LT(LargestCornerDifference(by_faces, Forces(P)), kRoundOff);
 }
 
 // The same with Cauchy stress and the faces of the deformed tetrahedron.
@@ -92,7 +92,7 @@ TEST_P(ElementTest, CauchyForm) {
     }
     by_faces[i] = -sigma * sum / 3;
   }
-  EXPECT_LT(LargestDifference(by_faces, Forces(P)), kRoundOff);
+  EXPECT_LT(LargestCornerDifference(by_faces, Forces(P)), kRoundOff);
 }
 
 // Linear finite elements: f_a = -V P grad N_a, with N_a from N_a(X_b) = delta_ab.
@@ -103,7 +103,7 @@ TEST_P(ElementTest, LinearFiniteElements) {
   const Eigen::Matrix4d coefficients = vertices.inverse();  // column a: constant and gradient of N_a
   CornerValues by_gradients;
   for (int a = 0; a < 4; ++a) by_gradients[a] = -element_.V * P * coefficients.col(a).tail<3>();
-  EXPECT_LT(LargestDifference(by_gradients, Forces(P)), kRoundOff);
+  EXPECT_LT(LargestCornerDifference(by_gradients, Forces(P)), kRoundOff);
 }
 
 // f = -dW/dx. The St. Venant-Kirchhoff energy is a polynomial of degree four along any line, so that the five-point
@@ -124,7 +124,7 @@ TEST_P(ElementTest, MinusGradientOfEnergy) {
       by_difference[n][c] = -(8 * near - far) / (12 * h);
     }
   }
-  EXPECT_LT(LargestDifference(by_difference, Forces(law.Stress(element_.F, {}))), kRoundOff);
+  EXPECT_LT(LargestCornerDifference(by_difference, Forces(law.Stress(element_.F, {}))), kRoundOff);
 }
 
 // [Teran 2003, 3]: Dm^T G Dm = (Ds^T Ds - Dm^T Dm) / 2, compared through dot products of edges.

@@ -17,7 +17,7 @@ using testing::BoxGrid;
 using testing::SpongeGrid;
 
 constexpr double kDensity = 1060;
-const VoxelMaterial kMuscle = {3e4, 0.4};
+const VoxelMaterial kDynamicMuscle = {3e4, 0.4};
 
 bool HaveSameBits(const VoxelField<double>& a, const VoxelField<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
@@ -26,7 +26,7 @@ bool HaveSameBits(const VoxelField<double>& a, const VoxelField<double>& b) {
 // A cantilever, clamped at its left end.
 struct Cantilever {
   explicit Cantilever(const GridIndex& size, VoxelRotation rotation = VoxelRotation::kSmall,
-                      const VoxelMaterial& material = kMuscle)
+                      const VoxelMaterial& material = kDynamicMuscle)
       : grid(BoxGrid(size, Vec3::Constant(2e-3))),
         model(grid, {material}, Dilatation::kFull, rotation),
         supports({{NodesInBox(model.mesh(), {0, 0, 0}, {0, size[1], size[2]})}}),
@@ -64,7 +64,7 @@ TEST(LowestMode, IsThatOfABeam) {
 TEST(Dynamic, MassIsThatOfTheBody) {
   VoxelGrid grid = SpongeGrid({6, 5, 7}, {1e-3, 2e-3, 3e-3});
   KeepLargestIsland(grid);
-  const VoxelModel model(grid, {kMuscle, kMuscle}, Dilatation::kFull);
+  const VoxelModel model(grid, {kDynamicMuscle, kDynamicMuscle}, Dilatation::kFull);
   ThreadTeam team(1);
   const VoxelDynamicSolver solver(model, {}, {.density = kDensity, .time_step = 1e-3}, team);
   double mass = 0;

@@ -19,7 +19,7 @@ using testing::BoxGrid;
 using testing::RandomField;
 using testing::SpongeGrid;
 
-const VoxelMaterial kMuscle = {3e4, 0.4};
+const VoxelMaterial kRotatedMuscle = {3e4, 0.4};
 
 VoxelField<double> Times(double factor, VoxelField<double> u) {
   for (std::size_t k = 0; k < u.size(); ++k) u.data()[k] *= factor;
@@ -42,7 +42,7 @@ const Mat3 kQuarterAndMore = Eigen::AngleAxisd(2.3, Vec3(1, 2, -0.5).normalized(
 struct Sponge {
   explicit Sponge(Dilatation dilatation, const GridIndex& size = {9, 6, 7})
       : grid(SpongeGrid(size, {0.9e-3, 1.1e-3, 1.6e-3})),
-        model(grid, {kMuscle, {1e6, 0.3}}, dilatation, VoxelRotation::kLarge),
+        model(grid, {kRotatedMuscle, {1e6, 0.3}}, dilatation, VoxelRotation::kLarge),
         bricks(model.K()),
         R(model.mesh().voxels()),
         f(model.mesh().nodes()) {}
@@ -239,7 +239,7 @@ TEST(LargeRotation, CantileverBendsAsTheElastica) {
 // The clamp rotates by 120 degrees in steps, and the body follows without stress.
 TEST(LargeRotation, ATurnedClampTakesTheBodyAlong) {
   const VoxelGrid grid = BoxGrid({12, 4, 3}, {1e-3, 1.5e-3, 1e-3});
-  const VoxelModel model(grid, {kMuscle}, Dilatation::kMean, VoxelRotation::kLarge);
+  const VoxelModel model(grid, {kRotatedMuscle}, Dilatation::kMean, VoxelRotation::kLarge);
   ThreadTeam team(1);
   VoxelStaticSolver solver(model, {{NodesInBox(model.mesh(), {0, 0, 0}, {0, 4, 3})}}, team);
   VoxelField<double> none(model.mesh().nodes()), u = none;

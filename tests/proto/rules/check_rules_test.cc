@@ -11,7 +11,7 @@
 namespace fascicle {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 // The only problem at `path`, or an empty one.
 Problem At(const Problems& problems, const std::string& path) {

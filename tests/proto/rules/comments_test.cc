@@ -32,7 +32,7 @@ void CollectMessage(const Descriptor* message, std::vector<const Descriptor*>& m
   for (int i = 0; i < message->nested_type_count(); ++i) CollectMessage(message->nested_type(i), messages, enums);
 }
 
-class CommentsTest : public testing::Test {
+class CommentsTest : public ::testing::Test {
  protected:
   CommentsTest() {
     for (const auto* file :

@@ -59,7 +59,7 @@ TEST(JobIdGeneratorTest, DiffersBetweenProcessesAndThreads) {
   EXPECT_EQ(ids.size(), 2000u);
 }
 
-class EtaTest : public testing::Test {
+class EtaTest : public ::testing::Test {
  protected:
   // Adds samples every millisecond for `seconds`, at `speed` [1/s].
   void Run(double seconds, double speed) {

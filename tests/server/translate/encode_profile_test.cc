@@ -11,7 +11,7 @@
 namespace fascicle::server {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 void Sleep(Profile& profile, const char* outer, const char* inner = nullptr) {
   const StageTimer timer(&profile, outer);

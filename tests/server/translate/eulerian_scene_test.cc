@@ -11,7 +11,7 @@
 namespace fascicle::server {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 v1::Scene BlockScene() {
   return ParseText(R"(
@@ -56,7 +56,7 @@ Problems WithBlock(const std::string& text) {
   return ProblemsOf(scene);
 }
 
-Problems WithScene(const std::string& text) {
+Problems EulerianProblems(const std::string& text) {
   v1::Scene scene = BlockScene();
   EXPECT_TRUE(google::protobuf::TextFormat::MergeFromString(text, &scene)) << text;
   return ProblemsOf(scene);
@@ -230,7 +230,7 @@ TEST(EulerianScene, WhatTheMethodDoesNotKnow) {
                               region_activations { region: "end" curve { times: 0 values: 1 } })"),
                  "bodies[0].region_activations"),
               HasSubstr("no elements"));
-  EXPECT_THAT(At(WithScene("floors { name: 'ground' point: [0, 0, -0.1] normal: [0, 0, 1] }"), "floors"),
+  EXPECT_THAT(At(EulerianProblems("floors { name: 'ground' point: [0, 0, -0.1] normal: [0, 0, 1] }"), "floors"),
               HasSubstr("tet method"));
 }
 
@@ -250,13 +250,15 @@ TEST(EulerianScene, TagsTellNoPointsOfTheMaterial) {
 }
 
 TEST(EulerianScene, GridsThatCannotBe) {
-  EXPECT_THAT(At(WithScene("eulerian { cell_size: 1e-6 }"), "eulerian.cell_size"), HasSubstr("cells are too many"));
-  EXPECT_THAT(At(WithScene("eulerian { cell_size: 1e-300 }"), "eulerian.cell_size"), HasSubstr("cells are too many"));
-  EXPECT_THAT(At(WithScene("eulerian { cell_size: 0 }"), "eulerian.cell_size"), HasSubstr("missing or 0"));
-  EXPECT_THAT(At(WithScene("eulerian { lowest: [0.1, 0, 0] highest: [0, 1, 1] }"), "eulerian.lowest[0]"),
+  EXPECT_THAT(At(EulerianProblems("eulerian { cell_size: 1e-6 }"), "eulerian.cell_size"),
+              HasSubstr("cells are too many"));
+  EXPECT_THAT(At(EulerianProblems("eulerian { cell_size: 1e-300 }"), "eulerian.cell_size"),
+              HasSubstr("cells are too many"));
+  EXPECT_THAT(At(EulerianProblems("eulerian { cell_size: 0 }"), "eulerian.cell_size"), HasSubstr("missing or 0"));
+  EXPECT_THAT(At(EulerianProblems("eulerian { lowest: [0.1, 0, 0] highest: [0, 1, 1] }"), "eulerian.lowest[0]"),
               HasSubstr("swap lowest and highest"));
-  EXPECT_THAT(At(WithScene("eulerian { lowest: [0.1, 0, 0] }"), "eulerian.highest"), HasSubstr("both"));
-  EXPECT_THAT(At(WithScene("eulerian { lowest: [-1, -1, -1] highest: [0.1, 0.05, 0.1] }"), "bodies[0].mesh"),
+  EXPECT_THAT(At(EulerianProblems("eulerian { lowest: [0.1, 0, 0] }"), "eulerian.highest"), HasSubstr("both"));
+  EXPECT_THAT(At(EulerianProblems("eulerian { lowest: [-1, -1, -1] highest: [0.1, 0.05, 0.1] }"), "bodies[0].mesh"),
               HasSubstr("eulerian.lowest"));
   v1::Scene missing = BlockScene();
   missing.mutable_eulerian()->clear_cell_size();
@@ -270,7 +272,7 @@ TEST(EulerianScene, GridsThatCannotBe) {
 }
 
 TEST(EulerianScene, WrongNumbersAreNamed) {
-  const Problems problems = WithScene(R"(
+  const Problems problems = EulerianProblems(R"(
       squeezes { normal: [0, 0, 0] force_density: 1 } squeezes { normal: [1, 0, 0] force_density: -1 }
       squeezes { normal: [1, 0, 0] force_density: 1 scale { times: 0 values: 1e9 } }
       eulerian { stabilization: -1 margin: 0 })");

@@ -8,7 +8,7 @@
 namespace fascicle::server {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(JobCodec, DecodesTheSceneOfASpec) {
   const auto store = MakeMemoryStore();

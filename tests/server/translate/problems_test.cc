@@ -9,7 +9,7 @@
 namespace fascicle::server {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 // The problems of the box scene after merging `text` into its body.
 Problems WithBody(const std::string& text, const Files& files = {}) {

@@ -12,7 +12,7 @@
 namespace fascicle::server {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 TEST(TranslateScene, ConvertsLengthsOfABody) {
   v1::Scene wire = BoxScene();

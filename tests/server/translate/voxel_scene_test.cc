@@ -9,7 +9,7 @@
 namespace fascicle::server {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 v1::Scene VoxelBoxScene() {
   return ParseText(R"(
