@@ -32,7 +32,7 @@ class LazyCurve {
     ExtendTo(time);
     return is_complete_ && time >= fitter_.curve().end();
   }
-  // Frees the memory of what precedes a time.
+  // Frees the memory of points before a time.
   void DiscardBefore(double time) { fitter_.DiscardBefore(time); }
 
   void Save(ArchiveWriter& archive) const {

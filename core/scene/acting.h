@@ -61,7 +61,7 @@ inline constexpr auto kFieldNames<SternMuscle> = FieldNames("origin_distance", "
 template <>
 inline constexpr auto kFieldNames<SternDrive> = FieldNames("angle", "activation");
 
-// The pull of a muscle across a joint [N].
+// The force of a muscle across a joint [N].
 struct SternPull {
   SternMuscle muscle;
   SternDrive drive;

@@ -42,7 +42,7 @@ template <>
 inline constexpr auto kFieldNames<ActivationDynamics> = FieldNames("activation_time", "deactivation_time",
                                                                    "initial_activation");
 
-// What a muscle's activation follows.
+// The input of a muscle's activation dynamics.
 struct Excitation {
   Curve curve = Curve::Constant(0);  // in [0, 1]
   ActivationDynamics dynamics;

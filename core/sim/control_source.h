@@ -23,11 +23,11 @@ class ControlSource {
 
   // Whether all controls are constant from a time on [s].
   bool RestsAt(double time);
-  // Frees memory: no earlier time [s] will be evaluated.
+  // Frees memory; earlier times [s] must not be evaluated any more.
   void DiscardBefore(double time);
 
   void Save(ArchiveWriter& archive) const;
-  // Sets failed() of the archive when it is of another scene.
+  // Sets failed() of the archive if it belongs to another scene.
   void Load(ArchiveReader& archive);
 
  private:
