@@ -74,7 +74,6 @@ std::vector<char> DecodeFragments(const DicomData& data, const DicomElement& vox
     gdcm::DataElement element(gdcm::Tag(0x7fe0, 0x0010));
     element.SetVR(gdcm::VR::OB);
     element.SetValue(*fragments);
-    element.SetVLToUndefined();
     gdcm::Image image;
     image.SetNumberOfDimensions(size.frames > 1 ? 3 : 2);
     image.SetDimension(0, size.columns);

@@ -49,7 +49,7 @@ bool SquareAxes(VolumeImage& image, Problems& problems) {
     const Vec3 signs(1, (corner & 1) != 0 ? -1 : 1, (corner & 2) != 0 ? -1 : 1);
     moved = std::max(moved, (change * half.cwiseProduct(signs)).norm());
   }
-  constexpr double kMostMoved = 0.5, kRounding = 0.01;  // of the shortest edge of a voxel
+  constexpr double kMostMoved = 0.5, kRounding = 1e-3;  // of the shortest edge of a voxel
   std::ostringstream by;
   by.precision(3);
   by << moved * 1e3 << " mm";
@@ -104,9 +104,11 @@ std::optional<std::uint64_t> SizeOf(const std::filesystem::path& path, Problems&
 }
 
 std::string StartOf(const std::filesystem::path& path, std::size_t bytes) {
+  std::error_code error;
+  const std::uint64_t size = std::filesystem::file_size(path, error);
   std::ifstream in(path, std::ios::binary);
-  std::string start(bytes, '\0');
-  in.read(start.data(), static_cast<std::streamsize>(bytes));
+  std::string start(error ? 0 : std::min<std::uint64_t>(bytes, size), '\0');
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
   start.resize(static_cast<std::size_t>(in.gcount()));
   return start;
 }
@@ -169,7 +171,8 @@ bool CheckClaim(const VolumeClaim& claim, std::int64_t memory_limit, Problems& p
 bool CheckPlace(VolumeImage& image, Problems& problems) {
   if (!image.spacing.allFinite() || !(image.spacing.minCoeff() > 0)) {
     std::ostringstream message;
-    message << "the image's voxels have no volume: their spacing is " << image.spacing.transpose() * 1e3 << " mm";
+    message << "the image's voxels have no volume: their spacing is " << image.spacing[0] * 1e3 << " x "
+            << image.spacing[1] * 1e3 << " x " << image.spacing[2] * 1e3 << " mm";
     problems.Add("", message.str(), "all three must be above 0");
     return false;
   }

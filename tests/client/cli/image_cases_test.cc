@@ -45,7 +45,8 @@ TEST_F(ImageCasesTest, AreMeshedAtTheirPlaceAndSize) {
   int compared = 0;
   for (const std::string folder : {"nifti_place", "nifti_values", "nifti_units", "metaimage", "nrrd", "dicom"}) {
     std::ifstream in(CasesFolder() / folder / "expected.json");
-    for (const auto& [file, right] : json::parse(in).items()) {
+    const json expected = json::parse(in);
+    for (const auto& [file, right] : expected.items()) {
       const std::string name = folder + "/" + file;
       // Values of that series do not hit their label.
       if (!right.contains("volume") || !fs::exists(CasesFolder() / name) || name == "dicom/per_slice_slope") continue;
@@ -54,7 +55,7 @@ TEST_F(ImageCasesTest, AreMeshedAtTheirPlaceAndSize) {
       const json report = json::parse(made.out);
       const double volume = right["volume"];
       EXPECT_EQ(report["unit"], "mm") << name;
-      EXPECT_NEAR(report["voxel_volume"].get<double>() / volume, 1, 1e-5) << name;
+      EXPECT_NEAR(report["voxel_volume"].get<double>() / volume, 1, 1e-4) << name;
       EXPECT_NEAR(report["volume"].get<double>() / volume, 1, 0.02) << name;
       double off = 0;
       if (right.contains("lps")) {

@@ -62,7 +62,8 @@ TEST(ImageCases, HaveTheirVolumeCentreAndLabel) {
   int compared = 0, absent = 0;
   for (const std::string folder : kImageFolders) {
     std::ifstream in(CasesFolder() / folder / "expected.json");
-    for (const auto& [file, right] : nlohmann::json::parse(in).items()) {
+    const auto expected = nlohmann::json::parse(in);
+    for (const auto& [file, right] : expected.items()) {
       const std::string name = folder + "/" + file;
       if (!right.contains("volume")) continue;
       if (!std::filesystem::exists(CasesFolder() / name)) {
@@ -79,7 +80,7 @@ TEST(ImageCases, HaveTheirVolumeCentreAndLabel) {
       const BodyInImage body = Measure(*image, [&](float value) {
         return rounded ? std::abs(value - static_cast<float>(label)) < 0.5F : HasLabel(value, label);
       });
-      EXPECT_NEAR(body.volume / right["volume"].get<double>(), 1, 1e-5) << name;
+      EXPECT_NEAR(body.volume / right["volume"].get<double>(), 1, 1e-4) << name;
       ++compared;
       double error = 0;
       if (right.contains("lps")) {
@@ -104,12 +105,12 @@ TEST(ImageCases, AreRefusedWithTheCause) {
            {"truncated/cut.nii", "the file is too short"},
            {"truncated/cut.nii.gz", "incomplete or damaged"},
            {"truncated/raw_cut.mha", "the file is too short"},
-           {"nifti_place/zero_pixdim.nii", "no volume: their spacing is 0 0 0"},
+           {"nifti_place/zero_pixdim.nii", "no volume: their spacing is 0 x 0 x 0"},
            {"nifti_values/rgb.nii", "3 components"},
            {"nifti_values/four_d.nii", "3 volumes along its dimension 4"},
            {"metaimage/channels.mha", "3 components"},
            {"metaimage/ndims4_3.mha", "3 volumes along its dimension 4"},
-           {"nrrd/spacings_only_some.nrrd", "their spacing is 0.5 0.75 nan"},
+           {"nrrd/spacings_only_some.nrrd", "their spacing is 0.5 x 0.75 x nan"},
            {"nrrd/layers.seg.nrrd", "2 components"},
            {"dicom/missing_slice", "slices are missing"},
            {"dicom/scout_in_series", "scout.dcm has a different direction"},
@@ -147,7 +148,7 @@ TEST(ImageCases, NoteWhatWasDecided) {
     EXPECT_THAT(image->notes, ::testing::Contains(HasSubstr(one.note))) << one.name;
     const int label = std::string(one.name).starts_with("dicom") ? 100 : 1;
     EXPECT_NEAR(Measure(*image, [&](float value) { return HasLabel(value, label); }).volume, one.volume,
-                1e-5 * one.volume)
+                1e-4 * one.volume)
         << one.name;
   }
   Problems problems;
