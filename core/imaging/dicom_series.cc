@@ -27,7 +27,7 @@ struct Attribute {
 };
 constexpr Attribute kPosition = {0x00200032, 0x00209113, "ImagePositionPatient (0020,0032)"};
 constexpr Attribute kOrientation = {0x00200037, 0x00209116, "ImageOrientationPatient (0020,0037)"};
-constexpr Attribute kSpacing = {0x00280030, 0x00289110, "PixelSpacing (0028,0030)"};
+constexpr Attribute kPixelSpacing = {0x00280030, 0x00289110, "PixelSpacing (0028,0030)"};
 constexpr Attribute kThickness = {0x00180050, 0x00289110, "SliceThickness (0018,0050)"};
 constexpr Attribute kDistance = {0x00180088, 0x00289110, "SpacingBetweenSlices (0018,0088)"};
 constexpr Attribute kSlope = {0x00281053, 0x00289145, "RescaleSlope (0028,1053)"};
@@ -131,7 +131,7 @@ class FrameReader {
       if (!numbers) missing_[attribute.name].push_back(slice.name);
       return numbers;
     };
-    const auto spacing = require(kSpacing, 2), position = require(kPosition, 3), axes = require(kOrientation, 6);
+    const auto spacing = require(kPixelSpacing, 2), position = require(kPosition, 3), axes = require(kOrientation, 6);
     if (!spacing || !position || !axes) return false;
     // The distance of rows comes first.
     image.spacing = Vec3((*spacing)[1], (*spacing)[0], (*spacing)[1]) * kMillimetre;

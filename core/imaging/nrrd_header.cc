@@ -244,9 +244,8 @@ class NrrdHeader {
     if (const std::optional<Vec3> signs = SignsOf(space)) return signs;
     const bool of_scanner = lower == "scanner-xyz" || lower == "3d-right-handed" || lower == "3d-left-handed";
     if (of_scanner || space.empty()) {
-      layout_.image.notes.push_back(
-          (space.empty() ? std::string("the header names no space") : "the header's space is " + std::string(space)) +
-          ", which says nothing on the patient: positions are taken as left, posterior, superior");
+      const std::string says = space.empty() ? "the header names no space" : "its space is " + std::string(space);
+      layout_.image.notes.push_back(says + ": positions are taken as left, posterior, superior");
       return Vec3(1, 1, 1);
     }
     Refuse("its space is " + Quoted(space), "left-posterior-superior, right-anterior-superior, left-anterior-superior");

@@ -49,7 +49,7 @@ bool SquareAxes(VolumeImage& image, Problems& problems) {
     const Vec3 signs(1, (corner & 1) != 0 ? -1 : 1, (corner & 2) != 0 ? -1 : 1);
     moved = std::max(moved, (change * half.cwiseProduct(signs)).norm());
   }
-  constexpr double kMostMoved = 0.5, kRounding = 1e-3;  // of the shortest edge of a voxel
+  constexpr double kMostMoved = 0.5, kUntold = 1e-3;  // of the shortest edge of a voxel
   std::ostringstream by;
   by.precision(3);
   by << moved * 1e3 << " mm";
@@ -57,7 +57,7 @@ bool SquareAxes(VolumeImage& image, Problems& problems) {
     AddSheared(image, " (voxels would move by up to " + by.str() + ")", problems);
     return false;
   }
-  if (moved > kRounding * image.spacing.minCoeff()) {
+  if (moved > kUntold * image.spacing.minCoeff()) {
     image.notes.push_back("the image's axes are not quite at right angles: voxels are moved by up to " + by.str());
   }
   image.origin -= change * half;

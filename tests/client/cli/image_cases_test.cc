@@ -106,7 +106,7 @@ TEST_F(ImageCasesTest, NotesAreTold) {
   const Finished metres = Fascicle({"mesh", CasesFolder() / "nifti_units/metre.nii", "--label", "1", "--tets", "2000",
                                     "--unit", "m", "--json", "--out", folder_ / "metres.msh"});
   ASSERT_EQ(metres.exit_code, 0) << metres.err;
-  EXPECT_NEAR(json::parse(metres.out)["voxel_volume"].get<double>(), 630e-9, 1e-14);
+  EXPECT_NEAR(json::parse(metres.out)["voxel_volume"].get<double>(), 630e-9, 1e-12);
 }
 
 }  // namespace

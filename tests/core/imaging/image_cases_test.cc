@@ -139,7 +139,7 @@ TEST(ImageCases, NoteWhatWasDecided) {
                          {"nifti_place/sheared_0.01.nii", "not quite at right angles", 630},
                          {"nifti_units/unknown.nii", "does not say the unit of lengths: millimetres", 630},
                          {"metaimage/no_spacing.mha", "no ElementSpacing: voxels of 1 mm", 840},
-                         {"nrrd/scanner_xyz.nrrd", "the header's space is scanner-xyz", 630},
+                         {"nrrd/scanner_xyz.nrrd", "its space is scanner-xyz", 630},
                          {"nrrd/space_dimension.nrrd", "the header names no space", 630},
                          {"dicom/one_slice/one.dcm", "taken as thick as it states, 2.5 mm", 112.5}}) {
     Problems problems;
