@@ -179,8 +179,9 @@ void AddAsOptions(const Problems& found, Problems& problems) {
 
 void AddImageOptions(CLI::App& command, ImageOptions& options) {
   command
-      .add_option("IMAGE", options.files,
-                  "The scan: .mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz, .raw, or a DICOM series as its folder or files")
+      .add_option(
+          "IMAGE", options.files,
+          "The scan: .mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz, .hdr, .raw, or a DICOM series as its folder or files")
       ->required();
   CLI::Option* raw = command.add_option("--raw-size", options.raw_size, "For a .raw file: voxels along i, j, k")
                          ->type_name("NI,NJ,NK")
@@ -190,7 +191,8 @@ void AddImageOptions(CLI::App& command, ImageOptions& options) {
       ->needs(raw)
       ->group("Image");
   command.add_option("--raw-type", options.raw_type, "For a .raw file: type of its numbers")
-      ->check(CLI::IsMember({"uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"}))
+      ->check(CLI::IsMember(
+          {"uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64", "int64", "uint64"}))
       ->needs(raw)
       ->group("Image");
   command.add_flag("--raw-big-endian", options.raw_big_endian, "For a .raw file: big-endian numbers")

@@ -1,6 +1,8 @@
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -19,6 +21,8 @@
 #include "core/base/stop.h"
 #include "core/geometry/mesh_writer.h"
 #include "core/geometry/tetrahedralize.h"
+#include "core/imaging/labels.h"
+#include "core/imaging/volume_reader.h"
 
 namespace fascicle::client {
 namespace {
@@ -33,7 +37,7 @@ constexpr const char* kMeshExamples =
   fascicle mesh muscle.stl --out muscle.msh --region origin=end:0,0,1:20 --region insertion=end:0,0,-1:20 \
     --scene muscle.json                                       attached over 20 length units at both ends
   fascicle mesh muscle.stl --out muscle.msh --region top=side:0,0,1:30
-  fascicle mesh labels.mha --label 2 --out triceps.msh        the voxels with label 2 of a segmentation
+  fascicle mesh labels.mha --label 2 --out triceps.msh        the voxels with label 2 of a segmentation, in mm
 
 Reads .stl, .obj, .ply and .vtp. Small holes are closed; larger holes, self-intersections and surfaces around
 several bodies are refused with their location. Regions become physical tags, to which scenes refer. Ctrl-C stops the
@@ -181,26 +185,44 @@ void FailOn(const Problems& problems, const std::string& file) {
 struct Input {
   TriangleMesh surface;
   std::optional<double> voxel_volume;  // of a label image
+  std::vector<std::string> notes;
 };
+
+// The longest edge of the box around a surface.
+double LengthOf(const TriangleMesh& surface) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& node : surface.nodes) box.extend(node);
+  return box.sizes().maxCoeff();
+}
+
+// A label's surface in the unit of the command.
+void TakeLabel(LabelSurface label, const MeshOptions& options, Input& input) {
+  const double scale = MetresIn("mm") / MetresIn(options.unit);
+  input.surface = std::move(label.surface);
+  for (Vec3& node : input.surface.nodes) node *= scale;
+  input.voxel_volume = label.voxel_volume * std::pow(scale, 3);
+  input.notes = std::move(label.notes);
+  const std::string note = NoteOnSize(LengthOf(input.surface) * MetresIn(options.unit));
+  if (!note.empty()) input.notes.push_back(note);
+}
 
 Input ReadInput(const MeshOptions& options, const std::stop_token& stop, Problems& problems) {
   Input input;
-  const bool is_image = IsImageName(options.surface);
+  const bool is_image = IsImagePath(options.surface);
   if (is_image && !options.label) {
     problems.Add("--label", "is required for an image", "give the label of the body");
   }
   if (!is_image && options.label) {
-    problems.Add("--label", options.surface + " is not a label image", "images end in .mha, .mhd, .nii or .nii.gz");
+    problems.Add("--label", options.surface + " is not a label image",
+                 "an image is a DICOM folder, or ends in " + KnownVolumeExtensions());
   }
-  const std::optional<std::string> bytes = ReadInputFile(options.surface, problems);
-  if (!bytes) return input;
   if (!is_image) {
+    const std::optional<std::string> bytes = ReadInputFile(options.surface, problems);
+    if (!bytes) return input;
     if (auto surface = ReadSurface(options.surface, *bytes, problems, stop)) input.surface = std::move(*surface);
   } else if (options.label) {
     auto label = ReadLabelSurface(options.surface, *options.label, options.smoothing, stop, problems);
-    if (!label) return input;
-    input.surface = std::move(label->surface);
-    input.voxel_volume = label->voxel_volume;
+    if (label) TakeLabel(std::move(*label), options, input);
   }
   return input;
 }
@@ -248,8 +270,10 @@ int MakeMesh(const MeshOptions& options, const Context& context) {
   if (context.json) {
     Json report = ReportJson(options, *result, regions);
     if (input.voxel_volume) report["voxel_volume"] = *input.voxel_volume;
+    if (!input.notes.empty()) report["notes"] = input.notes;
     PrintJson(report);
   } else {
+    for (const std::string& note : input.notes) std::printf("note  %s\n", note.c_str());
     if (input.voxel_volume) {
       std::printf("label %d: smoothing changed its volume by %+.3f %%\n", *options.label,
                   100 * (result->report.surface_volume / *input.voxel_volume - 1));
@@ -265,8 +289,10 @@ void AddMesh(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "mesh", "Fill a closed surface with tetrahedra", kMeshExamples);
   const auto options = std::make_shared<MeshOptions>();
   command
-      ->add_option("SURFACE", options->surface,
-                   "The surface: .stl, .obj, .ply or .vtp; or a label image: .mha, .mhd, .nii or .nii.gz")
+      ->add_option(
+          "SURFACE", options->surface,
+          "The surface: .stl, .obj, .ply or .vtp; or a label image: .mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz, .hdr, "
+          "or the folder of a DICOM series. Images lie in patient coordinates: x left, y back, z head")
       ->required();
   command->add_option("--out", options->out, "The mesh file")->required()->type_name("FILE.msh");
   command->add_option("--unit", options->unit, "Unit of the surface and of all lengths given here")

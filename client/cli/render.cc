@@ -169,6 +169,7 @@ void DrawOnScan(const RenderOptions& options, const v1::Geometry& geometry, cons
     for (const Problem& problem : problems.kept()) error.problems.Add("--scan", problem.message, problem.hint);
     throw CommandError(std::move(error));
   }
+  for (const std::string& note : scan->notes) std::cerr << "note  " << note << '\n';
   const ImagePlace place = {scan->size, scan->spacing, scan->origin, scan->direction};
   std::vector<std::uint8_t> labels(scan->voxels());
   SlicesInput input;

@@ -12,6 +12,7 @@
 #include "client/cli/image_options.h"
 #include "client/cli/interrupts.h"
 #include "core/base/stop.h"
+#include "core/imaging/labels.h"
 #include "core/imaging/masks.h"
 #include "core/imaging/volume_reader.h"
 
@@ -57,7 +58,7 @@ std::optional<double> OverlapWithTruth(const SegmentOptions& options, const Stag
   }
   if (given.stage.region) truth = Crop(*truth, *given.stage.region);
   std::vector<std::uint8_t> material;
-  for (const float value : truth->values) material.push_back(value == static_cast<float>(options.truth_label) ? 1 : 0);
+  for (const float value : truth->values) material.push_back(HasLabel(value, options.truth_label) ? 1 : 0);
   return DiceOverlap(staged.body, MakeVoxelGrid(*truth, std::move(material)));
 }
 
@@ -87,6 +88,7 @@ void PrintReport(const SegmentOptions& options, const StagedImage& staged, const
                     !labels && static_cast<int>(c) == staged.wanted_class ? "   wanted" : "");
   }
   PrintStatistics("body", staged.body_statistics, "");
+  for (const std::string& note : staged.notes) std::printf("note  %s\n", note.c_str());
   if (overlap) std::printf("\nDice coefficient with the truth  %.4f\n", *overlap);
   for (const std::string& file : {options.out, options.picture}) {
     if (!file.empty()) std::cout << "written to " << file << '\n';
@@ -103,6 +105,7 @@ Json ReportJson(const SegmentOptions& options, const StagedImage& staged, const 
                  {"centres", staged.centres},
                  {staged.classes.empty() ? "labels" : "classes", std::move(classes)},
                  {"body", StatisticsJson(staged.body_statistics)}};
+  if (!staged.notes.empty()) report["notes"] = staged.notes;
   if (!staged.classes.empty()) report["wanted_class"] = staged.wanted_class;
   if (overlap) report["dice"] = *overlap;
   if (!options.out.empty()) report["labels_file"] = options.out;

@@ -31,7 +31,8 @@ struct VoxelizeOptions : ImageOptions {
   int level = 0;
 };
 
-void PrintTable(const VoxelizeOptions& options, const std::vector<VoxelLevel>& hierarchy) {
+void PrintTable(const VoxelizeOptions& options, const std::vector<VoxelLevel>& hierarchy,
+                const std::vector<std::string>& notes) {
   std::printf("level  voxel size     mm                       voxels       nodes       cm^3\n");
   for (std::size_t l = 0; l < hierarchy.size(); ++l) {
     const VoxelLevel& level = hierarchy[l];
@@ -43,12 +44,14 @@ void PrintTable(const VoxelizeOptions& options, const std::vector<VoxelLevel>& h
                 static_cast<double>(level.voxels) * level.grid.spacing.prod() * 1e6,
                 static_cast<int>(l) == options.level && !options.out.empty() ? "   written" : "");
   }
+  for (const std::string& note : notes) std::printf("note  %s\n", note.c_str());
   for (const std::string& file : {options.out, options.picture}) {
     if (!file.empty()) std::cout << "written to " << file << '\n';
   }
 }
 
-Json TableJson(const VoxelizeOptions& options, const std::vector<VoxelLevel>& hierarchy) {
+Json TableJson(const VoxelizeOptions& options, const std::vector<VoxelLevel>& hierarchy,
+               const std::vector<std::string>& notes) {
   Json levels = Json::array();
   for (const VoxelLevel& level : hierarchy) {
     levels.push_back({{"voxel_size", level.voxel_size},
@@ -59,6 +62,7 @@ Json TableJson(const VoxelizeOptions& options, const std::vector<VoxelLevel>& hi
                       {"volume", static_cast<double>(level.voxels) * level.grid.spacing.prod()}});
   }
   Json report = {{"fraction", options.fraction}, {"levels", std::move(levels)}};
+  if (!notes.empty()) report["notes"] = notes;
   if (!options.out.empty()) report["labels_file"] = options.out;
   if (!options.picture.empty()) report["picture"] = options.picture;
   return report;
@@ -102,9 +106,9 @@ int Voxelize(const VoxelizeOptions& options, const Context& context) {
                  std::to_string(hierarchy[options.level].voxels) + " voxels");
   }
   if (context.json) {
-    PrintJson(TableJson(options, hierarchy));
+    PrintJson(TableJson(options, hierarchy, staged.notes));
   } else {
-    PrintTable(options, hierarchy);
+    PrintTable(options, hierarchy, staged.notes);
   }
   return kDone;
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/imaging/volume_files.h"
+#include "core/base/problems.h"
 #include "core/imaging/volume_reader.h"
 
 // Internal to this room.
@@ -17,14 +17,12 @@ struct DicomFile {
   std::filesystem::path path;
 };
 
-// Stacks the slices of one series, in any order, along the normal of their planes. A single file may contain several
-// slices. Refuses, reporting every problem: slices of several series, slices of different sizes or directions, two
-// slices at the same position, gaps, and stacks that are not perpendicular to their slices.
+// Stacks the slices of one series, in any order, along the normal of their planes. The frames of a file are slices,
+// too: each lies where its own position says, or else at the distance that the file states. Refuses, reporting every
+// problem: sizes and positions that are not stated, slices of several series, slices of different sizes or directions,
+// two slices at the same position, gaps, and stacks that are not perpendicular to their slices.
 std::optional<VolumeImage> ReadDicomSeries(const std::vector<DicomFile>& files, const VolumeReaderOptions& options,
                                            Problems& problems);
-
-// Whether a file starts like a DICOM file.
-bool IsDicom(const std::filesystem::path& path);
 
 }  // namespace fascicle
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
 
 #include "core/base/stop.h"
 #include "core/imaging/classes.h"
+#include "core/imaging/labels.h"
 #include "core/imaging/masks.h"
 
 namespace fascicle {
@@ -60,6 +60,7 @@ class StageRun {
     const auto* labels = std::get_if<LabelChoice>(&stage_.choice);
     const bool chosen = labels != nullptr ? ChooseLabels(*labels) : Classify(std::get<Classification>(stage_.choice));
     if (!chosen || !Clean() || !Coarsen()) return std::nullopt;
+    TakeNotes(image, labels != nullptr && !labels->labels.empty());
     Show(1, "done");
     return std::move(result_);
   }
@@ -141,8 +142,8 @@ class StageRun {
         material[v] = value != 0 ? 1 : 0;
         continue;
       }
-      const auto found = std::find_if(choice.labels.begin(), choice.labels.end(),
-                                      [&](int label) { return value == static_cast<float>(label); });
+      const auto found =
+          std::find_if(choice.labels.begin(), choice.labels.end(), [&](int label) { return HasLabel(value, label); });
       if (found != choice.labels.end()) material[v] = static_cast<std::uint8_t>(found - choice.labels.begin() + 1);
     }
     result_.statistics =
@@ -151,24 +152,10 @@ class StageRun {
       if (result_.statistics[l].voxels > 0) continue;
       if (choice.labels.empty()) return Refuse("labels", "all voxels of the mask are 0", "");
       problems_.Add(IndexPath("labels", l), "no voxel has the label " + std::to_string(choice.labels[l]),
-                    LabelsThere());
+                    ExistingLabels(result_.image));
     }
     result_.body = MakeVoxelGrid(result_.image, std::move(material));
     return problems_.empty();
-  }
-
-  std::string LabelsThere() const {
-    constexpr std::size_t kTold = 20;
-    std::set<float> labels;
-    for (const float value : result_.image.values) {
-      if (value != 0) labels.insert(value);
-      if (labels.size() > kTold) break;
-    }
-    std::ostringstream text;
-    text << (labels.size() > kTold ? "some of the existing labels: " : "existing labels: ");
-    for (auto label = labels.begin(); label != labels.end(); ++label)
-      text << (label == labels.begin() ? "" : ", ") << *label;
-    return labels.empty() ? "all voxels are 0" : text.str();
   }
 
   bool Classify(const Classification& choice) {
@@ -294,6 +281,16 @@ class StageRun {
     if (result_.grid.voxels() == 0)
       return Refuse("level", "no voxel is left at this level", "use a lower level, or a smaller fraction");
     return true;
+  }
+
+  void TakeNotes(const VolumeImage& image, bool labels) {
+    result_.notes = image.notes;
+    Vec3 edges;
+    for (int axis = 0; axis < 3; ++axis) edges[axis] = result_.grid.size[axis] * result_.grid.spacing[axis];
+    const std::string of_values = labels ? NoteOnFractions(result_.image) : std::string();
+    for (const std::string& note : {of_values, NoteOnSize(edges.maxCoeff())}) {
+      if (!note.empty()) result_.notes.push_back(note);
+    }
   }
 
   const ImageStage& stage_;

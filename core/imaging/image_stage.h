@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -16,8 +17,8 @@ namespace fascicle {
 
 // The image contains labels: which of them to use.
 struct LabelChoice {
-  // Voxels with value labels[m - 1] become material m; at most 255 distinct labels, none 0. Empty: the image is a mask,
-  // whose non-zero voxels become material 1.
+  // Voxels with value labels[m - 1] (HasLabel) become material m; at most 255 distinct labels, none 0. Empty: the image
+  // is a mask, whose non-zero voxels become material 1.
   std::vector<int> labels;
 
   bool operator==(const LabelChoice&) const = default;
@@ -96,6 +97,8 @@ struct StagedImage {
   ClassStatistics body_statistics;
   // The body at the requested level, cropped to its solid voxels.
   VoxelGrid grid;
+  // Remarks: those of the image, and on values and sizes that are unusual.
+  std::vector<std::string> notes;
 };
 
 // Called with the completed fraction and the next stage.

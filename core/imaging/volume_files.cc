@@ -7,121 +7,62 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <numbers>
 #include <sstream>
 #include <stdexcept>
-#include <vector>
-
-#include "core/base/stop.h"
+#include <system_error>
 
 namespace fascicle {
 namespace {
-
-// Headers have few and short lines. Anything beyond these bounds is not a header, whatever a library would do with it.
-constexpr std::size_t kLongestLine = 4096, kMostLines = 1000;
-
-std::string Lower(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
-}
-
-std::string_view Trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-// Removes and returns the next line of `text`; nothing at its end, or when the line is too long.
-std::optional<std::string_view> TakeLine(std::string_view& text) {
-  if (text.empty()) return std::nullopt;
-  const std::size_t end = text.find('\n');
-  const std::string_view line = text.substr(0, end);
-  if (line.size() > kLongestLine) return std::nullopt;
-  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-  return line;
-}
-
-bool AddNoHeader(VolumeFormat format, Problems& problems) {
-  problems.Add("", "the file has no header of a " + NameOf(format) + " image",
-               "is it complete, and is it what its extension says?");
-  return false;
-}
-
-// A header may name one data file, which must be beside it.
-bool CheckDataFile(const std::string& name, Problems& problems) {
-  const bool several = name == "LIST" || name.starts_with("LIST ") || name.find('%') != std::string::npos;
-  if (several) {
-    problems.Add("", "the header names several data files: `" + name.substr(0, 100) + "`",
-                 "save the image with one file for all voxels, or as .mha, .nrrd or .nii.gz");
-    return false;
-  }
-  if (name.find_first_of("/\\") != std::string::npos || name == "." || name == "..") {
-    problems.Add("", "the header names a data file in another folder: `" + name.substr(0, 100) + "`",
-                 "it must be in the header's folder and be named without one");
-    return false;
-  }
-  return true;
-}
-
-bool ReadMetaHeader(std::string_view& text, TextHeader& header, Problems& problems) {
-  bool has_dimensions = false;
-  for (std::size_t lines = 0; lines < kMostLines; ++lines) {
-    const std::optional<std::string_view> line = TakeLine(text);
-    const std::size_t equals = line ? line->find('=') : std::string_view::npos;
-    if (equals == std::string_view::npos) return AddNoHeader(VolumeFormat::kMetaImage, problems);
-    const std::string key = Lower(Trimmed(line->substr(0, equals)));
-    const std::string_view value = Trimmed(line->substr(equals + 1));
-    if (key == "ndims") {
-      // The library supports up to ten dimensions.
-      if (value != "2" && value != "3" && value != "4") {
-        problems.Add("", "the image has `" + std::string(value.substr(0, 20)) + "` dimensions",
-                     "only three can be read");
-        return false;
-      }
-      has_dimensions = true;
-    } else if (key == "compresseddata") {
-      header.compressed = !value.empty() && (value[0] == 'T' || value[0] == 't' || value[0] == '1');
-    } else if (key == "binarydata") {
-      header.as_text = !value.empty() && (value[0] == 'F' || value[0] == 'f' || value[0] == '0');
-    } else if (key == "elementdatafile") {
-      if (!has_dimensions) return AddNoHeader(VolumeFormat::kMetaImage, problems);
-      if (value == "LOCAL" || value == "Local" || value == "local") return true;
-      header.data_file = std::string(value);
-      return CheckDataFile(header.data_file, problems);
-    }
-  }
-  return AddNoHeader(VolumeFormat::kMetaImage, problems);
-}
-
-bool ReadNrrdHeader(std::string_view& text, TextHeader& header, Problems& problems) {
-  const std::optional<std::string_view> magic = TakeLine(text);
-  if (!magic || !magic->starts_with("NRRD000")) return AddNoHeader(VolumeFormat::kNrrd, problems);
-  for (std::size_t lines = 0; lines < kMostLines; ++lines) {
-    const std::optional<std::string_view> line = TakeLine(text);
-    if (!line) return header.data_file.empty() ? AddNoHeader(VolumeFormat::kNrrd, problems) : true;
-    if (Trimmed(*line).empty()) return true;
-    const std::size_t colon = line->find(": ");
-    if (line->starts_with('#') || colon == std::string_view::npos) continue;
-    const std::string key = Lower(line->substr(0, colon));
-    const std::string_view value = Trimmed(line->substr(colon + 2));
-    if (key == "encoding") {
-      const std::string encoding = Lower(value);
-      header.compressed = encoding != "raw";
-      header.as_text = encoding == "ascii" || encoding == "txt" || encoding == "text";
-    } else if (key == "data file" || key == "datafile") {
-      header.data_file = std::string(value);
-      if (!CheckDataFile(header.data_file, problems)) return false;
-    }
-  }
-  return AddNoHeader(VolumeFormat::kNrrd, problems);
-}
 
 std::string Gigabytes(double bytes) {
   std::ostringstream text;
   text.precision(3);
   text << bytes / 1e9 << " GB";
   return text.str();
+}
+
+void AddSheared(const VolumeImage& image, const std::string& more, Problems& problems) {
+  std::ostringstream message;
+  message.precision(3);
+  message << "the image's axes are not at right angles, or not finite" << more;
+  if (image.direction.allFinite()) {
+    const Mat3 cosines = image.direction.transpose() * image.direction;
+    const auto angle = [&](int a, int b) {
+      return std::acos(std::clamp(cosines(a, b), -1.0, 1.0)) * 180 / std::numbers::pi;
+    };
+    message << ": " << angle(0, 1) << ", " << angle(1, 2) << " and " << angle(2, 0) << " degrees";
+  }
+  problems.Add("", message.str(), "resample it to a box of voxels");
+}
+
+// Replaces axes by the nearest orthonormal ones, around the image's centre.
+bool SquareAxes(VolumeImage& image, Problems& problems) {
+  const Eigen::JacobiSVD<Mat3> svd(image.direction, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Mat3 square = svd.matrixU() * svd.matrixV().transpose(), change = square - image.direction;
+  Vec3 half;  // from the first voxel to the centre
+  for (int axis = 0; axis < 3; ++axis) half[axis] = 0.5 * (image.size[axis] - 1) * image.spacing[axis];
+  double moved = 0;
+  for (int corner = 0; corner < 4; ++corner) {
+    const Vec3 signs(1, (corner & 1) != 0 ? -1 : 1, (corner & 2) != 0 ? -1 : 1);
+    moved = std::max(moved, (change * half.cwiseProduct(signs)).norm());
+  }
+  constexpr double kMostMoved = 0.5, kUntold = 1e-3;  // of the shortest edge of a voxel
+  std::ostringstream by;
+  by.precision(3);
+  by << moved * 1e3 << " mm";
+  if (moved > kMostMoved * image.spacing.minCoeff()) {
+    AddSheared(image, " (voxels would move by up to " + by.str() + ")", problems);
+    return false;
+  }
+  if (moved > kUntold * image.spacing.minCoeff()) {
+    image.notes.push_back("the image's axes are not quite at right angles: voxels are moved by up to " + by.str());
+  }
+  image.origin -= change * half;
+  image.direction = square;
+  return true;
 }
 
 }  // namespace
@@ -131,41 +72,55 @@ std::optional<VolumeFormat> FormatOf(std::string_view name) {
   const auto ends = [&](const char* extension) { return lower.ends_with(extension); };
   if (ends(".mha") || ends(".mhd")) return VolumeFormat::kMetaImage;
   if (ends(".nrrd") || ends(".nhdr")) return VolumeFormat::kNrrd;
-  if (ends(".nii") || ends(".nii.gz")) return VolumeFormat::kNifti;
+  if (ends(".nii") || ends(".nii.gz") || ends(".hdr")) return VolumeFormat::kNifti;
   if (ends(".dcm")) return VolumeFormat::kDicom;
   if (ends(".raw")) return VolumeFormat::kRaw;
   return std::nullopt;
 }
 
-std::string NameOf(VolumeFormat format) {
-  switch (format) {
-    case VolumeFormat::kMetaImage:
-      return "MetaImage";
-    case VolumeFormat::kNrrd:
-      return "NRRD";
-    case VolumeFormat::kNifti:
-      return "NIfTI";
-    case VolumeFormat::kDicom:
-      return "DICOM";
-    case VolumeFormat::kRaw:
-      return "raw";
-  }
-  return {};
+std::string Lower(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
 }
 
 bool IsDetachedHeader(std::string_view name) {
   const std::string lower = Lower(name);
-  return lower.ends_with(".mhd") || lower.ends_with(".nhdr");
+  return lower.ends_with(".mhd") || lower.ends_with(".nhdr") || lower.ends_with(".hdr");
 }
 
-std::optional<TextHeader> ReadTextHeader(VolumeFormat format, std::string_view bytes, Problems& problems) {
-  TextHeader header;
-  std::string_view rest = bytes;
-  const bool read = format == VolumeFormat::kMetaImage ? ReadMetaHeader(rest, header, problems)
-                                                       : ReadNrrdHeader(rest, header, problems);
-  if (!read) return std::nullopt;
-  header.bytes = bytes.size() - rest.size();
-  return header;
+std::optional<std::uint64_t> SizeOf(const std::filesystem::path& path, Problems& problems) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    problems.Add("", "there is no file " + path.filename().string(), "is the path right?");
+    return std::nullopt;
+  }
+  const std::uint64_t bytes = std::filesystem::file_size(path, error);
+  if (error || !std::ifstream(path, std::ios::binary)) {
+    problems.Add("", path.filename().string() + " can't be read", "is there permission to read it?");
+    return std::nullopt;
+  }
+  return bytes;
+}
+
+std::string StartOf(const std::filesystem::path& path, std::size_t bytes) {
+  std::error_code error;
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  std::ifstream in(path, std::ios::binary);
+  std::string start(error ? 0 : std::min<std::uint64_t>(bytes, size), '\0');
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(in.gcount()));
+  return start;
+}
+
+std::string InflatedStartOf(const std::filesystem::path& path, unsigned bytes) {
+  const gzFile file = gzopen(path.c_str(), "rb");
+  if (file == nullptr) return {};
+  std::string start(bytes, '\0');
+  const int count = gzread(file, start.data(), bytes);
+  gzclose(file);
+  start.resize(static_cast<std::size_t>(std::max(count, 0)));
+  return start;
 }
 
 TemporaryFolder::TemporaryFolder() {
@@ -213,48 +168,22 @@ bool CheckClaim(const VolumeClaim& claim, std::int64_t memory_limit, Problems& p
   return true;
 }
 
-bool CheckDeflated(std::string_view bytes, const std::stop_token& stop, Problems& problems) {
-  constexpr int kEitherHeader = 15 + 32;
-  std::vector<unsigned char> scratch(1 << 16);
-  z_stream stream = {};
-  int state = inflateInit2(&stream, kEitherHeader);
-  constexpr std::size_t kMost = 1 << 30;  // zlib counts in 32 bits
-  while (state == Z_OK && !stop.stop_requested()) {
-    if (stream.avail_in == 0) {
-      const std::size_t taken = std::min(bytes.size(), kMost);
-      if (taken == 0) break;
-      stream.next_in = reinterpret_cast<unsigned char*>(const_cast<char*>(bytes.data()));
-      stream.avail_in = static_cast<unsigned>(taken);
-      bytes.remove_prefix(taken);
-    }
-    stream.next_out = scratch.data();
-    stream.avail_out = static_cast<unsigned>(scratch.size());
-    state = inflate(&stream, Z_NO_FLUSH);
-  }
-  inflateEnd(&stream);
-  ThrowIfStopped(stop);
-  if (state == Z_STREAM_END) return true;
-  problems.Add("", "the file's compressed voxels are incomplete or damaged", "is it complete?");
-  return false;
-}
-
 bool CheckPlace(VolumeImage& image, Problems& problems) {
   if (!image.spacing.allFinite() || !(image.spacing.minCoeff() > 0)) {
     std::ostringstream message;
-    message << "the image's voxels have no volume: their spacing is " << image.spacing.transpose() * 1e3 << " mm";
+    message << "the image's voxels have no volume: their spacing is " << image.spacing[0] * 1e3 << " x "
+            << image.spacing[1] * 1e3 << " x " << image.spacing[2] * 1e3 << " mm";
     problems.Add("", message.str(), "all three must be above 0");
     return false;
   }
   const Mat3 off = image.direction.transpose() * image.direction - Mat3::Identity();
-  if (!image.origin.allFinite() || !image.direction.allFinite() || off.cwiseAbs().maxCoeff() > 1e-3) {
-    problems.Add("", "the image's axes are not at right angles, or not finite", "resample it to a box of voxels");
+  // 3 degrees
+  constexpr double kFurthestOff = 0.05;
+  if (!image.origin.allFinite() || !image.direction.allFinite() || off.cwiseAbs().maxCoeff() > kFurthestOff) {
+    AddSheared(image, "", problems);
     return false;
   }
-  if (off.cwiseAbs().maxCoeff() > 0) {
-    const Eigen::JacobiSVD<Mat3> svd(image.direction, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    image.direction = svd.matrixU() * svd.matrixV().transpose();
-  }
-  return true;
+  return off.cwiseAbs().maxCoeff() == 0 || SquareAxes(image, problems);
 }
 
 bool CheckValues(const VolumeImage& image, Problems& problems) {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -14,23 +13,23 @@
 // Functions shared by the readers of images. Internal to this room.
 namespace fascicle {
 
+inline constexpr double kMillimetre = 1e-3;  // [m]
+
 enum class VolumeFormat { kMetaImage, kNrrd, kNifti, kDicom, kRaw };
 
 // The format that belongs to a name's extension.
 std::optional<VolumeFormat> FormatOf(std::string_view name);
-std::string NameOf(VolumeFormat format);
-// Whether the extension is that of a separate header: .mhd or .nhdr.
+// Whether the extension is that of a separate header: .mhd, .nhdr or .hdr.
 bool IsDetachedHeader(std::string_view name);
 
-// What the text header of a MetaImage or NRRD file says about its data.
-struct TextHeader {
-  std::string data_file;  // empty: the data follow the header
-  bool compressed = false;
-  bool as_text = false;
-  std::size_t bytes = 0;  // length of the text itself
-};
-// Returns nothing and adds to `problems` if the text is not a header, or names several data files or one elsewhere.
-std::optional<TextHeader> ReadTextHeader(VolumeFormat format, std::string_view bytes, Problems& problems);
+std::string Lower(std::string_view text);
+
+// Size of a file; nothing, with a problem, if it can't be read.
+std::optional<std::uint64_t> SizeOf(const std::filesystem::path& path, Problems& problems);
+// Its first bytes, at most so many.
+std::string StartOf(const std::filesystem::path& path, std::size_t bytes);
+// The same for a file that may be compressed by gzip.
+std::string InflatedStartOf(const std::filesystem::path& path, unsigned bytes);
 
 // A folder within the system's temporary folder; removed with its contents by the destructor.
 class TemporaryFolder {
@@ -56,12 +55,10 @@ struct VolumeClaim {
 };
 bool CheckClaim(const VolumeClaim& claim, std::int64_t memory_limit, Problems& problems);
 
-// Whether the bytes start with a complete deflated stream (zlib or gzip), checksum included. Libraries accept
-// incomplete streams. If not, returns false and adds a problem. Throws Stopped after a stop request.
-bool CheckDeflated(std::string_view bytes, const std::stop_token& stop, Problems& problems);
-
-// Checks spacing and axes as read from a file: spacings must be finite and above 0; axes must be orthonormal to 1e-3
-// and are then made so to the last bit. If not, returns false and adds problems.
+// Checks size, spacing and axes as read from a file: spacings must be finite and above 0, and axes at right angles.
+// Axes that are nearly so are replaced by the nearest ones that are, around the image's centre, if no voxel leaves its
+// place by more than half a voxel; a note says so where it is more than rounding. If not, returns false and adds
+// problems.
 bool CheckPlace(VolumeImage& image, Problems& problems);
 
 // Whether all values are finite.

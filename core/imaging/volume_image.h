@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "core/geometry/voxel_grid.h"
@@ -19,6 +20,8 @@ struct VolumeImage {
   Mat3 direction = Mat3::Identity();  // columns: unit vectors along i, j, k
   // Value of each voxel, i fastest, then j, in the file's own unit. Integers are exact up to 2^24.
   std::vector<float> values;
+  // What its reader decided where the file left something open or contradicted itself, one sentence each.
+  std::vector<std::string> notes;
 
   std::size_t voxels() const { return static_cast<std::size_t>(size[0]) * size[1] * size[2]; }
   std::size_t IndexOf(const GridIndex& at) const {

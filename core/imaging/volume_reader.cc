@@ -1,166 +1,105 @@
 #include "core/imaging/volume_reader.h"
 
-#include <zlib.h>
-
 #include <algorithm>
-#include <bit>
-#include <cstdio>
 #include <fstream>
 #include <set>
 #include <stdexcept>
 #include <system_error>
 
+#include "core/base/check.h"
 #include "core/base/stop.h"
+#include "core/imaging/dicom_data.h"
 #include "core/imaging/dicom_series.h"
-#include "core/imaging/itk_image_io.h"
-#include "core/imaging/nifti_check.h"
 #include "core/imaging/volume_files.h"
+#include "core/imaging/volume_layout.h"
 
 namespace fascicle {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kTypeNames[] = {"uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"};
-// Upper bound for the header of a MetaImage or NRRD file.
-constexpr std::size_t kLongestHeader = 1 << 20;
+constexpr const char* kTypeNames[] = {"uint8", "int8",    "uint16",  "int16", "uint32",
+                                      "int32", "float32", "float64", "int64", "uint64"};
 
 std::string BaseName(std::string_view name) { return fs::path(name).filename().string(); }
 
-// Size of a file; nothing, with a problem, if it can't be read.
-std::optional<std::uint64_t> SizeOf(const fs::path& path, Problems& problems) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) {
-    problems.Add("", "there is no file " + path.filename().string(), "is the path right?");
-    return std::nullopt;
-  }
-  const std::uint64_t bytes = fs::file_size(path, error);
-  if (error || !std::ifstream(path, std::ios::binary)) {
-    problems.Add("", path.filename().string() + " can't be read", "is there permission to read it?");
-    return std::nullopt;
-  }
-  return bytes;
-}
-
-std::string StartOf(const fs::path& path, std::size_t bytes) {
-  std::ifstream in(path, std::ios::binary);
-  std::string start(bytes, '\0');
-  in.read(start.data(), static_cast<std::streamsize>(bytes));
-  start.resize(static_cast<std::size_t>(in.gcount()));
-  return start;
-}
-
-// The first bytes of a file that may be compressed by gzip.
-std::string InflatedStartOf(const fs::path& path, unsigned bytes) {
-  const gzFile file = gzopen(path.c_str(), "rb");
-  if (file == nullptr) return {};
-  std::string start(bytes, '\0');
-  const int count = gzread(file, start.data(), bytes);
-  gzclose(file);
-  start.resize(static_cast<std::size_t>(std::max(count, 0)));
-  return start;
-}
-
-std::optional<VolumeImage> ReadRaw(const fs::path& path, std::uint64_t bytes, const VolumeReaderOptions& options,
-                                   Problems& problems) {
+std::optional<VolumeLayout> LayoutOfRaw(std::uint64_t bytes, const VolumeReaderOptions& options, Problems& problems) {
   if (!options.raw) {
-    problems.Add("", "a .raw file does not say what it holds", "give its size, spacing and type of numbers");
+    problems.Add("", "a .raw file does not say what it holds",
+                 "give its size, spacing and type of numbers, as `fascicle segment` takes them");
     return std::nullopt;
   }
-  const RawLayout& layout = *options.raw;
-  VolumeImage image;
-  image.size = layout.size;
-  image.spacing = layout.spacing;
-  if (*std::min_element(layout.size.begin(), layout.size.end()) < 1 || layout.header_bytes < 0) {
+  const RawLayout& raw = *options.raw;
+  if (*std::min_element(raw.size.begin(), raw.size.end()) < 1 || raw.header_bytes < 0) {
     problems.Add("", "the layout of the .raw file has a size below 1", "give the voxels along i, j and k");
     return std::nullopt;
   }
-  const std::size_t width = BytesOf(layout.type);
-  const auto skipped = static_cast<std::uint64_t>(layout.header_bytes);
-  VolumeClaim claim{{}, width, bytes - std::min(bytes, skipped), false};
-  std::copy(layout.size.begin(), layout.size.end(), claim.size.begin());
-  if (!CheckClaim(claim, options.memory_limit, problems) || !CheckPlace(image, problems)) return std::nullopt;
-  if (claim.available != image.voxels() * width) {
+  VolumeLayout layout;
+  std::copy(raw.size.begin(), raw.size.end(), layout.size.begin());
+  layout.image.spacing = raw.spacing;
+  layout.type = raw.type;
+  layout.big_endian = raw.big_endian;
+  layout.skip = raw.header_bytes;
+  const double need =
+      static_cast<double>(raw.size[0]) * raw.size[1] * raw.size[2] * static_cast<double>(BytesOf(raw.type)) +
+      static_cast<double>(raw.header_bytes);
+  if (static_cast<double>(bytes) > need) {
     problems.Add(
         "",
-        "the file has " + std::to_string(claim.available - image.voxels() * width) + " bytes more than its layout says",
+        "the file has " + std::to_string(bytes - static_cast<std::uint64_t>(need)) + " bytes more than its layout says",
         "are size, type and header_bytes right?");
     return std::nullopt;
   }
-  std::ifstream in(path, std::ios::binary);
-  in.seekg(layout.header_bytes);
-  std::vector<char> data(image.voxels() * width);
-  in.read(data.data(), static_cast<std::streamsize>(data.size()));
-  if (!in) {
-    problems.Add("", "it can't be read to its end", "");
-    return std::nullopt;
+  return layout;
+}
+
+// The name of the file of voxels that belongs to a header of a pair.
+std::string PairOf(const fs::path& header) {
+  fs::path other = header;
+  for (const char* extension : {".img", ".IMG", ".img.gz"}) {
+    std::error_code error;
+    if (fs::is_regular_file(other.replace_extension(extension), error)) return other.filename().string();
   }
-  if (layout.big_endian != (std::endian::native == std::endian::big)) {
-    for (std::size_t at = 0; at < data.size(); at += width) std::reverse(&data[at], &data[at] + width);
+  return fs::path(header).replace_extension(".img").filename().string();
+}
+
+std::optional<VolumeLayout> ReadLayout(VolumeFormat format, const fs::path& path, std::uint64_t bytes,
+                                       const VolumeReaderOptions& options, Problems& problems) {
+  switch (format) {
+    case VolumeFormat::kMetaImage:
+      return ReadMetaHeader(StartOf(path, kLongestHeader), problems);
+    case VolumeFormat::kNrrd:
+      return ReadNrrdHeader(StartOf(path, kLongestHeader), problems);
+    case VolumeFormat::kNifti: {
+      constexpr unsigned kHeader = 1024;
+      const bool pair = IsDetachedHeader(path.filename().string());
+      return ReadNiftiHeader(InflatedStartOf(path, kHeader), pair ? PairOf(path) : "", problems);
+    }
+    case VolumeFormat::kRaw:
+      return LayoutOfRaw(bytes, options, problems);
+    case VolumeFormat::kDicom:
+      break;
   }
-  image.values.resize(image.voxels());
-  ConvertVoxels(layout.type, data.data(), image.voxels(), image.values.data());
-  if (!CheckValues(image, problems)) return std::nullopt;
-  return image;
+  FASCICLE_CHECK(false, "slices are read as a series");
 }
 
-// The bits per voxel, a 16-bit number in either byte order; 0 if the value is not a known one.
-std::uint64_t NiftiVoxelBytes(const std::string& header) {
-  constexpr std::size_t kPlace = 72;
-  if (header.size() < kNiftiHeader) return 0;
-  const auto byte = [&](std::size_t at) { return static_cast<unsigned>(static_cast<unsigned char>(header[at])); };
-  const unsigned bits = byte(kPlace) + byte(kPlace + 1);  // one of the two is 0
-  return bits == 8 || bits == 16 || bits == 32 || bits == 64 ? bits / 8 : 0;
-}
-
-// Compressed voxels at an offset of their file must be complete. Other encodings, such as text, are left to ITK.
-bool CheckCompressed(const ItkFile& file, std::size_t offset, const fs::path& voxels, const std::stop_token& stop,
-                     Problems& problems) {
-  const std::string bytes = StartOf(voxels, offset + file.bytes);
-  const std::string_view data = std::string_view(bytes).substr(std::min(offset, bytes.size()));
-  const bool gzip = data.starts_with("\x1f\x8b");
-  if (!gzip && file.format != VolumeFormat::kMetaImage) return true;
-  return CheckDeflated(data, stop, problems);
-}
-
-std::optional<VolumeImage> ReadFile(const fs::path& path, const VolumeReaderOptions& options, Problems& problems) {
-  const std::optional<VolumeFormat> format = FormatOf(path.filename().string());
+// Reads one image; `others` are further files that were given, which must be those that its header names.
+std::optional<VolumeImage> ReadFile(const fs::path& path, const std::vector<fs::path>& others,
+                                    const VolumeReaderOptions& options, Problems& problems) {
   const std::optional<std::uint64_t> bytes = SizeOf(path, problems);
   if (!bytes) return std::nullopt;
-  if (*format == VolumeFormat::kRaw) return ReadRaw(path, *bytes, options, problems);
-  ItkFile file{*format, path, *bytes, true};
-  fs::path voxels = path;
-  std::size_t offset = 0;
-  if (*format == VolumeFormat::kNifti) {
-    file.compressed = path.extension() != ".nii";
-    const std::string header = InflatedStartOf(path, kNiftiHeader);
-    if (!CheckNiftiPlace(header, problems)) return std::nullopt;
-    if (!file.compressed) {
-      file.bytes -= std::min<std::uint64_t>(file.bytes, kNiftiHeader);
-      file.bytes_per_voxel = NiftiVoxelBytes(header);
-    }
+  std::optional<VolumeLayout> layout = ReadLayout(*FormatOf(path.filename().string()), path, *bytes, options, problems);
+  if (!layout) return std::nullopt;
+  for (const fs::path& other : others) {
+    const std::vector<std::string>& named = layout->files;
+    if (std::find(named.begin(), named.end(), other.filename().string()) != named.end()) continue;
+    problems.Add(
+        "", "several images are given: " + path.filename().string() + " does not name " + other.filename().string(),
+        "only one can be read; several files must be slices of a DICOM series, or a header and its data files");
+    return std::nullopt;
   }
-  if (*format == VolumeFormat::kMetaImage || *format == VolumeFormat::kNrrd) {
-    const std::optional<TextHeader> header = ReadTextHeader(*format, StartOf(path, kLongestHeader), problems);
-    if (!header) return std::nullopt;
-    // In text every number takes at least a digit and a blank.
-    file.compressed = header->compressed || header->as_text;
-    file.bytes -= header->bytes;
-    offset = header->bytes;
-    if (!header->data_file.empty()) {
-      voxels = path.parent_path() / header->data_file;
-      offset = 0;
-      const std::optional<std::uint64_t> data = SizeOf(voxels, problems);
-      if (!data) return std::nullopt;
-      file.bytes = *data;
-    }
-  }
-  if (file.compressed && !CheckCompressed(file, offset, voxels, options.stop, problems)) return std::nullopt;
   ThrowIfStopped(options.stop);
-  std::optional<ItkVolume> volume = ReadByItk(file, options.memory_limit, problems);
-  ThrowIfStopped(options.stop);
-  if (!volume) return std::nullopt;
-  return std::move(volume->image);
+  return ReadVoxels(std::move(*layout), path, options, problems);
 }
 
 // Reads the one image, or the slices of a series, that the files belong to.
@@ -195,21 +134,25 @@ std::optional<VolumeImage> ReadFiles(const std::vector<fs::path>& paths, const V
     problems.Add("", name + " is not a known image format", "expected " + KnownVolumeExtensions());
     return std::nullopt;
   }
-  if (!slices.empty() || images.size() > (header != images.end() ? 2 : 1)) {
+  if (!slices.empty()) {
     problems.Add("", "several images are given",
                  "only one can be read; several files must be slices of a DICOM series");
     return std::nullopt;
   }
-  return ReadFile(images[0], options, problems);
+  return ReadFile(images[0], {images.begin() + 1, images.end()}, options, problems);
 }
 
+// The files of a series may lie in folders of the one given.
 std::vector<fs::path> DicomFilesIn(const fs::path& folder) {
+  constexpr int kDeepest = 4;
   std::vector<fs::path> files;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    if (entry.is_regular_file(error) && entry.path().filename() != "DICOMDIR" && IsDicom(entry.path())) {
-      files.push_back(entry.path());
-    }
+  const auto options = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator at(folder, options, error), end; !error && at != end; at.increment(error)) {
+    if (at.depth() >= kDeepest) at.disable_recursion_pending();
+    std::error_code of_entry;
+    const fs::path& path = at->path();
+    if (at->is_regular_file(of_entry) && path.filename() != "DICOMDIR" && IsDicom(path)) files.push_back(path);
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -264,15 +207,8 @@ std::optional<VolumeImage> ReadVolume(const std::vector<VolumeFile>& files, cons
   return ReadFiles(paths, options, problems);
 }
 
-std::string DataFileOf(const VolumeFile& header, Problems& problems) {
-  const std::optional<VolumeFormat> format = FormatOf(header.name);
-  if (format != VolumeFormat::kMetaImage && format != VolumeFormat::kNrrd) return {};
-  const std::optional<TextHeader> read = ReadTextHeader(*format, header.bytes.substr(0, kLongestHeader), problems);
-  return read ? read->data_file : std::string();
-}
-
 bool IsVolumeName(std::string_view name) { return FormatOf(name).has_value(); }
 
-std::string KnownVolumeExtensions() { return ".mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz, .dcm or .raw"; }
+std::string KnownVolumeExtensions() { return ".mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz, .hdr, .dcm or .raw"; }
 
 }  // namespace fascicle

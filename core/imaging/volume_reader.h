@@ -14,9 +14,9 @@
 
 namespace fascicle {
 
-enum class VoxelType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kFloat32, kFloat64 };
+enum class VoxelType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kFloat32, kFloat64, kInt64, kUint64 };
 
-// "uint8" ... "float64".
+// "uint8" ... "uint64".
 std::string NameOf(VoxelType type);
 std::optional<VoxelType> VoxelTypeOf(std::string_view name);
 
@@ -44,26 +44,25 @@ struct VolumeFile {
 };
 
 // Reads one image from its file or files:
-//   .mha .nrrd .nii .nii.gz    one file
-//   .mhd .nhdr                 a header, and the data file that it names (beside it)
-//   .dcm                       one slice, or the slices of a series in any order; files of a series may lack the
-//   extension
+//   .mha .nrrd .nii .nii.gz    one file; NIfTI-1 and NIfTI-2, whether it is packed or not
+//   .mhd .nhdr .hdr            a header, and the data files that it names (beside it)
+//   .dcm                       slices of a series in any order, of one or several frames; files of a series may lack
+//   the extension
 //   .raw                       bare numbers, with options.raw
-// Lengths are converted to metres: files are in millimetres, unless NIfTI says otherwise. Positions are in DICOM's
-// patient coordinates; NIfTI and NRRD files in other coordinates are converted. Compressed data, both byte orders and
-// all number types are supported, with the rescaling given by the file (slope and intercept). Malformed input never
+// Lengths are converted to metres: files are in millimetres, unless they say otherwise (NIfTI, NRRD, MetaImage).
+// Positions are in DICOM's patient coordinates; those of files in other coordinates are converted. Compressed data,
+// both byte orders and all number types are supported, with the rescaling given by the file (slope and intercept). The
+// image's notes say what was decided where a file leaves something open or says it twice. Malformed input never
 // crashes, hangs or allocates more than a small multiple of what the files can hold. It adds to `problems` (with empty
-// paths) and returns nothing. So do images with several components per voxel or in time, with non-finite numbers,
-// without voxels, or with more than 2^31 - 1 voxels. Thread-safe, except for calls with the same files.
+// paths) and returns nothing. So do images with several components per voxel or in time, with non-finite numbers
+// (which NIfTI allows: they are read as 0), without voxels, or with more than 2^31 - 1 voxels. Thread-safe, except for
+// calls with the same files.
 std::optional<VolumeImage> ReadVolume(const std::vector<VolumeFile>& files, const VolumeReaderOptions& options,
                                       Problems& problems);
-// The same for files on disk. A folder stands for the DICOM files in it, and a header also for the file that it names.
+// The same for files on disk. A folder stands for the DICOM files in it and in its folders, and a header also for the
+// files that it names.
 std::optional<VolumeImage> ReadVolumeFiles(const std::vector<std::filesystem::path>& paths,
                                            const VolumeReaderOptions& options, Problems& problems);
-
-// The data file beside a header (.mhd, .nhdr); empty if the header contains the data itself or is not a header. Adds to
-// `problems` if it names several files, or one in another folder.
-std::string DataFileOf(const VolumeFile& header, Problems& problems);
 
 // Whether a file's extension is one of those above.
 bool IsVolumeName(std::string_view name);

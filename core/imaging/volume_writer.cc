@@ -5,7 +5,7 @@
 #include <cctype>
 #include <system_error>
 
-#include "core/imaging/itk_image_io.h"
+#include "core/imaging/itk_image_writer.h"
 
 namespace fascicle {
 

@@ -34,7 +34,7 @@ std::optional<RawLayout> TranslateRaw(const v1::ImageShape& shape, double metres
   const auto type = VoxelTypeOf(shape.raw().type());
   if (!type) {
     problems.Add(JoinPath(path, "raw.type"), "\"" + shape.raw().type() + "\" is not a number type",
-                 "uint8, int8, uint16, int16, uint32, int32, float32 or float64");
+                 "uint8, int8, uint16, int16, uint32, int32, uint64, int64, float32 or float64");
     return std::nullopt;
   }
   raw.type = *type;
@@ -151,6 +151,7 @@ std::vector<std::string> NotesOf(const StagedImage& staged) {
   std::string thresholds;
   for (const double threshold : staged.thresholds) thresholds += (thresholds.empty() ? "" : ", ") + Text(threshold);
   if (!thresholds.empty()) notes.push_back("thresholds between classes: " + thresholds);
+  notes.insert(notes.end(), staged.notes.begin(), staged.notes.end());
   return notes;
 }
 
@@ -173,7 +174,7 @@ std::optional<SegmentedImage> Segment(const BodySource& source, const ImageStage
 
 std::optional<VoxelGrid> TranslateImage(const BodySource& source, const std::string& path,
                                         std::vector<std::string>& notes, Problems& problems) {
-  constexpr std::uint32_t kVersion = 1;  // version of the results of Segment
+  constexpr std::uint32_t kVersion = 2;  // version of the results of Segment
   const v1::ImageShape& shape = source.wire.mesh().image();
   const double metres = MetresIn(source.wire.unit());
   const bool has_source = shape.has_file() || shape.has_phantom();

@@ -9,7 +9,7 @@
 #include "core/imaging/volume_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  constexpr std::string_view kNames[] = {"a.mha", "a.nrrd", "a.nii", "a.nii.gz", "a.dcm", "a.raw"};
+  constexpr std::string_view kNames[] = {"a.mha", "a.nrrd", "a.nii", "a.nii.gz", "a.dcm", "a.raw", "a.hdr"};
   constexpr std::int64_t kLimit = 1 << 24;
   if (size == 0) return 0;
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "core/geometry/voxel_grid.h"
 
@@ -49,7 +50,9 @@ struct DicomSlice {
   std::string orientation = "1\\0\\0\\0\\1\\0";
   std::string spacing = "1.5\\0.75";  // between rows, between columns
   std::string slope = "1", intercept = "0";
-  int first_value = 0;  // of the first voxel; the others increase by one
+  std::string thickness = "2.5";
+  int first_value = 0;      // of the first voxel; the others increase by one
+  std::vector<int> voxels;  // or all of them, as stored
 };
 
 // A file of that slice in DICOM's explicit little-endian syntax.
@@ -71,10 +74,13 @@ inline std::string DicomBytes(const DicomSlice& slice) {
   const std::string meta = element(2, 1, "OB", std::string("\0\1", 2)) + element(2, 2, "UI", mr) +
                            element(2, 3, "UI", instance) + element(2, 0x10, "UI", "1.2.840.10008.1.2.1");
   std::string pixels;
-  for (int v = 0; v < slice.rows * slice.columns; ++v) pixels += word(slice.first_value + v);
+  for (int v = 0; v < slice.rows * slice.columns; ++v) {
+    pixels += word(slice.voxels.empty() ? slice.first_value + v : slice.voxels[static_cast<std::size_t>(v)]);
+  }
   return std::string(128, '\0') + "DICM" +
          element(2, 0, "UL", Number<std::uint32_t>(static_cast<std::uint32_t>(meta.size()))) + meta +
          element(8, 0x16, "UI", mr) + element(8, 0x18, "UI", instance) + element(8, 0x60, "CS", "MR") +
+         (slice.thickness.empty() ? "" : element(0x18, 0x50, "DS", slice.thickness)) +
          element(0x20, 0xd, "UI", "1.2.3") + element(0x20, 0xe, "UI", slice.series) +
          element(0x20, 0x32, "DS", slice.position) + element(0x20, 0x37, "DS", slice.orientation) +
          element(0x28, 2, "US", word(1)) + element(0x28, 4, "CS", "MONOCHROME2") +

@@ -206,7 +206,7 @@ TEST_F(MeshTest, ABrokenImageIsRefused) {
   const Finished refused =
       Fascicle({"mesh", File("broken.mha", "nothing"), "--label", "3", "--out", folder_ / "broken.msh"});
   EXPECT_EQ(refused.exit_code, 2) << refused.err;
-  EXPECT_THAT(refused.err, HasSubstr("the image can't be read"));
+  EXPECT_THAT(refused.err, HasSubstr("the file has no header of a MetaImage image"));
   EXPECT_FALSE(HasFile("broken.msh"));
 }
 

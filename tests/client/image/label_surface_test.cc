@@ -99,9 +99,12 @@ bool IsClosed(const TriangleMesh& surface) {
   });
 }
 
-TEST(IsImageName, KnowsItsExtensions) {
-  for (const char* name : {"a.mha", "a.MHD", "b/c.nii", "a.nii.gz", "A.NII.GZ"}) EXPECT_TRUE(IsImageName(name)) << name;
-  for (const char* name : {"a.stl", "mha", "a.gz", "a.mha.txt", ""}) EXPECT_FALSE(IsImageName(name)) << name;
+TEST(IsImagePath, KnowsExtensionsAndFolders) {
+  for (const char* name : {"a.mha", "a.MHD", "b/c.nii", "a.nii.gz", "A.NII.GZ", "a.nrrd", "a.nhdr", "a.hdr", "a.dcm"}) {
+    EXPECT_TRUE(IsImagePath(name)) << name;
+  }
+  for (const char* name : {"a.stl", "mha", "a.gz", "a.mha.txt", ""}) EXPECT_FALSE(IsImagePath(name)) << name;
+  EXPECT_TRUE(IsImagePath(TemporaryFolder().path()));
 }
 
 TEST(LabelSurface, IsClosedAndEnclosesAsMuchAsTheVoxels) {
@@ -112,7 +115,7 @@ TEST(LabelSurface, IsClosedAndEnclosesAsMuchAsTheVoxels) {
   });
   for (const double smoothing : {0.3, 0.6, 1.5}) {
     const LabelSurface ball = ReadGood("ball.mha", BallImage(), 3, smoothing);
-    EXPECT_DOUBLE_EQ(ball.voxel_volume, voxels * 1 * 0.5 * 2);
+    EXPECT_NEAR(ball.voxel_volume, voxels * 1 * 0.5 * 2, 1e-9);
     EXPECT_NEAR(ball.surface_volume / ball.voxel_volume, 1, smoothing < 1 ? 5e-3 : kThin) << smoothing;
     EXPECT_DOUBLE_EQ(ball.surface_volume, EnclosedVolume(ball.surface)) << "outwards";
     EXPECT_TRUE(IsClosed(ball.surface)) << smoothing;
@@ -128,22 +131,22 @@ TEST(LabelSurface, AMetaImageLiesWhereItsHeaderSays) {
   EXPECT_LT((box.high - box.low - Vec3::Constant(8)).cwiseAbs().maxCoeff(), 1);
 }
 
-// Voxel (i, j, k) is at (10 + 2 i, 20 + 3 j, 30 + 4 k) mm.
+// Voxel (i, j, k) is at (10 + 2 i, 20 + 3 j, 30 + 4 k) mm in NIfTI's frame, whose x and y point the other way.
 TEST(LabelSurface, ANiftiImageLiesWhereItsSformSays) {
   const GridIndex size = {10, 9, 8};
   const auto block = [](const Vec3& i) { return i[0] >= 2 && i[0] < 7 && i[1] >= 3 && i[1] < 6 && i[2] >= 4 ? 2 : 0; };
   const LabelSurface surface =
       ReadGood("block.nii", NiftiBytes(size, Voxels<std::int16_t>(size, block), false), 2, 0.3);
-  EXPECT_DOUBLE_EQ(surface.voxel_volume, 5 * 3 * 4 * 24);
+  EXPECT_NEAR(surface.voxel_volume, 5 * 3 * 4 * 24, 1e-9);
   const Box box = BoxOf(surface.surface);
-  EXPECT_LT((0.5 * (box.low + box.high) - Vec3(10 + 2 * 4, 20 + 3 * 4, 30 + 4 * 5.5)).cwiseAbs().maxCoeff(), 0.05);
+  EXPECT_LT((0.5 * (box.low + box.high) - Vec3(-10 - 2 * 4, -20 - 3 * 4, 30 + 4 * 5.5)).cwiseAbs().maxCoeff(), 0.05);
   EXPECT_LT((box.high - box.low - Vec3(5 * 2, 3 * 3, 4 * 4)).cwiseAbs().maxCoeff(), 1.5);
 }
 
 // If a label reaches the border of the image, the surface is closed there too.
 TEST(LabelSurface, ALabelAtTheSideIsClosed) {
   const LabelSurface floor = ReadGood("ball.mha", BallImage(), 1);
-  EXPECT_DOUBLE_EQ(floor.voxel_volume, 20 * 40 * 1);
+  EXPECT_NEAR(floor.voxel_volume, 20 * 40 * 1, 1e-9);
   EXPECT_NEAR(floor.surface_volume / floor.voxel_volume, 1, kThin);
   EXPECT_TRUE(IsClosed(floor.surface));
 }
@@ -173,7 +176,7 @@ TEST(LabelSurface, RefusesWhatIsNoLabelImage) {
   const std::string whole = BallImage();
   for (const std::string& bytes : {whole.substr(0, 100), std::string("nothing"), std::string()}) {
     for (const char* name : {"broken.mha", "broken.nii", "broken.nii.gz"}) {
-      EXPECT_THAT(Refusal(name, bytes), HasSubstr("the image can't be read")) << name;
+      EXPECT_THAT(Refusal(name, bytes), HasSubstr("is it complete, and is it what its extension says?")) << name;
     }
   }
   const std::string pairs =

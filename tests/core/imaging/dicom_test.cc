@@ -107,6 +107,30 @@ TEST(Dicom, ASliceAloneIsAVolumeOfOneLayer) {
   ASSERT_TRUE(image) << problems.ToString();
   EXPECT_EQ(image->size, (GridIndex{4, 3, 1}));
   EXPECT_EQ(image->values[7], 7);
+  EXPECT_DOUBLE_EQ(image->spacing[2], 2.5e-3) << "its SliceThickness";
+  std::vector<DicomSlice> bare = Sagittal(1);
+  bare[0].thickness.clear();
+  EXPECT_THAT(Refusal(bare), HasSubstr("does not state its SliceThickness"));
+}
+
+TEST(Dicom, TellsWhichSizesAndPlacesAreNotStated) {
+  std::vector<DicomSlice> slices = Sagittal(3);
+  for (DicomSlice& slice : slices) slice.position.clear();
+  slices[1].spacing.clear();
+  EXPECT_THAT(Refusal(slices), AllOf(HasSubstr("slice0.dcm and 2 more do not state ImagePositionPatient (0020,0032)"),
+                                     HasSubstr("slice1.dcm does not state PixelSpacing (0028,0030)")));
+}
+
+// Old files start without a preamble, and a folder may hold the folder of the series.
+TEST(Dicom, FilesWithoutPreambleInFoldersOfTheFolder) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "study/series");
+  std::size_t s = 0;
+  for (const DicomSlice& slice : Sagittal(5)) {
+    folder.Write("study/series/IM" + std::to_string(s++), DicomBytes(slice).substr(132));
+  }
+  Problems problems;
+  ExpectSagittal(ReadVolumeFiles({folder.path()}, {}, problems), problems);
 }
 
 TEST(Dicom, RefusesWhatIsNoSeries) {

@@ -13,6 +13,7 @@
 namespace fascicle::testing {
 namespace {
 
+using ::testing::_;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -224,6 +225,34 @@ TEST(ImageStage, TellsAllMistakesAtOnce) {
   Problems labels;
   CheckImageStage(stage, labels);
   EXPECT_THAT(PathsOf(labels), ElementsAre("labels[0]", "labels[2]", "filters"));
+}
+
+// Programs store labels with scales and in floats.
+TEST(ImageStage, AValueWithinAThousandthIsTheLabel) {
+  VolumeImage image = TwoCubes();
+  for (float& value : image.values) value = value == 100 ? 1.9992F : value == 200 ? 0.7F : 0;
+  ImageStage stage;
+  stage.choice = LabelChoice{{2}};
+  stage.cleaning.fill_holes = false;
+  const StagedImage staged = Good(stage, image);
+  EXPECT_EQ(staged.statistics[0].voxels, 63);
+  EXPECT_THAT(staged.notes, ElementsAre(HasSubstr("80 voxels have values that are no whole numbers, such as 0.7")));
+  stage.choice = LabelChoice{{1}};
+  Problems problems;
+  EXPECT_FALSE(RunStage(image, stage, problems));
+  EXPECT_THAT(problems.ToString(), HasSubstr("existing values: 0.7, 2; they are no labels"));
+}
+
+TEST(ImageStage, NotesOfTheImageAndBodiesOfUnusualSize) {
+  VolumeImage image = TwoCubes();
+  image.notes = {"said by the reader"};
+  ImageStage stage;
+  stage.choice = LabelChoice{{100}};
+  EXPECT_THAT(Good(stage, image).notes, ElementsAre("said by the reader"));
+  image.spacing *= 1000;  // the cube's edges are 4 m and 8 m
+  EXPECT_THAT(Good(stage, image).notes, ElementsAre(_, HasSubstr("the body is 8e+03 mm long")));
+  image.spacing *= 1e-5;
+  EXPECT_THAT(Good(stage, image).notes, ElementsAre(_, HasSubstr("the body is 0.08 mm long")));
 }
 
 // Problems that only the image reveals.

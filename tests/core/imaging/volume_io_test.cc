@@ -153,14 +153,51 @@ TEST(VolumeReader, ReadsHeadersWithTheirFileOfVoxels) {
   ExpectByHand(Read({raw, folder.Write("a.nhdr", nrrd)}));
   Problems problems;
   for (const auto& [name, header] : {std::pair<const char*, const std::string&>{"x/a.mhd", meta}, {"x/a.nhdr", nrrd}}) {
-    EXPECT_EQ(DataFileOf({name, header}, problems), "voxels.raw");
     const std::optional<VolumeImage> image = ReadVolume({{"y/voxels.raw", shorts}, {name, header}}, {}, problems);
     ASSERT_TRUE(image) << problems.ToString();
     ExpectByHand(*image);
   }
-  EXPECT_EQ(DataFileOf({"a.mha", Filled(kMeta, "False", "LOCAL")}, problems), "");
-  EXPECT_EQ(DataFileOf({"a.nii", ""}, problems), "");
   EXPECT_TRUE(problems.empty()) << problems.ToString();
+}
+
+// Two files with a slice each, by a list and by a pattern.
+TEST(VolumeReader, ReadsVoxelsOfSeveralFiles) {
+  const TemporaryFolder folder;
+  const std::string shorts = Shorts(24, false);
+  folder.Write("s08.raw", shorts.substr(0, 24));
+  folder.Write("s10.raw", shorts.substr(24));
+  for (const std::string files : {"LIST\ns08.raw\n./s10.raw\n", "s%02d.raw 8 10 2\n"}) {
+    ExpectByHand(Read({folder.Write("a.mhd", Filled(kMeta, "False", files))}));
+    ExpectByHand(Read({folder.Write("a.nhdr", Filled(kNrrd, "little", "data file: " + files))}));
+  }
+  Problems problems;
+  const std::string header = Filled(kMeta, "False", "LIST\ns08.raw\ns10.raw");
+  const auto image =
+      ReadVolume({{"s10.raw", shorts.substr(24)}, {"a.mhd", header}, {"s08.raw", shorts.substr(0, 24)}}, {}, problems);
+  ASSERT_TRUE(image) << problems.ToString();
+  ExpectByHand(*image);
+}
+
+TEST(VolumeReader, ReadsTextAsNumbersAndHexadecimalDigits) {
+  const TemporaryFolder folder;
+  std::string decimals, digits;
+  for (int v = 0; v < 24; ++v) decimals += std::to_string(v * 300 - 5000) + (v % 5 == 4 ? "\n" : " ");
+  for (const char c : Shorts(24, true)) {
+    char two[3];
+    std::snprintf(two, sizeof two, "%02X", static_cast<unsigned char>(c));
+    digits += std::string(two) + (digits.size() % 60 == 58 ? "\n" : "");
+  }
+  const auto encoded = [](std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  const std::string meta = Filled(kMeta, "False", "LOCAL"), nrrd = Filled(kNrrd, "big", "\n");
+  const std::string ascii = encoded(nrrd, "encoding: raw", "encoding: ascii");
+  ExpectByHand(Read({folder.Write("a.mha", encoded(meta, "BinaryData = True", "BinaryData = False") + decimals)}));
+  ExpectByHand(Read({folder.Write("a.nrrd", ascii + decimals)}));
+  ExpectByHand(Read({folder.Write("b.nrrd", encoded(nrrd, "encoding: raw", "encoding: hex") + digits)}));
+  Problems problems;
+  EXPECT_FALSE(ReadVolume({{"a.nrrd", ascii + decimals.substr(0, 60)}}, {}, problems));
+  EXPECT_THAT(problems.ToString(), ::testing::HasSubstr("numbers of 24"));
 }
 
 TEST(VolumeReader, RescalesAsNiftiSays) {
@@ -192,6 +229,8 @@ TEST(VolumeReader, ReadsRawNumbersOfEveryType) {
   expect(VoxelType::kInt32, std::int32_t{});
   expect(VoxelType::kFloat32, float{});
   expect(VoxelType::kFloat64, double{});
+  expect(VoxelType::kInt64, std::int64_t{});
+  expect(VoxelType::kUint64, std::uint64_t{});
   EXPECT_FALSE(VoxelTypeOf("int12"));
 }
 
