@@ -20,4 +20,6 @@ std::filesystem::path DataFolder() { return FolderOf("FASCICLE_DATA", "data"); }
 
 std::filesystem::path ReferenceFolder() { return FolderOf("FASCICLE_REFERENCE", "reference"); }
 
+std::filesystem::path CasesFolder() { return FolderOf("FASCICLE_CASES", "cases"); }
+
 }  // namespace fascicle::testing

@@ -15,6 +15,7 @@ std::string Program(const std::string& name);
 std::filesystem::path DataFolder();
 // Results of other solvers: $FASCICLE_REFERENCE, or ../shared/reference beside the project. May be absent likewise.
 std::filesystem::path ReferenceFolder();
+std::filesystem::path CasesFolder();  // $FASCICLE_CASES, or ../shared/cases beside the project
 
 }  // namespace fascicle::testing
 
