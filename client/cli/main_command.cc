@@ -24,9 +24,7 @@ Exit codes:
   4  cancelled
 )";
 
-}  // namespace
-
-int Main(int argc, char** argv) {
+int Run(int argc, char** argv) {
   CLI::App app("fascicle simulates skeletal muscle and other soft tissue, here or on a server.", "fascicle");
   Context context;
   app.add_option("--server", context.server, "The server; 127.0.0.1:7300 by default. `run` needs none")
@@ -73,6 +71,23 @@ int Main(int argc, char** argv) {
     PrintError({Error::Kind::kInternal, error.what(), "", {}}, context.json);
     return kJobFailed;
   }
+}
+
+// Whether everything that was printed has been written. The kernel may refuse it as late as here: a full disk, a closed
+// pipe.
+bool WroteAll() {
+  std::cout.flush();
+  const bool flushed = std::fflush(stdout) == 0;
+  return flushed && std::cout.good() && std::ferror(stdout) == 0;
+}
+
+}  // namespace
+
+int Main(int argc, char** argv) {
+  const int code = Run(argc, argv);
+  if (WroteAll()) return code;
+  std::cerr << "fascicle: the output could not be written to stdout: is the disk full?\n";
+  return code == kDone ? kJobFailed : code;
 }
 
 }  // namespace fascicle::client

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "client/cli/command.h"
+#include "client/cli/convert_mesh.h"
 #include "client/cli/input_file.h"
 #include "client/cli/interrupts.h"
 #include "client/cli/mesh_picture.h"
@@ -38,15 +39,19 @@ constexpr const char* kMeshExamples =
     --scene muscle.json                                       attached over 20 length units at both ends
   fascicle mesh muscle.stl --out muscle.msh --region top=side:0,0,1:30
   fascicle mesh labels.mha --label 2 --out triceps.msh        the voxels with label 2 of a segmentation, in mm
+  fascicle mesh model.inp --convert --out model.msh           a mesh of another program, with its named sets
+  fascicle mesh knee.vtu --convert --split-hexahedra --out knee.msh    hexahedra, wedges and pyramids become tetrahedra
 
 Reads .stl, .obj, .ply and .vtp. Small holes are closed; larger holes, self-intersections and surfaces around
-several bodies are refused with their location. Regions become physical tags, to which scenes refer. Ctrl-C stops the
+several bodies are refused with their location. A surface inside of another is a cavity. Regions become physical tags, to which scenes refer. Ctrl-C stops the
 command (exit code 4); files are written completely or not at all.
 )";
 
 struct MeshOptions {
   std::string surface;
   std::string out;
+  bool convert = false;
+  bool split_hexahedra = false;
   std::string unit = "mm";
   double size = 0;
   std::int64_t tetrahedra = 50000;
@@ -72,11 +77,12 @@ double AreaOf(const TetMesh& mesh, const Region& region) { return Area({mesh.nod
 
 Json ReportJson(const MeshOptions& options, const MeshingResult& result, const std::vector<Region>& regions) {
   const MeshingReport& report = result.report;
-  Json holes = Json::array(), cuts = Json::array(), tags = Json::array();
+  Json holes = Json::array(), cuts = Json::array(), cavities = Json::array(), tags = Json::array();
   for (const SurfacePlace& hole : report.surface.holes) {
     holes.push_back(PlaceJson(hole));
     holes.back()["boundary_length"] = hole.length;
   }
+  for (const SurfacePlace& cavity : report.surface.cavities) cavities.push_back(PlaceJson(cavity));
   for (const SurfacePlace& cut : report.surface.cuts) {
     cuts.push_back(PlaceJson(cut));
     cuts.back()["pairs"] = cut.count;
@@ -102,28 +108,48 @@ Json ReportJson(const MeshOptions& options, const MeshingResult& result, const s
           {"surface_distance_at", {report.furthest.x(), report.furthest.y(), report.furthest.z()}},
           {"removed_triangles", report.surface.removed_triangles},
           {"turned_triangles", report.surface.turned_triangles},
+          {"welded_nodes", report.surface.welded_nodes},
+          {"weld_distance", report.surface.weld_distance},
+          {"closed_slits", report.surface.closed_slits},
           {"filled_holes", std::move(holes)},
           {"cuts", std::move(cuts)},
+          {"cavities", std::move(cavities)},
           {"regions", std::move(tags)}};
+}
+
+// What was repaired of the surface.
+void PrintRepairs(const SurfaceReport& surface, const char* unit) {
+  if (surface.welded_nodes > 0) {
+    std::printf("welded %lld corners with others within %.3g %s\n", static_cast<long long>(surface.welded_nodes),
+                surface.weld_distance, unit);
+  }
+  if (surface.closed_slits > 0) {
+    std::printf("closed %lld slits without width, where edges are divided differently on their two sides\n",
+                static_cast<long long>(surface.closed_slits));
+  }
+  for (const SurfacePlace& hole : surface.holes) {
+    std::printf("closed a hole at %s, with a boundary %.4g %s long\n", PlaceText(hole).c_str(), hole.length, unit);
+  }
+  for (const SurfacePlace& cavity : surface.cavities) {
+    std::printf("a surface lies inside of another at %s: left empty, as a cavity\n", PlaceText(cavity).c_str());
+  }
+  for (const SurfacePlace& cut : surface.cuts) {
+    std::printf("the surface intersects itself at %s (%lld pairs of triangles): meshed as one body\n",
+                PlaceText(cut).c_str(), static_cast<long long>(cut.count));
+  }
+  if (surface.removed_triangles > 0) {
+    std::printf("removed %lld triangles without area, or duplicates\n",
+                static_cast<long long>(surface.removed_triangles));
+  }
+  if (surface.turned_triangles > 0) {
+    std::printf("reoriented %lld triangles\n", static_cast<long long>(surface.turned_triangles));
+  }
 }
 
 void PrintReport(const MeshOptions& options, const MeshingResult& result, const std::vector<Region>& regions) {
   const MeshingReport& report = result.report;
   const char* unit = options.unit.c_str();
-  for (const SurfacePlace& hole : report.surface.holes) {
-    std::printf("closed a hole at %s, with a boundary %.4g %s long\n", PlaceText(hole).c_str(), hole.length, unit);
-  }
-  for (const SurfacePlace& cut : report.surface.cuts) {
-    std::printf("the surface intersects itself at %s (%lld pairs of triangles): meshed as one body\n",
-                PlaceText(cut).c_str(), static_cast<long long>(cut.count));
-  }
-  if (report.surface.removed_triangles > 0) {
-    std::printf("removed %lld triangles without area, or duplicates\n",
-                static_cast<long long>(report.surface.removed_triangles));
-  }
-  if (report.surface.turned_triangles > 0) {
-    std::printf("reoriented %lld triangles\n", static_cast<long long>(report.surface.turned_triangles));
-  }
+  PrintRepairs(report.surface, unit);
   std::printf("tetrahedra          %zu\nnodes               %zu\nsize                %.4g %s\n",
               result.mesh.tetrahedra.size(), result.mesh.nodes.size(), report.size, unit);
   std::printf("dihedral angles     %.1f to %.1f degrees; median of the smallest %.1f\n",
@@ -185,7 +211,7 @@ void FailOn(const Problems& problems, const std::string& file) {
 struct Input {
   TriangleMesh surface;
   std::optional<double> voxel_volume;  // of a label image
-  std::vector<std::string> notes;
+  std::vector<std::string> notes;      // on flaws of the file, and what its reader decided
 };
 
 // The longest edge of the box around a surface.
@@ -219,7 +245,8 @@ Input ReadInput(const MeshOptions& options, const std::stop_token& stop, Problem
   if (!is_image) {
     const std::optional<std::string> bytes = ReadInputFile(options.surface, problems);
     if (!bytes) return input;
-    if (auto surface = ReadSurface(options.surface, *bytes, problems, stop)) input.surface = std::move(*surface);
+    auto surface = ReadSurface(options.surface, *bytes, problems, stop, &input.notes);
+    if (surface) input.surface = std::move(*surface);
   } else if (options.label) {
     auto label = ReadLabelSurface(options.surface, *options.label, options.smoothing, stop, problems);
     if (label) TakeLabel(std::move(*label), options, input);
@@ -227,15 +254,24 @@ Input ReadInput(const MeshOptions& options, const std::stop_token& stop, Problem
   return input;
 }
 
+void CheckOutName(const MeshOptions& options, Problems& problems) {
+  if (fs::path(options.out).extension() == ".msh") return;
+  problems.Add("--out", "expects a file that ends in .msh", "the mesh is written in Gmsh's format");
+}
+
 int MakeMesh(const MeshOptions& options, const Context& context) {
   const StopOnInterrupt interrupts;
   const std::stop_token stop = interrupts.token();
   Problems problems;
+  if (options.convert) {
+    CheckOutName(options, problems);
+    FailOn(problems, options.surface);
+    ConvertMesh({options.surface, options.out, options.unit, options.split_hexahedra}, context, stop);
+    return kDone;
+  }
   Input input = ReadInput(options, stop, problems);
   const std::vector<RegionRequest> requests = ReadRegionRequests(options.regions, stop, problems);
-  if (fs::path(options.out).extension() != ".msh") {
-    problems.Add("--out", "expects a file that ends in .msh", "the mesh is written in Gmsh's format");
-  }
+  CheckOutName(options, problems);
   if (!options.scene.empty() && requests.size() < 2) {
     problems.Add("--scene", "a muscle needs two attachments", "give --region twice: the origin, then the insertion");
   }
@@ -269,8 +305,8 @@ int MakeMesh(const MeshOptions& options, const Context& context) {
   }
   if (context.json) {
     Json report = ReportJson(options, *result, regions);
+    report["notes"] = input.notes;
     if (input.voxel_volume) report["voxel_volume"] = *input.voxel_volume;
-    if (!input.notes.empty()) report["notes"] = input.notes;
     PrintJson(report);
   } else {
     for (const std::string& note : input.notes) std::printf("note  %s\n", note.c_str());
@@ -278,6 +314,7 @@ int MakeMesh(const MeshOptions& options, const Context& context) {
       std::printf("label %d: smoothing changed its volume by %+.3f %%\n", *options.label,
                   100 * (result->report.surface_volume / *input.voxel_volume - 1));
     }
+    for (const std::string& note : input.notes) std::printf("note: %s\n", note.c_str());
     PrintReport(options, *result, regions);
   }
   return kDone;
@@ -286,7 +323,8 @@ int MakeMesh(const MeshOptions& options, const Context& context) {
 }  // namespace
 
 void AddMesh(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "mesh", "Fill a closed surface with tetrahedra", kMeshExamples);
+  CLI::App* command =
+      AddCommand(app, "mesh", "Fill a closed surface with tetrahedra, or convert a mesh", kMeshExamples);
   const auto options = std::make_shared<MeshOptions>();
   command
       ->add_option(
@@ -295,6 +333,13 @@ void AddMesh(CLI::App& app, Context& context) {
           "or the folder of a DICOM series. Images lie in patient coordinates: x left, y back, z head")
       ->required();
   command->add_option("--out", options->out, "The mesh file")->required()->type_name("FILE.msh");
+  CLI::Option* convert =
+      command->add_flag("--convert", options->convert,
+                        "Convert a volume mesh instead: " + ConvertibleExtensions() + "; named sets become regions");
+  command
+      ->add_flag("--split-hexahedra", options->split_hexahedra,
+                 "With --convert: split hexahedra, wedges and pyramids into tetrahedra")
+      ->needs(convert);
   command->add_option("--unit", options->unit, "Unit of the surface and of all lengths given here")
       ->check(CLI::IsMember({"m", "cm", "mm"}));
   CLI::Option* size = command->add_option("--size", options->size, "Edge length at the surface")
@@ -329,6 +374,10 @@ void AddMesh(CLI::App& app, Context& context) {
       ->check(CLI::Range(0.3, 10.0));
   command->add_option("--threads", options->threads, "Number of threads; the mesh does not depend on it")
       ->check(CLI::Range(1, 256));
+  for (const char* name :
+       {"--size", "--tets", "--grading", "--max-hole", "--region", "--scene", "--picture", "--label", "--smooth"}) {
+    convert->excludes(command->get_option(name));
+  }
   command->callback(
       [options, &context] { context.action = [options, &context] { return MakeMesh(*options, context); }; });
 }

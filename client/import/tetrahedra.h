@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/import/model.h"
+#include "core/geometry/solid_cells.h"
 
 namespace fascicle::client {
 
@@ -17,10 +18,11 @@ struct Tetrahedra {
   std::vector<std::int32_t> element;                 // index in the part
 };
 
-// Hexahedra, wedges and pyramids are split from their node with the lowest index, and their sides along the diagonal
-// from the side's node with the lowest index. So neighbours match, and boxes are split as in MakeBox [Dompierre et al.
-// 1999].
+// Hexahedra, wedges and pyramids are split as in core/geometry/solid_cells.h.
 Tetrahedra MakeTetrahedra(const Mesh& mesh);
+
+// The shape of elements that are not tetrahedra.
+SolidShape SolidShapeOf(Shape shape);
 
 // The triangles of a facet, split in the same way.
 std::vector<Triangle> TrianglesOf(const Facet& facet);

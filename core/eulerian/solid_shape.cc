@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 
+#include "core/geometry/surface_repair.h"
 #include "core/geometry/triangle_tree.h"
 
 namespace fascicle {
@@ -72,6 +73,14 @@ void CheckSolidSurface(const TriangleMesh& surface, double spacing, Problems& pr
   }
   if (EnclosedVolume(surface) <= 0) {
     problems.Add("", "the surface is inverted", "triangles are counter-clockwise seen from outside");
+    return;
+  }
+  // A cavity whose surface is outward would count as a second body in the same place.
+  TriangleMesh oriented = surface;
+  Problems ignored;
+  if (RepairSurface(oriented, 0, ignored).turned_triangles > 0) {
+    problems.Add("", "a part of the surface has the wrong orientation",
+                 "triangles are counter-clockwise seen from outside of the body, also those of a cavity");
     return;
   }
   const std::size_t cuts = TriangleTree(surface).CuttingPairs().size();

@@ -1,8 +1,13 @@
 // Gmsh MSH, ASCII, versions 2 and 4.1 [Gmsh reference manual, "Gmsh mesh file formats"].
+#include <algorithm>
+#include <cstdio>
+#include <iterator>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
+#include "core/base/stop.h"
 #include "core/geometry/mesh_readers.h"
 #include "core/geometry/text_scanner.h"
 
@@ -12,9 +17,23 @@ namespace {
 // Gmsh's element types.
 constexpr std::int64_t kTriangle3 = 2, kTetrahedron4 = 4, kTriangle6 = 9, kTetrahedron10 = 11, kPoint = 15;
 bool IsHigherTetrahedron(std::int64_t type) { return type >= 29 && type <= 31; }
+// Other solids of order three and more.
+bool IsHigherSolid(std::int64_t type) { return (type >= 90 && type <= 98) || (type >= 106 && type <= 125); }
+constexpr std::int64_t kGmshQuads[] = {3, 10, 16};
+struct GmshSolid {
+  std::int64_t type;
+  SolidShape shape;
+  int nodes;
+};
+constexpr GmshSolid kGmshSolids[] = {
+    {5, SolidShape::kHexahedron, 8},   {6, SolidShape::kWedge, 6},   {7, SolidShape::kPyramid, 5},
+    {12, SolidShape::kHexahedron, 27}, {13, SolidShape::kWedge, 18}, {14, SolidShape::kPyramid, 14},
+    {17, SolidShape::kHexahedron, 20}, {18, SolidShape::kWedge, 15}, {19, SolidShape::kPyramid, 13}};
+
+using PhysicalTags = std::vector<std::int64_t>;
 
 // Physical tags of version 4's entities, by dimension and tag.
-using EntityTags = std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t>;
+using EntityTags = std::map<std::pair<std::int64_t, std::int64_t>, PhysicalTags>;
 
 void ReadFormat(TextScanner& in, double& version) {
   version = in.Double("the version");
@@ -42,25 +61,66 @@ void ReadNodes2(TextScanner& in, RawMesh& raw) {
   }
 }
 
-void AddElement(TextScanner& in, std::int64_t type, std::int64_t tag, RawMesh& raw) {
+std::int64_t FirstOf(const PhysicalTags& tags) { return tags.empty() ? 0 : tags.front(); }
+
+// Adds a surface cell or a point once for each of its tags.
+template <std::size_t N>
+void AddForEachTag(const std::array<std::int64_t, N>& nodes, const PhysicalTags& tags,
+                   std::vector<std::array<std::int64_t, N>>& cells, std::vector<std::int64_t>& cell_tags) {
+  for (std::size_t t = 0; t < std::max<std::size_t>(tags.size(), 1); ++t) {
+    cells.push_back(nodes);
+    cell_tags.push_back(tags.empty() ? 0 : tags[t]);
+  }
+}
+
+template <std::size_t N>
+std::array<std::int64_t, N> ReadNodeNumbers(TextScanner& in) {
+  std::array<std::int64_t, N> nodes;
+  for (std::int64_t& node : nodes) node = in.Int("a node number");
+  return nodes;
+}
+
+void AddTetrahedron(TextScanner& in, bool ten_nodes, const PhysicalTags& tags, RawMesh& raw) {
+  raw.tetrahedra.push_back(ReadNodeNumbers<4>(in));
+  raw.tetrahedron_tags.push_back(FirstOf(tags));
+  for (std::size_t t = 1; t < tags.size(); ++t) {
+    raw.further_tags.push_back({static_cast<std::int64_t>(raw.tetrahedra.size()) - 1, tags[t]});
+  }
+  if (!ten_nodes) return;
+  raw.middles.push_back(ReadNodeNumbers<6>(in));
+  std::swap(raw.middles.back()[4], raw.middles.back()[5]);  // Gmsh has edge 2-3 before edge 1-3
+}
+
+void AddSolid(TextScanner& in, const GmshSolid& type, const PhysicalTags& tags, RawMesh& raw) {
+  RawSolid solid{type.shape, {}};
+  const int corners = CornersOf(type.shape);
+  for (int n = 0; n < corners; ++n) solid.nodes[n] = in.Int("a node number");
+  for (int n = corners; n < type.nodes; ++n) in.Int("a node number");
+  if (type.nodes > corners) ++raw.curved_solids;
+  raw.solids.push_back(solid);
+  raw.solid_tags.push_back(FirstOf(tags));
+  for (std::size_t t = 1; t < tags.size(); ++t) {
+    raw.further_solid_tags.push_back({static_cast<std::int64_t>(raw.solids.size()) - 1, tags[t]});
+  }
+}
+
+void AddElement(TextScanner& in, std::int64_t type, const PhysicalTags& tags, RawMesh& raw) {
+  const auto solid =
+      std::find_if(std::begin(kGmshSolids), std::end(kGmshSolids), [&](const GmshSolid& s) { return s.type == type; });
   if (type == kTetrahedron4 || type == kTetrahedron10) {
-    auto& nodes = raw.tetrahedra.emplace_back();
-    for (std::int64_t& node : nodes) node = in.Int("a node number");
-    raw.tetrahedron_tags.push_back(tag);
-    if (type == kTetrahedron4) return;
-    auto& middles = raw.middles.emplace_back();
-    for (std::int64_t& node : middles) node = in.Int("a node number");
-    std::swap(middles[4], middles[5]);  // Gmsh has edge 2-3 before edge 1-3
+    AddTetrahedron(in, type == kTetrahedron10, tags, raw);
   } else if (type == kTriangle3 || type == kTriangle6) {
-    auto& nodes = raw.triangles.emplace_back();
-    for (std::int64_t& node : nodes) node = in.Int("a node number");
+    AddForEachTag(ReadNodeNumbers<3>(in), tags, raw.triangles, raw.triangle_tags);
     for (int middle = 0; type == kTriangle6 && middle < 3; ++middle) in.Int("a node number");
-    raw.triangle_tags.push_back(tag);
   } else if (type == kPoint) {
-    raw.points.push_back({in.Int("a node number")});
-    raw.point_tags.push_back(tag);
+    AddForEachTag(ReadNodeNumbers<1>(in), tags, raw.points, raw.point_tags);
+  } else if (std::find(std::begin(kGmshQuads), std::end(kGmshQuads), type) != std::end(kGmshQuads)) {
+    AddForEachTag(ReadNodeNumbers<4>(in), tags, raw.quads, raw.quad_tags);
+    if (type != kGmshQuads[0]) in.Line();
+  } else if (solid != std::end(kGmshSolids)) {
+    AddSolid(in, *solid, tags, raw);
   } else {
-    ++(IsHigherTetrahedron(type) ? raw.higher_order : raw.others);
+    ++(IsHigherTetrahedron(type) ? raw.higher_order : IsHigherSolid(type) ? raw.other_solids : raw.others);
     in.Line();
   }
 }
@@ -71,29 +131,128 @@ void ReadElements2(TextScanner& in, RawMesh& raw) {
     in.Int("an element number");
     const std::int64_t type = in.Int("an element type");
     const std::size_t tags = in.Count("tags", 2);
-    std::int64_t physical = 0;
+    PhysicalTags physical;
     for (std::size_t t = 0; t < tags; ++t) {
       const std::int64_t tag = in.Int("a tag");
-      if (t == 0) physical = tag;
+      if (t == 0) physical = {tag};
     }
     AddElement(in, type, physical, raw);
   }
 }
 
-// Reads points, curves, surfaces and volumes: tag, a point or a bounding box, physical tags, bounding entities.
-void ReadEntities(TextScanner& in, EntityTags& tags) {
+// Version 2 has one physical tag for each element, so Gmsh writes elements of several groups once for each. Such twins
+// become further tags of the first one. Twins with the same tag are left for CheckMesh to report. Returns which cells
+// are to be removed.
+template <class Cells>
+std::vector<char> FindTwins(const Cells& cells, const PhysicalTags& tags, const std::stop_token& stop,
+                            std::vector<std::array<std::int64_t, 2>>& further) {
+  std::vector<char> gone(cells.size());
+  if (std::all_of(tags.begin(), tags.end(), [&](std::int64_t tag) { return tag == tags.front(); })) return gone;
+  std::vector<std::pair<typename Cells::value_type, std::size_t>> order;
+  order.reserve(cells.size());
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    order.push_back({cells[c], c});
+    std::sort(order.back().first.begin(), order.back().first.end());
+  }
+  SortUnlessStopped(order, stop);
+  for (std::size_t first = 0; first < order.size();) {
+    std::size_t last = first + 1;
+    std::set<std::int64_t> seen = {tags[order[first].second]};
+    for (; last < order.size() && order[last].first == order[first].first; ++last) {
+      const std::size_t twin = order[last].second;
+      if (!seen.insert(tags[twin]).second) continue;
+      gone[twin] = 1;
+      further.push_back({static_cast<std::int64_t>(order[first].second), tags[twin]});
+    }
+    first = last;
+  }
+  return gone;
+}
+
+// Removes the cells that are gone, and renumbers those with further tags.
+template <class Cell>
+void Remove(const std::vector<char>& gone, std::vector<Cell>& cells) {
+  std::size_t c = 0;
+  std::erase_if(cells, [&](const Cell&) { return gone[c++] != 0; });
+}
+
+void Renumber(const std::vector<char>& gone, std::vector<std::array<std::int64_t, 2>>& further) {
+  std::vector<std::int64_t> number;
+  std::int64_t count = 0;
+  for (const char is_gone : gone) number.push_back(is_gone ? -1 : count++);
+  for (auto& [cell, tag] : further) cell = number[static_cast<std::size_t>(cell)];
+  std::sort(further.begin(), further.end());
+}
+
+void MergeTwins(const std::stop_token& stop, RawMesh& raw) {
+  const std::vector<char> gone = FindTwins(raw.tetrahedra, raw.tetrahedron_tags, stop, raw.further_tags);
+  std::vector<std::array<std::int64_t, 8>> solids;
+  for (const RawSolid& solid : raw.solids) solids.push_back(solid.nodes);
+  const std::vector<char> gone_solids = FindTwins(solids, raw.solid_tags, stop, raw.further_solid_tags);
+  const std::size_t count = raw.further_tags.size() + raw.further_solid_tags.size();
+  if (count == 0) return;
+  if (raw.middles.size() == raw.tetrahedra.size()) Remove(gone, raw.middles);
+  Remove(gone, raw.tetrahedra);
+  Remove(gone, raw.tetrahedron_tags);
+  Renumber(gone, raw.further_tags);
+  Remove(gone_solids, raw.solids);
+  Remove(gone_solids, raw.solid_tags);
+  Renumber(gone_solids, raw.further_solid_tags);
+  raw.notes.push_back(std::to_string(count) +
+                      " volume elements repeat another one with a different physical tag: each is read once, with all "
+                      "of its tags");
+}
+
+// Names of physical tags, a line each: dimension, tag, and the name in quotes.
+void ReadNames(TextScanner& in, RawMesh& raw) {
+  in.Int("the number of names");
+  in.Line();
+  while (!in.failed() && !in.AtEnd() && in.Peek() != "$EndPhysicalNames") {
+    TagName name;
+    name.dimension = static_cast<int>(in.Int("a dimension"));
+    name.tag = static_cast<std::int32_t>(in.Int("a physical tag"));
+    const std::string_view line = in.Line();
+    const std::size_t begin = line.find('"'), end = line.rfind('"');
+    if (begin == std::string_view::npos || end <= begin) continue;
+    name.name = line.substr(begin + 1, end - begin - 1);
+    raw.names.push_back(std::move(name));
+  }
+  in.Expect("$EndPhysicalNames");
+}
+
+// Reads points, curves, surfaces and volumes: tag, a point or a bounding box, physical tags, bounding entities. Those
+// of a partitioned mesh have their parent entity and their partitions after the tag; without physical tags of their
+// own, they have those of the parent.
+void ReadEntities(TextScanner& in, bool partitioned, EntityTags& all) {
+  if (partitioned) {
+    in.Int("the number of partitions");
+    const std::size_t ghosts = in.Count("ghost entities", 4);
+    for (std::size_t i = 0; i < 2 * ghosts && !in.failed(); ++i) in.Int("a ghost entity");
+  }
   std::size_t counts[4];
   for (std::size_t& count : counts) count = in.Count("entities", 8);
-  for (int dimension = 0; dimension < 4; ++dimension) {
+  for (std::int64_t dimension = 0; dimension < 4; ++dimension) {
     for (std::size_t i = 0; i < counts[dimension] && !in.failed(); ++i) {
       const std::int64_t entity = in.Int("an entity tag");
+      PhysicalTags tags;
+      if (partitioned) {
+        const std::int64_t parent_dimension = in.Int("the dimension of the parent");
+        const std::int64_t parent = in.Int("the tag of the parent");
+        const auto found = all.find({parent_dimension, parent});
+        if (found != all.end() && parent_dimension == dimension) tags = found->second;
+        const std::size_t partitions = in.Count("partitions", 2);
+        for (std::size_t p = 0; p < partitions && !in.failed(); ++p) in.Int("a partition");
+      }
       for (int c = 0; c < (dimension == 0 ? 3 : 6); ++c) in.Double("a bound");
       const std::size_t physicals = in.Count("physical tags", 2);
-      for (std::size_t p = 0; p < physicals; ++p) {
+      if (physicals > 0) tags.clear();
+      for (std::size_t p = 0; p < physicals && !in.failed(); ++p) {
         const std::int64_t physical = in.Int("a physical tag");
         // Gmsh gives a negative tag to an entity that is used against its orientation.
-        if (p == 0) tags[{dimension, entity}] = physical < 0 ? -physical : physical;
+        const std::int64_t tag = physical < 0 ? -physical : physical;
+        if (std::find(tags.begin(), tags.end(), tag) == tags.end()) tags.push_back(tag);
       }
+      all[{dimension, entity}] = std::move(tags);
       if (dimension == 0) continue;
       const std::size_t bounds = in.Count("bounding entities", 2);
       for (std::size_t b = 0; b < bounds && !in.failed(); ++b) in.Int("a bounding entity");
@@ -141,7 +300,7 @@ void ReadElements4(TextScanner& in, const EntityTags& tags, RawMesh& raw) {
     const auto tag = tags.find({dimension, entity});
     for (std::size_t i = 0; i < in_block && !in.failed(); ++i) {
       in.Int("an element number");
-      AddElement(in, type, tag == tags.end() ? 0 : tag->second, raw);
+      AddElement(in, type, tag == tags.end() ? PhysicalTags() : tag->second, raw);
     }
     found += in_block;
   }
@@ -182,8 +341,13 @@ RawMesh ReadGmsh(std::string_view bytes, const std::stop_token& stop, Problems& 
       version < 4 ? ReadElements2(in, raw) : ReadElements4(in, tags, raw);
       in.Expect("$EndElements");
     } else if (section == "$Entities" && version >= 4) {
-      ReadEntities(in, tags);
+      ReadEntities(in, false, tags);
       in.Expect("$EndEntities");
+    } else if (section == "$PartitionedEntities" && version >= 4) {
+      ReadEntities(in, true, tags);
+      in.Expect("$EndPartitionedEntities");
+    } else if (section == "$PhysicalNames") {
+      ReadNames(in, raw);
     } else if (section == "$MeshFormat" || section == "$Nodes" || section == "$Elements") {
       in.Fail("a second section " + std::string(section));
     } else if (section.starts_with('$')) {
@@ -196,6 +360,7 @@ RawMesh ReadGmsh(std::string_view bytes, const std::stop_token& stop, Problems& 
   if (version == 0) in.Fail("the file is empty");
   if (!has_nodes) in.Fail("the file has no section $Nodes", "is the file complete?");
   if (!has_elements) in.Fail("the file has no section $Elements", "is the file complete?");
+  if (!in.failed() && version < 4) MergeTwins(stop, raw);
   return raw;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "core/base/stop.h"
@@ -112,11 +113,138 @@ std::vector<std::int32_t> NarrowTags(const std::vector<std::int64_t>& tags, Prob
 void ReportNothingToRead(const RawMesh& raw, Problems& problems) {
   std::string left_out;
   if (raw.higher_order > 0) left_out = std::to_string(raw.higher_order) + " of higher order";
-  const std::size_t rest = raw.others + raw.triangles.size() + raw.points.size();
+  const std::size_t rest = raw.others + raw.other_solids + raw.triangles.size() + raw.quads.size() + raw.points.size();
   if (rest > 0) left_out += (left_out.empty() ? "" : " and ") + std::to_string(rest) + " cells of other kinds";
   problems.Add("", "the file has no tetrahedra of four or ten nodes" + (left_out.empty() ? "" : ", but " + left_out),
                raw.higher_order > 0 ? "write the mesh with element order 1, or 2 in the formats of Gmsh and VTK"
                                     : "fill the surface with tetrahedra, and write the volume elements");
+}
+
+// "12 hexahedra, 3 wedges".
+std::string CountSolids(const std::vector<RawSolid>& solids) {
+  std::string text;
+  for (const auto& [shape, name] :
+       {std::pair(SolidShape::kHexahedron, "hexahedra"), std::pair(SolidShape::kWedge, "wedges"),
+        std::pair(SolidShape::kPyramid, "pyramids")}) {
+    const auto count = std::count_if(solids.begin(), solids.end(), [&](const RawSolid& s) { return s.shape == shape; });
+    if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name;
+  }
+  return text;
+}
+
+// Reports volume elements whose omission would leave holes in the body.
+bool CheckSolids(const RawMesh& raw, bool split_solids, Problems& problems) {
+  const std::size_t before = problems.count();
+  if (!raw.solids.empty() && !split_solids) {
+    problems.Add("", "the file has " + CountSolids(raw.solids) + "; fascicle has tetrahedra only",
+                 "`fascicle mesh FILE --convert --split-hexahedra --out FILE.msh` splits them");
+  }
+  const std::size_t lost = raw.higher_order + raw.other_solids;
+  if (lost > 0 && (!raw.tetrahedra.empty() || !raw.solids.empty())) {
+    problems.Add("", std::to_string(lost) + " volume elements of the file are of kinds that are not supported",
+                 "write the mesh with tetrahedra of four or ten nodes only");
+  }
+  return problems.count() == before;
+}
+
+// Replaces solids by tetrahedra and quadrilaterals by triangles. Returns the number of tetrahedra before those of each
+// solid, and of all.
+std::vector<std::size_t> SplitSolids(RawMesh& raw, const std::stop_token& stop) {
+  std::vector<std::size_t> first = {raw.tetrahedra.size()};
+  for (std::size_t s = 0; s < raw.solids.size(); ++s) {
+    ThrowIfStopped(stop);
+    const RawSolid& solid = raw.solids[s];
+    SplitSolid(solid.shape, std::span(solid.nodes.data(), static_cast<std::size_t>(CornersOf(solid.shape))),
+               raw.tetrahedra);
+    first.push_back(raw.tetrahedra.size());
+    raw.tetrahedron_tags.resize(raw.tetrahedra.size(), raw.solid_tags[s]);
+  }
+  for (const auto& [solid, tag] : raw.further_solid_tags) {
+    for (std::size_t t = first[static_cast<std::size_t>(solid)]; t < first[static_cast<std::size_t>(solid) + 1]; ++t) {
+      raw.further_tags.push_back({static_cast<std::int64_t>(t), tag});
+    }
+  }
+  // Without solids, quadrilaterals are not sides of volume elements.
+  for (std::size_t q = 0; !raw.solids.empty() && q < raw.quads.size(); ++q) {
+    for (const auto& triangle : SplitQuad(raw.quads[q])) raw.triangles.push_back(triangle);
+    raw.triangle_tags.resize(raw.triangles.size(), raw.quad_tags[q]);
+  }
+  if (!raw.solids.empty()) raw.notes.push_back(CountSolids(raw.solids) + " were split into tetrahedra");
+  if (raw.curved_solids > 0) {
+    raw.notes.push_back("the mid-edge nodes of " + std::to_string(raw.curved_solids) +
+                        " of them were left out: their edges are straight");
+  }
+  return first;
+}
+
+// Programs differ in whether the base of a wedge is seen from inside or from outside.
+void OrientSolids(const std::vector<std::size_t>& first, TetMesh& mesh) {
+  for (std::size_t s = 0; s + 1 < first.size(); ++s) {
+    double volume = 0;
+    for (std::size_t t = first[s]; t < first[s + 1]; ++t) volume += SignedVolume(mesh, t);
+    for (std::size_t t = first[s]; volume < 0 && t < first[s + 1]; ++t) {
+      std::swap(mesh.tetrahedra[t][2], mesh.tetrahedra[t][3]);
+    }
+  }
+}
+
+// Leaves out nodes without a tetrahedron, and triangles and single nodes on them.
+void DropUnused(RawMesh& raw, std::vector<std::array<std::int32_t, 6>>& middles, TetMesh& mesh) {
+  constexpr std::size_t kExamples = 5;
+  std::vector<std::int32_t> number(mesh.nodes.size(), -1);
+  const auto use = [&](const auto& cells) {
+    for (const auto& cell : cells) {
+      for (const std::int32_t n : cell) number[n] = 0;
+    }
+  };
+  use(mesh.tetrahedra);
+  use(middles);
+  const auto unused = static_cast<std::size_t>(std::count(number.begin(), number.end(), -1));
+  if (unused == 0) return;
+  std::string examples;
+  std::size_t told = 0;
+  std::int32_t count = 0;
+  for (std::size_t n = 0; n < number.size(); ++n) {
+    if (number[n] == 0) {
+      mesh.nodes[count] = mesh.nodes[n];
+      number[n] = count++;
+    } else if (told++ < kExamples) {
+      const std::int64_t name =
+          raw.node_numbers.empty() ? raw.first_node + static_cast<std::int64_t>(n) : raw.node_numbers[n];
+      examples += (told > 1 ? ", " : "") + std::to_string(name);
+    }
+  }
+  mesh.nodes.resize(count);
+  const auto renumber = [&](auto& cells) {
+    for (auto& cell : cells) {
+      for (std::int32_t& n : cell) n = number[n];
+    }
+  };
+  renumber(mesh.tetrahedra);
+  renumber(middles);
+  renumber(mesh.tagged_triangles);
+  const auto is_gone = [](const Triangle& t) { return *std::min_element(t.begin(), t.end()) < 0; };
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < mesh.tagged_triangles.size(); ++t) {
+    if (is_gone(mesh.tagged_triangles[t])) continue;
+    mesh.tagged_triangles[kept] = mesh.tagged_triangles[t];
+    mesh.triangle_tags[kept++] = mesh.triangle_tags[t];
+  }
+  const std::size_t triangles = mesh.tagged_triangles.size() - kept;
+  mesh.tagged_triangles.resize(kept);
+  mesh.triangle_tags.resize(kept);
+  kept = 0;
+  for (std::size_t p = 0; p < mesh.tagged_nodes.size(); ++p) {
+    if (number[mesh.tagged_nodes[p]] < 0) continue;
+    mesh.tagged_nodes[kept] = number[mesh.tagged_nodes[p]];
+    mesh.node_tags[kept++] = mesh.node_tags[p];
+  }
+  mesh.tagged_nodes.resize(kept);
+  mesh.node_tags.resize(kept);
+  raw.notes.push_back((unused == 1 ? "1 node belongs to no tetrahedron and is left out: "
+                                   : std::to_string(unused) + " nodes belong to no tetrahedron and are left out: ") +
+                      examples + (unused > kExamples ? ", ..." : "") +
+                      (triangles > 0 ? "; so are " + std::to_string(triangles) + " triangles on them" : ""));
 }
 
 // Turns mid-edge nodes into curved edges, or drops them where the edge is straight up to round-off, and renumbers the
@@ -191,11 +319,13 @@ void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, const 
   mesh.node_tags.resize(kept);
 }
 
-std::optional<TetMesh> Finish(RawMesh raw, const std::stop_token& stop, Problems& problems) {
-  if (raw.tetrahedra.empty()) {
+std::optional<TetMesh> MakeMesh(RawMesh& raw, bool split_solids, const std::stop_token& stop, Problems& problems) {
+  if (raw.tetrahedra.empty() && raw.solids.empty()) {
     ReportNothingToRead(raw, problems);
     return std::nullopt;
   }
+  if (!CheckSolids(raw, split_solids, problems)) return std::nullopt;
+  const std::vector<std::size_t> split = SplitSolids(raw, stop);
   if (std::int64_t(raw.nodes.size()) > kMaxIndex || std::int64_t(raw.tetrahedra.size()) > kMaxIndex) {
     problems.Add("", "the mesh has more than 2^31 nodes or tetrahedra", "use a coarser mesh");
     return std::nullopt;
@@ -215,6 +345,12 @@ std::optional<TetMesh> Finish(RawMesh raw, const std::stop_token& stop, Problems
   if (!mesh.node_tags.empty()) {
     for (const auto& [node] : points) mesh.tagged_nodes.push_back(node);
   }
+  std::vector<std::int64_t> further;
+  for (const auto& [tetrahedron, tag] : raw.further_tags) further.push_back(tag);
+  const std::vector<std::int32_t> further_tags = NarrowTags(further, problems);
+  for (std::size_t i = 0; i < further_tags.size(); ++i) {
+    mesh.further_tags.push_back({static_cast<std::int32_t>(raw.further_tags[i][0]), further_tags[i]});
+  }
   std::vector<std::array<std::int32_t, 6>> middles;
   if (!raw.middles.empty() && raw.middles.size() != raw.tetrahedra.size()) {
     problems.Add("", "the file mixes tetrahedra of four and of ten nodes", "write the mesh with one element order");
@@ -223,6 +359,8 @@ std::optional<TetMesh> Finish(RawMesh raw, const std::stop_token& stop, Problems
   }
   if (problems.count() > before) return std::nullopt;
   mesh.nodes = std::move(raw.nodes);
+  OrientSolids(split, mesh);
+  DropUnused(raw, middles, mesh);
   if (!middles.empty()) TakeMiddles(middles, stop, mesh, problems);
   if (problems.count() > before) return std::nullopt;
   return mesh;
@@ -230,31 +368,45 @@ std::optional<TetMesh> Finish(RawMesh raw, const std::stop_token& stop, Problems
 
 }  // namespace
 
-std::string KnownMeshExtensions() { return ".msh, .vtu, .vtk, .mesh, .node"; }
+std::optional<TetMesh> FinishMesh(RawMesh raw, bool split_solids, Problems& problems, const std::stop_token& stop,
+                                  MeshRemarks* remarks) {
+  std::optional<TetMesh> mesh = MakeMesh(raw, split_solids, stop, problems);
+  if (remarks != nullptr) *remarks = {std::move(raw.names), std::move(raw.notes)};
+  return mesh;
+}
 
-std::optional<TetMesh> ReadMesh(const MeshFile& file, Problems& problems, const std::stop_token& stop) {
+std::string KnownMeshExtensions() { return ".msh, .vtu, .vtk, .mesh, .node, .inp"; }
+
+std::optional<TetMesh> ReadMesh(const MeshFile& file, Problems& problems, const std::stop_token& stop,
+                                MeshRemarks* remarks) {
+  const std::string_view text = WithoutByteOrderMark(file.bytes);
   const std::string extension = Extension(file.name);
   const std::size_t before = problems.count();
   RawMesh raw;
   if (extension == ".msh") {
-    raw = ReadGmsh(file.bytes, stop, problems);
+    raw = ReadGmsh(text, stop, problems);
   } else if (extension == ".vtu") {
-    raw = ReadVtu(file.bytes, stop, problems);
+    raw = ReadVtu(text, stop, problems);
   } else if (extension == ".vtk") {
-    raw = ReadVtkLegacy(file.bytes, stop, problems);
+    raw = ReadVtkLegacy(text, stop, problems);
   } else if (extension == ".mesh") {
-    raw = ReadMedit(file.bytes, stop, problems);
+    raw = ReadMedit(text, stop, problems);
   } else if (extension == ".node") {
-    raw = ReadTetgen(file.bytes, file.element_bytes, stop, problems);
+    raw = ReadTetgen(text, WithoutByteOrderMark(file.element_bytes), stop, problems);
+  } else if (extension == ".inp") {
+    raw = ReadAbaqus(text, stop, problems);
   } else {
     const bool surface = extension == ".stl" || extension == ".obj" || extension == ".ply" || extension == ".off";
     problems.Add("", "the file extension " + Quoted(extension) + " is not that of a mesh that can be read",
                  extension == ".ele" ? "give the .node file as the mesh and this one as its elements"
+                 : extension == ".xdmf" || extension == ".xmf" ? "write it as .vtu, for example with ParaView"
+                 : extension == ".feb" || extension == ".e" || extension == ".exo"
+                     ? "`fascicle mesh FILE --convert --out FILE.msh` converts it"
                  : surface ? "a surface is not enough: fill it with tetrahedra; known are " + KnownMeshExtensions()
                            : "known are " + KnownMeshExtensions());
   }
   if (problems.count() > before) return std::nullopt;
-  return Finish(std::move(raw), stop, problems);
+  return FinishMesh(std::move(raw), file.split_solids, problems, stop, remarks);
 }
 
 }  // namespace fascicle

@@ -5,6 +5,7 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/problems.h"
 #include "core/geometry/tet_mesh.h"
@@ -13,18 +14,28 @@ namespace fascicle {
 
 // The bytes of a mesh file. The views must stay valid during the call only.
 struct MeshFile {
-  std::string_view name;  // its extension gives the format: .msh .vtu .vtk .mesh .node
+  std::string_view name;  // its extension, in any case, gives the format: .msh .vtu .vtk .mesh .node .inp
   std::string_view bytes;
-  std::string_view element_bytes;  // TetGen only: the bytes of the .ele file
+  std::string_view element_bytes = {};  // TetGen only: the bytes of the .ele file
+  bool split_solids = false;            // split hexahedra, wedges and pyramids into tetrahedra; otherwise refused
 };
 
-// Reads tetrahedra (and tagged triangles) from Gmsh 2.2/4.1 ASCII, VTK XML (.vtu: ascii, inline and appended, raw or
-// base64, zlib-compressed or not), VTK legacy (ascii and binary), MEDIT ASCII, and TetGen. Other cells are skipped. The
-// file's node numbers are kept where they are contiguous; TetGen files may count from 0 or 1. Coordinates stay in the
-// file's unit; tetrahedra keep the file's orientation. Malformed input never crashes, hangs or allocates more than a
-// small multiple of the file's size. It adds to `problems` (with empty paths and line numbers in the message) and
-// returns nothing. Throws Stopped after a stop request.
-std::optional<TetMesh> ReadMesh(const MeshFile& file, Problems& problems, const std::stop_token& stop = {});
+// What a file says besides its mesh.
+struct MeshRemarks {
+  std::vector<TagName> names;      // of physical tags
+  std::vector<std::string> notes;  // what was left out, or read in spite of a flaw
+};
+
+// Reads tetrahedra and tagged triangles and nodes from Gmsh 2.2/4.1 ASCII, VTK XML (.vtu: ascii, inline and appended,
+// raw or base64, zlib-compressed or not), VTK legacy (ascii and binary), MEDIT ASCII, TetGen, and Abaqus. Lines and
+// surface cells without tags are skipped; solids that are not tetrahedra are refused unless they are to be split. Nodes
+// without a tetrahedron are left out, with a note. The file's node numbers are kept where they are contiguous; TetGen
+// files may count from 0 or 1. Coordinates stay in the file's unit; tetrahedra keep the file's orientation, and those
+// of a split solid have positive volumes. Malformed input never crashes, hangs or allocates more than a small multiple
+// of the file's size. It adds to `problems` (with empty paths and line numbers in the message) and returns nothing.
+// Throws Stopped after a stop request.
+std::optional<TetMesh> ReadMesh(const MeshFile& file, Problems& problems, const std::stop_token& stop = {},
+                                MeshRemarks* remarks = nullptr);
 
 // The extensions that ReadMesh accepts, for messages: ".msh, .vtu, ...".
 std::string KnownMeshExtensions();

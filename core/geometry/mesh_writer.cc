@@ -1,9 +1,11 @@
 // [Gmsh reference manual, "MSH file format version 2"]
 #include "core/geometry/mesh_writer.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <concepts>
+#include <map>
 
 #include "core/base/stop.h"
 
@@ -24,6 +26,61 @@ void AppendLine(std::string& text, Numbers... numbers) {
   text.back() = '\n';
 }
 
+// Gmsh's element types.
+constexpr int kTriangle3 = 2, kTetrahedron4 = 4, kTetrahedron10 = 11, kPoint = 15;
+
+// The nodes of all edges when some are curved, numbered after the nodes of the mesh.
+class MidEdgeNodes {
+ public:
+  explicit MidEdgeNodes(const TetMesh& mesh) : first_(static_cast<std::int32_t>(mesh.nodes.size())) {
+    if (mesh.curved_edges.empty()) return;
+    std::map<Ends, Vec3> curved;
+    for (const CurvedEdge& edge : mesh.curved_edges) curved[EndsOf(edge.ends[0], edge.ends[1])] = edge.middle;
+    for (const Tetrahedron& t : mesh.tetrahedra) {
+      for (const auto& [i, j] : kTetEdges) {
+        const Ends ends = EndsOf(t[i], t[j]);
+        const auto next = first_ + static_cast<std::int32_t>(positions_.size());
+        if (!numbers_.try_emplace(ends, next).second) continue;
+        const auto found = curved.find(ends);
+        positions_.push_back(found != curved.end() ? found->second
+                                                   : Vec3(0.5 * (mesh.nodes[ends[0]] + mesh.nodes[ends[1]])));
+      }
+    }
+  }
+
+  const std::vector<Vec3>& positions() const { return positions_; }
+  std::int32_t Between(std::int32_t i, std::int32_t j) const { return numbers_.at(EndsOf(i, j)); }
+
+ private:
+  using Ends = std::array<std::int32_t, 2>;
+  static Ends EndsOf(std::int32_t i, std::int32_t j) { return {std::min(i, j), std::max(i, j)}; }
+
+  std::int32_t first_;
+  std::map<Ends, std::int32_t> numbers_;
+  std::vector<Vec3> positions_;
+};
+
+void AppendNode(std::size_t number, const Vec3& position, std::string& text) {
+  Append(number, text);
+  for (const double x : position) {
+    text += ' ';
+    Append(x, text);
+  }
+  text += '\n';
+}
+
+void AppendTetrahedron(std::size_t number, const Tetrahedron& t, std::int32_t tag, const MidEdgeNodes& middles,
+                       std::string& text) {
+  const auto& [a, b, c, d] = t;
+  if (middles.positions().empty()) {
+    AppendLine(text, number, kTetrahedron4, 2, tag, tag, a + 1, b + 1, c + 1, d + 1);
+    return;
+  }
+  const auto middle = [&](std::int32_t i, std::int32_t j) { return middles.Between(i, j) + 1; };
+  AppendLine(text, number, kTetrahedron10, 2, tag, tag, a + 1, b + 1, c + 1, d + 1, middle(a, b), middle(b, c),
+             middle(a, c), middle(a, d), middle(c, d), middle(b, d));
+}
+
 }  // namespace
 
 std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names, const std::stop_token& stop) {
@@ -35,29 +92,35 @@ std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names, con
     }
     text += "$EndPhysicalNames\n";
   }
-  text += "$Nodes\n" + std::to_string(mesh.nodes.size()) + "\n";
-  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
-    ThrowIfStopped(stop);
-    Append(n + 1, text);
-    for (const double x : mesh.nodes[n]) {
-      text += ' ';
-      Append(x, text);
-    }
-    text += '\n';
-  }
-  text += "$EndNodes\n$Elements\n" + std::to_string(mesh.tagged_triangles.size() + mesh.tetrahedra.size()) + "\n";
-  // Number, type, number of tags, the tags (physical, elementary), nodes.
+  const MidEdgeNodes middles(mesh);
+  text += "$Nodes\n" + std::to_string(mesh.nodes.size() + middles.positions().size()) + "\n";
   std::size_t number = 0;
+  for (const Vec3& node : mesh.nodes) {
+    ThrowIfStopped(stop);
+    AppendNode(++number, node, text);
+  }
+  for (const Vec3& node : middles.positions()) AppendNode(++number, node, text);
+  text += "$EndNodes\n$Elements\n" +
+          std::to_string(mesh.tagged_nodes.size() + mesh.tagged_triangles.size() + mesh.tetrahedra.size() +
+                         mesh.further_tags.size()) +
+          "\n";
+  // Number, type, number of tags, the tags (physical, elementary), nodes.
+  number = 0;
+  for (std::size_t i = 0; i < mesh.tagged_nodes.size(); ++i) {
+    AppendLine(text, ++number, kPoint, 2, mesh.node_tags[i], mesh.node_tags[i], mesh.tagged_nodes[i] + 1);
+  }
   for (std::size_t i = 0; i < mesh.tagged_triangles.size(); ++i) {
     const std::int32_t tag = mesh.triangle_tags[i];
     const auto& [a, b, c] = mesh.tagged_triangles[i];
-    AppendLine(text, ++number, 2, 2, tag, tag, a + 1, b + 1, c + 1);
+    AppendLine(text, ++number, kTriangle3, 2, tag, tag, a + 1, b + 1, c + 1);
   }
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     ThrowIfStopped(stop);
     const std::int32_t tag = mesh.tetrahedron_tags.empty() ? 0 : mesh.tetrahedron_tags[t];
-    const auto& [a, b, c, d] = mesh.tetrahedra[t];
-    AppendLine(text, ++number, 4, 2, tag, tag, a + 1, b + 1, c + 1, d + 1);
+    AppendTetrahedron(++number, mesh.tetrahedra[t], tag, middles, text);
+  }
+  for (const auto& [t, tag] : mesh.further_tags) {
+    AppendTetrahedron(++number, mesh.tetrahedra[t], tag, middles, text);
   }
   return text + "$EndElements\n";
 }

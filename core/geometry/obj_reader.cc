@@ -19,6 +19,15 @@ std::string_view Word(std::string_view& line) {
   return word;
 }
 
+// The bytes up to a line break (LF, CR LF or CR), which is removed with them.
+std::string_view TakePhysicalLine(std::string_view& bytes) {
+  const std::size_t end = std::min(bytes.find_first_of("\r\n"), bytes.size());
+  const std::string_view line = bytes.substr(0, end);
+  const std::size_t length = bytes.substr(end).starts_with("\r\n") ? 2 : 1;
+  bytes.remove_prefix(std::min(end + length, bytes.size()));
+  return line;
+}
+
 class ObjReader {
  public:
   ObjReader(const std::stop_token& stop, Problems& problems) : stop_(stop), problems_(problems) {}
@@ -27,14 +36,26 @@ class ObjReader {
     while (!bytes.empty() && !failed_) {
       ThrowIfStopped(stop_);
       ++line_;
-      const std::size_t end = std::min(bytes.find('\n'), bytes.size());
-      ReadLine(bytes.substr(0, std::min(end, bytes.find('#'))));
-      bytes.remove_prefix(std::min(end + 1, bytes.size()));
+      const std::string_view line = TakeLine(bytes);
+      ReadLine(line.substr(0, line.find('#')));
     }
     return std::move(raw_);
   }
 
  private:
+  // The next line. A line that ends with a backslash continues on the next one.
+  std::string_view TakeLine(std::string_view& bytes) {
+    std::string_view line = TakePhysicalLine(bytes);
+    if (!line.ends_with('\\')) return line;
+    joined_.clear();
+    while (line.ends_with('\\') && !bytes.empty()) {
+      joined_.append(line.substr(0, line.size() - 1)) += ' ';
+      line = TakePhysicalLine(bytes);
+      ++line_;
+    }
+    return joined_ += line;
+  }
+
   void Fail(const std::string& message) {
     problems_.Add("", "line " + std::to_string(line_) + ": " + message, "is the file complete?");
     failed_ = true;
@@ -73,6 +94,7 @@ class ObjReader {
   Problems& problems_;
   int line_ = 0;
   bool failed_ = false;
+  std::string joined_;  // a continued line
   RawSurface raw_;
 };
 

@@ -24,6 +24,7 @@ struct Tetrahedra {
 
   const std::vector<Tetrahedron>& elements() const { return mesh.tetrahedra; }
   const std::vector<std::int32_t>& tags() const { return mesh.tetrahedron_tags; }
+  const std::vector<std::array<std::int32_t, 2>>& further_tags() const { return mesh.further_tags; }
   static const Surface& Triangles(const Surface& faces) { return faces; }
   static void AddFace(const Triangle& face, Region& region) { region.triangles.push_back(face); }
   static const Surface& FacesOf(const Region& region) { return region.triangles; }
@@ -89,9 +90,7 @@ struct Select {
   void operator()(const TagSelector& selector) const {
     std::vector<FaceNodes> chosen;
     if constexpr (std::is_same_v<Cells, Tetrahedra>) chosen = TaggedTriangles(selector.tag);
-    for (std::size_t t = 0; t < cells.tags().size(); ++t) {
-      if (cells.tags()[t] == selector.tag) region.elements.push_back(static_cast<std::int32_t>(t));
-    }
+    SelectTaggedElements(selector.tag);
     if (chosen.empty() && region.elements.empty()) {
       if constexpr (std::is_same_v<Cells, Tetrahedra>) SelectTaggedNodes(selector.tag);
       return;
@@ -142,6 +141,19 @@ struct Select {
   }
 
  private:
+  void SelectTaggedElements(std::int32_t tag) const {
+    for (std::size_t t = 0; t < cells.tags().size(); ++t) {
+      if (cells.tags()[t] == tag) region.elements.push_back(static_cast<std::int32_t>(t));
+    }
+    if constexpr (std::is_same_v<Cells, Tetrahedra>) {
+      const std::size_t first = region.elements.size();
+      for (const auto& [t, further] : cells.further_tags()) {
+        if (further == tag) region.elements.push_back(t);
+      }
+      if (region.elements.size() > first) std::sort(region.elements.begin(), region.elements.end());
+    }
+  }
+
   // Triangles in the file have any orientation and may lie inside of the body. Those on the boundary are taken from the
   // boundary, with its orientation.
   std::vector<Triangle> TaggedTriangles(std::int32_t tag) const {

@@ -57,53 +57,93 @@ std::vector<Vec3> ReadBinary(std::string_view bytes, std::size_t count, const st
   return corners;
 }
 
-std::vector<Vec3> ReadAscii(std::string_view bytes, const std::stop_token& stop, Problems& problems) {
+// Keywords are taken in any case.
+std::vector<Vec3> ReadAscii(std::string_view bytes, const std::stop_token& stop, std::vector<std::string>& notes,
+                            Problems& problems) {
   std::vector<Vec3> corners;
   TextScanner in(bytes, problems, '\0', stop);
   while (!in.failed() && !in.AtEnd()) {
-    in.Expect("solid");
+    in.ExpectInAnyCase("solid");
     in.Line();
-    while (!in.failed() && in.Peek() == "facet") {
+    while (!in.failed() && SameInAnyCase(in.Peek(), "facet")) {
       in.Token();
-      in.Expect("normal");
+      in.ExpectInAnyCase("normal");
       // The normal. Some programs write nan here; it is not used.
       for (int i = 0; i < 3; ++i) in.Token();
-      in.Expect("outer");
-      in.Expect("loop");
+      in.ExpectInAnyCase("outer");
+      in.ExpectInAnyCase("loop");
       for (int corner = 0; corner < 3; ++corner) {
-        in.Expect("vertex");
+        in.ExpectInAnyCase("vertex");
         const double x = in.Double("a coordinate"), y = in.Double("a coordinate"), z = in.Double("a coordinate");
         corners.emplace_back(x, y, z);
       }
-      in.Expect("endloop");
-      in.Expect("endfacet");
+      in.ExpectInAnyCase("endloop");
+      in.ExpectInAnyCase("endfacet");
     }
-    in.Expect("endsolid");
+    if (!in.failed() && !corners.empty() && in.AtEnd()) {
+      notes.push_back("the file ends without `endsolid`, after " + std::to_string(corners.size() / 3) + " triangles");
+      break;
+    }
+    in.ExpectInAnyCase("endsolid");
     in.Line();
   }
   return corners;
 }
 
+// Whether the bytes are text that begins with `solid`. Binary files may begin so, too, but have zeros in their header
+// or in their first numbers.
+bool IsAscii(std::string_view bytes) {
+  constexpr std::size_t kLookedAt = 512;
+  Problems ignored;
+  TextScanner start(WithoutByteOrderMark(bytes), ignored);
+  return SameInAnyCase(start.Peek(), "solid") && bytes.substr(0, kLookedAt).find('\0') == std::string_view::npos;
+}
+
+// The number of triangles of a binary file. Files that were cut are problems; a tail, or a count that was never filled
+// in, is noted.
+std::size_t CountTriangles(std::string_view bytes, std::vector<std::string>& notes, Problems& problems) {
+  if (bytes.size() < kHeader + 4) {
+    problems.Add("", "the file is too short for STL", "is the file complete?");
+    return 0;
+  }
+  std::uint32_t announced = 0;
+  std::memcpy(&announced, bytes.data() + kHeader, 4);
+  const std::size_t wanted = kHeader + 4 + kFacet * std::size_t{announced}, room = bytes.size() - kHeader - 4;
+  if (announced == 0 && room > 0 && room % kFacet == 0) {
+    notes.push_back("the file announces no triangles but has " + std::to_string(room / kFacet) + ": they are read");
+    return room / kFacet;
+  }
+  if (announced == 0 || bytes.size() < wanted) {
+    problems.Add("",
+                 "the file announces " + std::to_string(announced) + " triangles, which take " +
+                     std::to_string(wanted) + " bytes, but has " + std::to_string(bytes.size()),
+                 "is the file complete, and is it STL?");
+    return 0;
+  }
+  if (bytes.size() > wanted) {
+    notes.push_back("the last " + std::to_string(bytes.size() - wanted) + " bytes of the file, after its " +
+                    std::to_string(announced) + " triangles, are left out");
+  }
+  return announced;
+}
+
 }  // namespace
 
 RawSurface ReadStl(std::string_view bytes, const std::stop_token& stop, Problems& problems) {
-  // Binary files may begin with `solid`, too; their size identifies them.
-  std::uint32_t count = 0;
-  if (bytes.size() >= kHeader + 4) std::memcpy(&count, bytes.data() + kHeader, 4);
-  const bool binary = bytes.size() >= kHeader + 4 && bytes.size() == kHeader + 4 + kFacet * std::size_t{count};
-  if (binary) return Join(ReadBinary(bytes, count, stop), stop);
-  TextScanner start(bytes, problems);
-  if (start.Peek() == "solid") return Join(ReadAscii(bytes, stop, problems), stop);
-  if (bytes.size() < kHeader + 4) {
-    problems.Add("", "the file is too short for STL", "is the file complete?");
+  std::vector<std::string> notes;
+  // The size identifies binary files that begin with `solid`.
+  std::uint32_t announced = 0;
+  if (bytes.size() >= kHeader + 4) std::memcpy(&announced, bytes.data() + kHeader, 4);
+  const bool exact = bytes.size() >= kHeader + 4 && bytes.size() == kHeader + 4 + kFacet * std::size_t{announced};
+  std::vector<Vec3> corners;
+  if (!exact && IsAscii(bytes)) {
+    corners = ReadAscii(WithoutByteOrderMark(bytes), stop, notes, problems);
   } else {
-    problems.Add("",
-                 "the file announces " + std::to_string(count) + " triangles, which take " +
-                     std::to_string(kHeader + 4 + kFacet * std::size_t{count}) + " bytes, but has " +
-                     std::to_string(bytes.size()),
-                 "is the file complete, and is it STL?");
+    corners = ReadBinary(bytes, CountTriangles(bytes, notes, problems), stop);
   }
-  return {};
+  RawSurface raw = Join(corners, stop);
+  raw.notes = std::move(notes);
+  return raw;
 }
 
 }  // namespace fascicle

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <stop_token>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace fascicle {
 struct RawSurface {
   std::vector<Vec3> nodes;
   std::vector<std::vector<std::int64_t>> polygons;  // node indices from 0, three or more; anything else is malformed
+  std::vector<std::string> notes;                   // what was read in spite of a flaw
 };
 
 // Each adds malformed input to `problems`; its result must then be discarded. Each throws Stopped after a stop request.

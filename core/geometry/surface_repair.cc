@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <map>
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "core/base/stop.h"
+#include "core/geometry/bounds.h"
 #include "core/geometry/faces.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/geometry/unused_nodes.h"
@@ -24,6 +26,9 @@ namespace {
 // fan around their centre.
 constexpr std::size_t kLongestBoundary = 300;
 constexpr std::size_t kPlacesTold = 5;
+constexpr double kNear = 1e-6;  // relative to the diagonal: distance of nodes that are welded, width of slits
+// Whether a part is inside of another is decided at this many places of it, at most.
+constexpr std::size_t kSamples = 200;
 
 using Loop = std::vector<std::int32_t>;
 
@@ -91,6 +96,14 @@ SurfacePlace PlaceOf(const std::vector<Vec3>& x, const Nodes& nodes) {
   return place;
 }
 
+SurfacePlace PlaceOf(const std::vector<Vec3>& nodes) {
+  const Bounds bounds = BoundsOf(nodes);
+  SurfacePlace place;
+  place.centre = 0.5 * (bounds.lowest + bounds.highest);
+  place.extent = bounds.extent().norm();
+  return place;
+}
+
 // The first few places, formatted for a sentence.
 std::string PlacesText(const std::vector<SurfacePlace>& places) {
   std::string text;
@@ -115,13 +128,76 @@ void JoinNodes(TriangleMesh& surface) {
   }
 }
 
+// The cell of a grid that contains a position.
+using Cell = std::array<std::int64_t, 3>;
+
+// Joins nodes of open edges (of one triangle) that are nearer than `distance`; some up to three times as far are
+// joined, too. Other nodes stay as they are, however near: they are fine detail of a closed surface.
+void WeldOpenEdges(double distance, TriangleMesh& surface, SurfaceReport& report) {
+  if (!(distance > 0) || !std::isfinite(distance)) return;
+  std::vector<char> is_open(surface.nodes.size());
+  const std::vector<Side> sides = SortedSides(surface.triangles);
+  ForEachEdge(sides, [&](std::size_t first, std::size_t last) {
+    if (last - first == 1) is_open[sides[first].low] = is_open[sides[first].high] = 1;
+  });
+  const Vec3 lowest = BoundsOf(surface.nodes).lowest;
+  const auto cell_of = [&](const Vec3& x) {
+    const Vec3 at = ((x - lowest) / (2 * distance)).array().floor();
+    return Cell{std::int64_t(at.x()), std::int64_t(at.y()), std::int64_t(at.z())};
+  };
+  // The first node of each cell that has any. Nodes in a cell are joined with it, and with those of the cells that a
+  // cube of twice the distance around the node touches.
+  std::map<Cell, std::int32_t> first_in;
+  UnionFind joined(surface.nodes.size());
+  for (std::size_t n = 0; n < is_open.size(); ++n) {
+    if (!is_open[n]) continue;
+    const auto node = static_cast<std::int32_t>(n);
+    joined.Join(node, first_in.try_emplace(cell_of(surface.nodes[n]), node).first->second);
+  }
+  for (std::size_t n = 0; n < is_open.size(); ++n) {
+    for (int corner = 0; is_open[n] && corner < 8; ++corner) {
+      Vec3 at = surface.nodes[n];
+      for (int axis = 0; axis < 3; ++axis) at[axis] += (corner >> axis & 1) ? distance : -distance;
+      const auto found = first_in.find(cell_of(at));
+      if (found != first_in.end()) joined.Join(static_cast<std::int32_t>(n), found->second);
+    }
+  }
+  for (std::size_t n = 0; n < is_open.size(); ++n) {
+    if (joined.Root(static_cast<std::int32_t>(n)) != static_cast<std::int32_t>(n)) ++report.welded_nodes;
+  }
+  if (report.welded_nodes == 0) return;
+  report.weld_distance = distance;
+  for (Triangle& triangle : surface.triangles) {
+    for (std::int32_t& n : triangle) n = joined.Root(n);
+  }
+}
+
 // Whether two triangles with the same nodes have the same orientation.
 bool SameWay(const Triangle& a, const Triangle& b) {
   const auto at = std::find(b.begin(), b.end(), a[0]) - b.begin();
   return b[(at + 1) % 3] == a[1];
 }
 
-// Removes triangles without area and duplicates. Of two opposite triangles with the same nodes both are removed.
+// Keeps one of opposite twins where the surface would otherwise have a hole.
+void KeepCovers(const TriangleMesh& surface, const std::vector<std::size_t>& opposed, std::vector<char>& gone) {
+  if (opposed.empty()) return;
+  std::map<std::array<std::int32_t, 2>, int> sides;  // number of triangles that remain at each edge
+  const auto edge = [&](std::size_t t, int k) {
+    const std::int32_t a = surface.triangles[t][k], b = surface.triangles[t][(k + 1) % 3];
+    return std::array{std::min(a, b), std::max(a, b)};
+  };
+  for (std::size_t t = 0; t < gone.size(); ++t) {
+    for (int k = 0; !gone[t] && k < 3; ++k) ++sides[edge(t, k)];
+  }
+  for (const std::size_t t : opposed) {
+    bool covers = true;
+    for (int k = 0; k < 3; ++k) covers = covers && sides[edge(t, k)] == 1;
+    if (covers) gone[t] = 0;
+  }
+}
+
+// Removes triangles without area and duplicates. Of two opposite triangles with the same nodes both are removed, unless
+// all their edges would be open then.
 void RemoveTriangles(TriangleMesh& surface, SurfaceReport& report) {
   const std::size_t before = surface.triangles.size();
   std::erase_if(surface.triangles, [&](const Triangle& t) {
@@ -131,11 +207,13 @@ void RemoveTriangles(TriangleMesh& surface, SurfaceReport& report) {
   std::map<Triangle, std::vector<std::size_t>> same;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) same[Ascending(surface.triangles[t])].push_back(t);
   std::vector<char> gone(surface.triangles.size());
+  std::vector<std::size_t> opposed;
   for (const auto& [nodes, triangles] : same) {
     std::int64_t net = 0;  // those oriented like the first minus the opposite ones
     for (const std::size_t t : triangles) {
       net += SameWay(surface.triangles[triangles[0]], surface.triangles[t]) ? 1 : -1;
     }
+    if (net == 0) opposed.push_back(triangles[0]);
     bool kept = net == 0;
     for (const std::size_t t : triangles) {
       const bool like_most = SameWay(surface.triangles[triangles[0]], surface.triangles[t]) == (net > 0);
@@ -143,9 +221,31 @@ void RemoveTriangles(TriangleMesh& surface, SurfaceReport& report) {
       kept = kept || like_most;
     }
   }
+  KeepCovers(surface, opposed, gone);
   std::size_t t = 0;
   std::erase_if(surface.triangles, [&](const Triangle&) { return gone[t++] != 0; });
-  report.removed_triangles = static_cast<std::int64_t>(before - surface.triangles.size());
+  report.removed_triangles += static_cast<std::int64_t>(before - surface.triangles.size());
+}
+
+double LongestEdge(const TriangleMesh& surface, const Triangle& t) {
+  const Vec3 &a = surface.nodes[t[0]], &b = surface.nodes[t[1]], &c = surface.nodes[t[2]];
+  return std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+}
+
+// Removes triangles without width that hang on edges of more than two triangles.
+void RemoveHangingSlivers(double width, TriangleMesh& surface, SurfaceReport& report) {
+  std::vector<char> gone(surface.triangles.size());
+  const std::vector<Side> sides = SortedSides(surface.triangles);
+  ForEachEdge(sides, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; last - first > 2 && i < last; ++i) {
+      const Triangle& t = surface.triangles[sides[i].triangle];
+      const Vec3 ab = surface.nodes[t[1]] - surface.nodes[t[0]], ac = surface.nodes[t[2]] - surface.nodes[t[0]];
+      if (ab.cross(ac).norm() <= width * LongestEdge(surface, t)) gone[sides[i].triangle] = 1;
+    }
+  });
+  std::size_t t = 0;
+  report.removed_triangles +=
+      static_cast<std::int64_t>(std::erase_if(surface.triangles, [&](const Triangle&) { return gone[t++] != 0; }));
 }
 
 // Orients triangles consistently: neighbours must traverse their common edge in opposite directions. Starts at the
@@ -286,8 +386,21 @@ void FillWithFan(const Loop& loop, TriangleMesh& surface) {
   }
 }
 
-void FillHoles(TriangleMesh& surface, double largest_hole, const std::stop_token& stop, SurfaceReport& report,
-               Problems& problems) {
+// Whether all nodes of a boundary are within `width` of one line.
+bool IsSlit(const TriangleMesh& surface, const Loop& loop, double width) {
+  const auto furthest_from = [&](const Vec3& from) {
+    return surface.nodes[*std::max_element(loop.begin(), loop.end(), [&](std::int32_t a, std::int32_t b) {
+      return (surface.nodes[a] - from).squaredNorm() < (surface.nodes[b] - from).squaredNorm();
+    })];
+  };
+  const Vec3 end = furthest_from(surface.nodes[loop[0]]);
+  const Vec3 along = (furthest_from(end) - end).normalized();
+  return std::all_of(loop.begin(), loop.end(),
+                     [&](std::int32_t n) { return (surface.nodes[n] - end).cross(along).norm() <= width; });
+}
+
+void FillHoles(TriangleMesh& surface, double largest_hole, double slit_width, const std::stop_token& stop,
+               SurfaceReport& report, Problems& problems) {
   std::vector<SurfacePlace> too_large;
   for (const Loop& loop : Boundaries(surface, problems)) {
     ThrowIfStopped(stop);
@@ -296,11 +409,14 @@ void FillHoles(TriangleMesh& surface, double largest_hole, const std::stop_token
     for (std::size_t i = 0; i < loop.size(); ++i) {
       place.length += (surface.nodes[loop[(i + 1) % loop.size()]] - surface.nodes[loop[i]]).norm();
     }
-    if (place.extent > largest_hole) {
+    if (IsSlit(surface, loop, slit_width)) {
+      ++report.closed_slits;
+    } else if (place.extent > largest_hole) {
       too_large.push_back(place);
       continue;
+    } else {
+      report.holes.push_back(place);
     }
-    report.holes.push_back(place);
     loop.size() <= kLongestBoundary ? FillWithLeastArea(loop, surface) : FillWithFan(loop, surface);
   }
   for (std::size_t i = 0; i < too_large.size() && i < kPlacesTold; ++i) {
@@ -308,7 +424,7 @@ void FillHoles(TriangleMesh& surface, double largest_hole, const std::stop_token
     std::snprintf(text, sizeof(text), ", with a boundary of %lld edges, %.4g long; holes up to %.4g across are filled",
                   static_cast<long long>(too_large[i].count), too_large[i].length, largest_hole);
     problems.Add("", "the surface has a hole at " + PlaceText(too_large[i]) + text,
-                 "close it, or let larger holes be filled");
+                 "close it, or fill larger holes: `fascicle mesh --max-hole LENGTH`");
   }
   if (too_large.size() > kPlacesTold) {
     problems.Add("", "and " + std::to_string(too_large.size() - kPlacesTold) + " more holes of that kind",
@@ -333,36 +449,70 @@ std::vector<std::vector<std::int32_t>> Parts(const TriangleMesh& surface) {
   return list;
 }
 
+// A part of the surface, with only its own nodes.
 TriangleMesh PartOf(const TriangleMesh& surface, const std::vector<std::int32_t>& triangles) {
   TriangleMesh part;
-  part.nodes = surface.nodes;
-  for (const std::int32_t t : triangles) part.triangles.push_back(surface.triangles[t]);
+  std::map<std::int32_t, std::int32_t> number;
+  for (const std::int32_t t : triangles) {
+    Triangle& triangle = part.triangles.emplace_back(surface.triangles[t]);
+    for (std::int32_t& n : triangle) {
+      const auto [found, is_new] = number.try_emplace(n, static_cast<std::int32_t>(part.nodes.size()));
+      if (is_new) part.nodes.push_back(surface.nodes[n]);
+      n = found->second;
+    }
+  }
   return part;
 }
 
-// A part with inward normals is a cavity if it lies inside another part; otherwise it is reoriented.
-void OrientParts(TriangleMesh& surface, const std::stop_token& stop, SurfaceReport& report) {
-  const std::vector<std::vector<std::int32_t>> parts = Parts(surface);
-  report.parts = static_cast<std::int64_t>(parts.size());
-  const auto turn = [&](const std::vector<std::int32_t>& triangles) {
-    for (const std::int32_t t : triangles) std::swap(surface.triangles[t][1], surface.triangles[t][2]);
-    report.turned_triangles += static_cast<std::int64_t>(triangles.size());
-  };
-  if (EnclosedVolume(surface) < 0) {
-    for (const auto& part : parts) turn(part);
+// Whether `part` lies inside of the closed surface of `tree`.
+bool IsInside(const TriangleMesh& part, const TriangleTree& tree) {
+  const std::size_t step = 1 + part.triangles.size() / kSamples;
+  for (std::size_t t = 0; t < part.triangles.size(); t += step) {
+    const auto& [a, b, c] = part.triangles[t];
+    if (!tree.IsInside((part.nodes[a] + part.nodes[b] + part.nodes[c]) / 3)) return false;
   }
-  if (parts.size() == 1) return;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (EnclosedVolume(PartOf(surface, parts[i])) > 0) continue;
-    const Vec3& point = surface.nodes[surface.triangles[parts[i][0]][0]];
-    bool is_cavity = false;
-    for (std::size_t j = 0; j < parts.size() && !is_cavity; ++j) {
-      if (j == i) continue;
+  return true;
+}
+
+// In how many other parts each part lies. All parts must be oriented outward.
+std::vector<int> Depths(const std::vector<TriangleMesh>& parts, const std::stop_token& stop) {
+  std::vector<Bounds> bounds;
+  for (const TriangleMesh& part : parts) bounds.push_back(BoundsOf(part.nodes));
+  std::vector<int> depths(parts.size());
+  for (std::size_t outer = 0; outer < parts.size(); ++outer) {
+    std::optional<TriangleTree> tree;
+    for (std::size_t inner = 0; inner < parts.size(); ++inner) {
       ThrowIfStopped(stop);
-      const TriangleMesh other = PartOf(surface, parts[j]);
-      is_cavity = TriangleTree(other).IsInside(point);
+      const bool may_be = inner != outer && (bounds[inner].lowest.array() >= bounds[outer].lowest.array()).all() &&
+                          (bounds[inner].highest.array() <= bounds[outer].highest.array()).all();
+      if (!may_be) continue;
+      if (!tree) tree.emplace(parts[outer]);
+      if (IsInside(parts[inner], *tree)) ++depths[inner];
     }
-    if (!is_cavity) turn(parts[i]);
+  }
+  return depths;
+}
+
+// Orients each part outward, or inward if it is a cavity: its orientation alone does not tell, since many programs
+// write all surfaces outward.
+void OrientParts(TriangleMesh& surface, const std::stop_token& stop, SurfaceReport& report) {
+  const std::vector<std::vector<std::int32_t>> lists = Parts(surface);
+  report.parts = static_cast<std::int64_t>(lists.size());
+  std::vector<TriangleMesh> parts;
+  std::vector<char> is_inward;
+  for (const auto& list : lists) {
+    TriangleMesh& part = parts.emplace_back(PartOf(surface, list));
+    is_inward.push_back(EnclosedVolume(part) < 0);
+    if (!is_inward.back()) continue;
+    for (Triangle& triangle : part.triangles) std::swap(triangle[1], triangle[2]);
+  }
+  const std::vector<int> depths = Depths(parts, stop);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const bool is_cavity = depths[p] % 2 != 0;
+    if (is_cavity) report.cavities.push_back(PlaceOf(parts[p].nodes));
+    if (is_cavity == (is_inward[p] != 0)) continue;
+    for (const std::int32_t t : lists[p]) std::swap(surface.triangles[t][1], surface.triangles[t][2]);
+    report.turned_triangles += static_cast<std::int64_t>(lists[p].size());
   }
 }
 
@@ -406,13 +556,18 @@ SurfaceReport RepairSurface(TriangleMesh& surface, double largest_hole, Problems
   ThrowIfStopped(stop);
   RemoveTriangles(surface, report);
   DropUnusedNodes(surface.nodes, surface.triangles);
+  const double near = kNear * Diagonal(surface.nodes);
+  WeldOpenEdges(near, surface, report);
+  if (report.welded_nodes > 0) RemoveTriangles(surface, report);
+  RemoveHangingSlivers(near, surface, report);
+  DropUnusedNodes(surface.nodes, surface.triangles);
   if (surface.triangles.empty()) {
     problems.Add("", "the surface has no triangles with an area", "is it flat, or scaled to nothing?");
     return report;
   }
   ThrowIfStopped(stop);
   OrientNeighbours(surface, report, problems);
-  FillHoles(surface, largest_hole, stop, report, problems);
+  FillHoles(surface, largest_hole, near, stop, report, problems);
   if (problems.count() > before) return report;
   OrientParts(surface, stop, report);
   FindCuts(surface, stop, report);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "core/base/types.h"
@@ -32,6 +33,15 @@ struct TetMesh {
   std::vector<std::int32_t> tagged_nodes;      // single nodes listed in the file
   std::vector<std::int32_t> node_tags;         // physical tag of each of them
   std::vector<CurvedEdge> curved_edges;        // for quadratic elements; all other edges are straight
+  // Tetrahedra with more than one physical tag: index and tag, for each tag but the one in `tetrahedron_tags`.
+  std::vector<std::array<std::int32_t, 2>> further_tags;
+};
+
+// A name for a physical tag.
+struct TagName {
+  int dimension = 2;  // 0: of nodes, 2: of triangles, 3: of tetrahedra
+  std::int32_t tag = 0;
+  std::string name;  // without quotes
 };
 
 // det[X1-X0, X2-X0, X3-X0] / 6 [m^3].

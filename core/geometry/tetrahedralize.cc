@@ -36,6 +36,7 @@ class Meshing {
 
   std::optional<MeshingResult> Run() {
     Tell(0, "repairing the surface");
+    DropUnusedNodes(surface_.nodes, surface_.triangles);  // they may be anywhere
     const double diagonal = Diagonal(surface_.nodes);
     const double hole = options_.largest_hole < 0 ? kLargestHole * diagonal : options_.largest_hole;
     const std::size_t before = problems_.count();

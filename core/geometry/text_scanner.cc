@@ -20,7 +20,27 @@ bool Parse(std::string_view token, Number& value) {
   return error == std::errc() && end == token.data() + token.size();
 }
 
+// Whether the token would be a number if its comma were a point.
+bool HasDecimalComma(std::string_view token) {
+  const std::size_t comma = token.find(',');
+  if (comma == std::string_view::npos) return false;
+  std::string with_point(token);
+  with_point[comma] = '.';
+  double value = 0;
+  return ParseDouble(with_point, value);
+}
+
 }  // namespace
+
+bool SameInAnyCase(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return lower(x) == lower(y); });
+}
+
+std::string_view WithoutByteOrderMark(std::string_view bytes) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return bytes.starts_with(kMark) ? bytes.substr(kMark.size()) : bytes;
+}
 
 bool ParseInt(std::string_view token, std::int64_t& value) { return Parse(token, value); }
 bool ParseDouble(std::string_view token, double& value) { return Parse(token, value); }
@@ -37,7 +57,7 @@ void TextScanner::SkipSpace() {
   std::size_t i = 0;
   for (bool in_comment = false; i < rest_.size(); ++i) {
     const char c = rest_[i];
-    if (c == '\n') {
+    if (EndsLine(i)) {
       ++line_;
       in_comment = false;
     } else if (!in_comment && comment_ != '\0' && c == comment_) {
@@ -64,11 +84,17 @@ std::string_view TextScanner::Token() {
 
 std::string_view TextScanner::Line() {
   ThrowIfStopped(stop_);
-  const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+  std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
   const std::string_view text = rest_.substr(0, end);
   if (end < rest_.size()) ++line_;
+  if (rest_.substr(end).starts_with("\r\n")) ++end;
   rest_.remove_prefix(std::min(end + 1, rest_.size()));
-  return text.ends_with('\r') ? text.substr(0, text.size() - 1) : text;
+  return text;
+}
+
+// A CR before a LF belongs to it.
+bool TextScanner::EndsLine(std::size_t at) const {
+  return rest_[at] == '\n' || (rest_[at] == '\r' && !rest_.substr(at + 1).starts_with('\n'));
 }
 
 std::string_view TextScanner::Bytes(std::size_t size, std::string_view what) {
@@ -123,11 +149,17 @@ void TextScanner::Expect(std::string_view word) {
   if (token != word) FailAt(token, word);
 }
 
+void TextScanner::ExpectInAnyCase(std::string_view word) {
+  const std::string_view token = Token();
+  if (!SameInAnyCase(token, word)) FailAt(token, word);
+}
+
 void TextScanner::FailAt(std::string_view token, std::string_view what) {
   if (token.empty()) {
     Fail("the file ends where " + std::string(what) + " should follow", kCutOff);
   } else {
-    Fail("expected " + std::string(what) + " but found " + Quoted(token));
+    Fail("expected " + std::string(what) + " but found " + Quoted(token),
+         HasDecimalComma(token) ? "write numbers with a decimal point, not a comma" : "");
   }
 }
 

@@ -30,7 +30,7 @@ class TextScanner {
   std::string_view Peek();
   // Whether only white space and comments are left.
   bool AtEnd() { return Peek().empty(); }
-  // The rest of the current line, without the line break.
+  // The rest of the current line, without the line break: LF, CR LF or CR.
   std::string_view Line();
   // Exactly `size` raw bytes; fails if there are fewer.
   std::string_view Bytes(std::size_t size, std::string_view what);
@@ -43,14 +43,16 @@ class TextScanner {
   // Whether the rest of the text can hold `count` items of `bytes_each`; fails otherwise.
   bool Holds(std::int64_t count, std::string_view what, std::size_t bytes_each);
 
-  // Requires the next token to be exactly `word`.
+  // Requires the next token to be exactly `word`, or `word` with letters of any case.
   void Expect(std::string_view word);
+  void ExpectInAnyCase(std::string_view word);
 
   // Adds the problem "line N: message".
   void Fail(const std::string& message, std::string hint = {});
 
  private:
   void SkipSpace();
+  bool EndsLine(std::size_t at) const;
   void FailAt(std::string_view token, std::string_view what);
 
   std::string_view rest_;
@@ -64,6 +66,12 @@ class TextScanner {
 // Parses the whole of `token` as a number.
 bool ParseInt(std::string_view token, std::int64_t& value);
 bool ParseDouble(std::string_view token, double& value);
+
+// Whether two words differ at most in the case of their letters (ASCII).
+bool SameInAnyCase(std::string_view a, std::string_view b);
+
+// The text without the byte-order mark of UTF-8 that some programs write at its beginning.
+std::string_view WithoutByteOrderMark(std::string_view bytes);
 
 // `token` in a form fit for a message: short, printable, in quotes.
 std::string Quoted(std::string_view token);

@@ -3,10 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "core/geometry/bounds.h"
+#include "core/geometry/ear_clipping.h"
 #include "core/geometry/surface_readers.h"
 #include "core/geometry/text_scanner.h"
 
@@ -23,17 +25,23 @@ std::string Extension(std::string_view name) {
   return extension;
 }
 
-// Checks node numbers and coordinates, and splits polygons into fans.
-std::optional<TriangleMesh> Finish(RawSurface raw, Problems& problems) {
+bool IsVolumeMesh(std::string_view extension) {
+  constexpr std::string_view kExtensions[] = {".msh", ".vtu", ".vtk", ".mesh", ".node", ".inp", ".feb", ".e", ".exo"};
+  return std::find(std::begin(kExtensions), std::end(kExtensions), extension) != std::end(kExtensions);
+}
+
+// Checks node numbers and coordinates, and splits polygons into triangles.
+std::optional<TriangleMesh> Finish(RawSurface raw, const std::stop_token& stop, Problems& problems) {
   if (raw.polygons.empty()) {
     problems.Add("", "the file has no triangles", "is it a surface?");
     return std::nullopt;
   }
   const std::size_t before = problems.count();
   TriangleMesh surface;
-  std::size_t bad = 0, corners = 0;
+  std::size_t bad = 0, corners = 0, most = 0;
   for (const auto& polygon : raw.polygons) {
     corners += polygon.size();
+    most = std::max(most, polygon.size());
     const bool good = polygon.size() >= 3 && std::all_of(polygon.begin(), polygon.end(), [&](std::int64_t n) {
                         return n >= 0 && n < static_cast<std::int64_t>(raw.nodes.size());
                       });
@@ -52,12 +60,21 @@ std::optional<TriangleMesh> Finish(RawSurface raw, Problems& problems) {
   if (raw.nodes.size() > kMaxIndex || corners > kMaxIndex) {
     problems.Add("", "the surface has more than 2^31 nodes or triangles", "use a coarser surface");
   }
+  if (most > kMostCorners) {
+    problems.Add("",
+                 "the surface has a polygon of " + std::to_string(most) + " corners; " + std::to_string(kMostCorners) +
+                     " are the most",
+                 "split it into triangles");
+  }
   if (problems.count() > before) return std::nullopt;
   for (const auto& polygon : raw.polygons) {
-    for (std::size_t i = 2; i < polygon.size(); ++i) {
-      surface.triangles.push_back({static_cast<std::int32_t>(polygon[0]), static_cast<std::int32_t>(polygon[i - 1]),
-                                   static_cast<std::int32_t>(polygon[i])});
+    if (polygon.size() == 3) {
+      surface.triangles.push_back({static_cast<std::int32_t>(polygon[0]), static_cast<std::int32_t>(polygon[1]),
+                                   static_cast<std::int32_t>(polygon[2])});
+      continue;
     }
+    const std::vector<Triangle> split = SplitPolygon(raw.nodes, polygon, stop);
+    surface.triangles.insert(surface.triangles.end(), split.begin(), split.end());
   }
   surface.nodes = std::move(raw.nodes);
   return surface;
@@ -89,24 +106,26 @@ double Diagonal(const std::vector<Vec3>& nodes) { return BoundsOf(nodes).extent(
 std::string KnownSurfaceExtensions() { return ".stl, .obj, .ply, .vtp"; }
 
 std::optional<TriangleMesh> ReadSurface(std::string_view name, std::string_view bytes, Problems& problems,
-                                        const std::stop_token& stop) {
+                                        const std::stop_token& stop, std::vector<std::string>* notes) {
   const std::string extension = Extension(name);
   const std::size_t before = problems.count();
   RawSurface raw;
   if (extension == ".stl") {
     raw = ReadStl(bytes, stop, problems);
   } else if (extension == ".obj") {
-    raw = ReadObj(bytes, stop, problems);
+    raw = ReadObj(WithoutByteOrderMark(bytes), stop, problems);
   } else if (extension == ".ply") {
-    raw = ReadPly(bytes, stop, problems);
+    raw = ReadPly(WithoutByteOrderMark(bytes), stop, problems);
   } else if (extension == ".vtp") {
-    raw = ReadVtp(bytes, stop, problems);
+    raw = ReadVtp(WithoutByteOrderMark(bytes), stop, problems);
   } else {
     problems.Add("", "the file extension " + Quoted(extension) + " is not that of a surface that can be read",
-                 "known are " + KnownSurfaceExtensions());
+                 IsVolumeMesh(extension) ? "`fascicle mesh FILE --convert --out FILE.msh` converts volume meshes"
+                                         : "known are " + KnownSurfaceExtensions());
   }
   if (problems.count() > before) return std::nullopt;
-  return Finish(std::move(raw), problems);
+  if (notes != nullptr) notes->insert(notes->end(), raw.notes.begin(), raw.notes.end());
+  return Finish(std::move(raw), stop, problems);
 }
 
 }  // namespace fascicle

@@ -25,12 +25,13 @@ double Area(const TriangleMesh& surface);
 double Diagonal(const std::vector<Vec3>& nodes);
 
 // Reads a surface from the bytes of an STL (ASCII and binary), OBJ, PLY (ASCII and binary) or VTK XML (.vtp) file; the
-// extension of `name` selects the format. Polygons are split into triangles. STL corners at the same position become
-// one node. Malformed input never crashes, hangs or allocates more than a small multiple of the file's size. It adds to
-// `problems` (with empty paths and line numbers in the message) and returns nothing. Throws Stopped after a stop
-// request.
+// extension of `name`, in any case, selects the format. Polygons of any simple shape are split into triangles
+// (ear_clipping.h). STL corners at the same position become one node. Flaws in spite of which a file is read, such as
+// bytes after the last triangle, are added to `notes`. Malformed input never crashes, hangs or allocates more than a
+// small multiple of the file's size. It adds to `problems` (with empty paths and line numbers in the message) and
+// returns nothing. Throws Stopped after a stop request.
 std::optional<TriangleMesh> ReadSurface(std::string_view name, std::string_view bytes, Problems& problems,
-                                        const std::stop_token& stop = {});
+                                        const std::stop_token& stop = {}, std::vector<std::string>* notes = nullptr);
 
 // The extensions that ReadSurface accepts, for messages: ".stl, .obj, ...".
 std::string KnownSurfaceExtensions();

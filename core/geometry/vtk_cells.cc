@@ -2,20 +2,65 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace fascicle {
 namespace {
 
 // VTK's cell types.
-constexpr std::int64_t kTriangle = 5, kTetrahedron = 10, kQuadraticTriangle = 22, kQuadraticTetrahedron = 24,
-                       kLagrangeTetrahedron = 71;
+constexpr std::int64_t kTriangle = 5, kQuad = 9, kTetrahedron = 10, kVoxel = 11, kPentagonalPrism = 15,
+                       kHexagonalPrism = 16, kQuadraticTriangle = 22, kQuadraticQuad = 23, kQuadraticTetrahedron = 24,
+                       kBiquadraticQuad = 28, kPolyhedron = 42, kLagrangeTetrahedron = 71, kLagrangeHexahedron = 72,
+                       kLagrangeWedge = 73, kLagrangePyramid = 74;
+struct VtkSolid {
+  std::int64_t type;
+  SolidShape shape;
+  std::int64_t nodes;
+};
+constexpr VtkSolid kVtkSolids[] = {
+    {kVoxel, SolidShape::kHexahedron, 8}, {12, SolidShape::kHexahedron, 8},  {13, SolidShape::kWedge, 6},
+    {14, SolidShape::kPyramid, 5},        {25, SolidShape::kHexahedron, 20}, {26, SolidShape::kWedge, 15},
+    {27, SolidShape::kPyramid, 13},       {29, SolidShape::kHexahedron, 27}, {31, SolidShape::kWedge, 12},
+    {32, SolidShape::kWedge, 18},         {33, SolidShape::kHexahedron, 24}};
+const VtkSolid* SolidOf(std::int64_t type) {
+  for (const VtkSolid& solid : kVtkSolids) {
+    if (solid.type == type) return &solid;
+  }
+  return nullptr;
+}
+
+bool IsOtherSolid(std::int64_t type) {
+  return type == kPentagonalPrism || type == kHexagonalPrism || type == kPolyhedron || type == kLagrangeHexahedron ||
+         type == kLagrangeWedge || type == kLagrangePyramid;
+}
 
 // Number of nodes of the linear cell types 0 to 14; 0 where it may vary.
 constexpr std::int64_t kNodes[] = {0, 1, 0, 2, 0, 3, 0, 0, 4, 4, 4, 8, 8, 6, 5};
 std::int64_t NodesOf(std::int64_t type) {
+  if (const VtkSolid* solid = SolidOf(type)) return solid->nodes;
   if (type == kQuadraticTriangle) return 6;
+  if (type == kQuadraticQuad) return 8;
+  if (type == kBiquadraticQuad) return 9;
   if (type == kQuadraticTetrahedron) return 10;
   return type >= 0 && type < std::ssize(kNodes) ? kNodes[type] : 0;
+}
+
+bool IsTriangle(std::int64_t type) { return type == kTriangle || type == kQuadraticTriangle; }
+bool IsQuad(std::int64_t type) { return type == kQuad || type == kQuadraticQuad || type == kBiquadraticQuad; }
+bool IsTetrahedron(std::int64_t type) { return type == kTetrahedron || type == kQuadraticTetrahedron; }
+
+void AddSolid(const VtkSolid& type, const std::int64_t* nodes, std::int64_t first_node, std::int64_t tag,
+              RawMesh& raw) {
+  RawSolid solid{type.shape, {}};
+  const int corners = CornersOf(type.shape);
+  for (int n = 0; n < corners; ++n) solid.nodes[n] = nodes[n] + first_node;
+  if (type.type == kVoxel) {  // numbered along the axes
+    std::swap(solid.nodes[2], solid.nodes[3]);
+    std::swap(solid.nodes[6], solid.nodes[7]);
+  }
+  if (type.nodes > corners) ++raw.curved_solids;
+  raw.solids.push_back(solid);
+  raw.solid_tags.push_back(tag);
 }
 
 template <std::size_t N>
@@ -52,9 +97,9 @@ std::string AddCells(const VtkCells& cells, std::int64_t node_count, std::int64_
     if (NodesOf(type) != 0 && size != NodesOf(type)) {
       return name() + " of type " + std::to_string(type) + " has " + std::to_string(size) + " nodes";
     }
-    const bool is_tetrahedron = type == kTetrahedron || type == kQuadraticTetrahedron;
-    if (!is_tetrahedron && type != kTriangle && type != kQuadraticTriangle) {
-      ++(type == kLagrangeTetrahedron ? raw.higher_order : raw.others);
+    const VtkSolid* solid = SolidOf(type);
+    if (solid == nullptr && !IsTetrahedron(type) && !IsTriangle(type) && !IsQuad(type)) {
+      ++(type == kLagrangeTetrahedron ? raw.higher_order : IsOtherSolid(type) ? raw.other_solids : raw.others);
       continue;
     }
     const auto outside = std::find_if(nodes, nodes + size, [&](std::int64_t n) { return n < 0 || n >= node_count; });
@@ -63,10 +108,15 @@ std::string AddCells(const VtkCells& cells, std::int64_t node_count, std::int64_
              " (counted from 0)";
     }
     const std::int64_t tag = cells.tags.empty() ? 0 : cells.tags[c];
-    if (is_tetrahedron) {
+    if (solid != nullptr) {
+      AddSolid(*solid, nodes, first_node, tag, raw);
+    } else if (IsTetrahedron(type)) {
       AddCell(nodes, first_node, raw.tetrahedra);
       if (type == kQuadraticTetrahedron) AddCell(nodes + 4, first_node, raw.middles);
       raw.tetrahedron_tags.push_back(tag);
+    } else if (IsQuad(type)) {
+      AddCell(nodes, first_node, raw.quads);
+      raw.quad_tags.push_back(tag);
     } else {
       AddCell(nodes, first_node, raw.triangles);
       raw.triangle_tags.push_back(tag);

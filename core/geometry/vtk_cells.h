@@ -21,7 +21,7 @@ struct VtkCells {
 // Whether a cell array of this name holds physical tags: physical, gmsh:physical, medit:ref, tag.
 bool IsTagArray(std::string_view name);
 
-// Adds tetrahedra and triangles to `raw`, with `first_node` added to their nodes. Returns what is wrong, or an empty
+// Adds volume and surface cells to `raw`, with `first_node` added to their nodes. Returns what is wrong, or an empty
 // string.
 std::string AddCells(const VtkCells& cells, std::int64_t node_count, std::int64_t first_node, RawMesh& raw);
 

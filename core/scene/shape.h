@@ -23,7 +23,8 @@ template <>
 inline constexpr auto kFieldNames<CurvedEdge> = FieldNames("ends", "middle");
 template <>
 inline constexpr auto kFieldNames<TetMesh> = FieldNames("nodes", "tetrahedra", "tetrahedron_tags", "tagged_triangles",
-                                                        "triangle_tags", "tagged_nodes", "node_tags", "curved_edges");
+                                                        "triangle_tags", "tagged_nodes", "node_tags", "curved_edges",
+                                                        "further_tags");
 template <>
 inline constexpr auto kFieldNames<VoxelGrid> = FieldNames("size", "spacing", "origin", "direction", "material",
                                                           "stiffness");

@@ -6,6 +6,7 @@
 
 #include "core/geometry/mesh_checks.h"
 #include "core/geometry/mesh_io.h"
+#include "core/geometry/text_scanner.h"
 #include "server/translate/built_in_shapes.h"
 #include "server/translate/files.h"
 #include "server/translate/images.h"
@@ -14,7 +15,11 @@
 namespace fascicle::server {
 namespace {
 
-bool IsTetGen(const v1::FileRef& file) { return file.path().ends_with(".node") || file.path().ends_with(".NODE"); }
+bool IsTetGen(const v1::FileRef& file) {
+  constexpr std::string_view kExtension = ".node";
+  const std::string_view path = file.path();
+  return path.size() >= kExtension.size() && SameInAnyCase(path.substr(path.size() - kExtension.size()), kExtension);
+}
 
 void CheckElements(const v1::Mesh& mesh, const std::string& path, Problems& problems) {
   const bool wanted = mesh.has_file() && IsTetGen(mesh.file());
@@ -25,7 +30,12 @@ void CheckElements(const v1::Mesh& mesh, const std::string& path, Problems& prob
   }
 }
 
-std::optional<TetMesh> ReadMeshFile(const BodySource& source, const std::string& path, Problems& problems) {
+void AddNotes(const std::vector<std::string>& found, const std::string& path, std::vector<std::string>& notes) {
+  for (const std::string& note : found) notes.push_back(path + ": " + note);
+}
+
+std::optional<TetMesh> ReadMeshFile(const BodySource& source, const std::string& path, std::vector<std::string>& notes,
+                                    Problems& problems) {
   const v1::Mesh& mesh = source.wire.mesh();
   CheckElements(mesh, path, problems);
   const std::string file_path = JoinPath(path, "file");
@@ -38,8 +48,12 @@ std::optional<TetMesh> ReadMeshFile(const BodySource& source, const std::string&
   }
   if (!bytes || mesh.file().path().empty()) return std::nullopt;
   Problems own;
-  const MeshFile file = {mesh.file().path(), *bytes, element_bytes ? *element_bytes : std::string_view()};
-  auto read = ReadMesh(file, own, source.tools.stop);
+  const MeshFile file = {.name = mesh.file().path(),
+                         .bytes = *bytes,
+                         .element_bytes = element_bytes ? *element_bytes : std::string_view()};
+  MeshRemarks remarks;
+  auto read = ReadMesh(file, own, source.tools.stop, &remarks);
+  AddNotes(remarks.notes, file_path, notes);
   problems.Append(file_path, own);
   return read;
 }
@@ -109,9 +123,10 @@ bool IsOfTetrahedra(const BodySource& source, Method method, Problems& problems)
   return true;
 }
 
-std::optional<TetMesh> TetrahedraOfFile(const BodySource& source, const std::string& path, Problems& problems) {
+std::optional<TetMesh> TetrahedraOfFile(const BodySource& source, const std::string& path,
+                                        std::vector<std::string>& notes, Problems& problems) {
   CheckUnit(source, "mesh", problems);
-  auto mesh = ReadMeshFile(source, path, problems);
+  auto mesh = ReadMeshFile(source, path, notes, problems);
   if (!mesh || !Spend(static_cast<std::int64_t>(mesh->tetrahedra.size()), "tetrahedra", source.budget,
                       JoinPath(path, "file"), "use a coarser mesh", problems)) {
     return std::nullopt;
@@ -162,14 +177,15 @@ std::string SourcePath(const v1::Mesh& mesh, const std::string& body_path) {
   return field == nullptr ? path : JoinPath(path, field->name());
 }
 
-std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source, Method method, Problems& problems) {
+std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source, Method method,
+                                                        std::vector<std::string>& notes, Problems& problems) {
   const StageTimer timer(source.tools.profile, "meshes");
   const std::string path = JoinPath(source.path, "mesh");
   if (!NamesSource(source, "file, box, fusiform, torus, sphere", problems) ||
       !IsOfTetrahedra(source, method, problems)) {
     return std::nullopt;
   }
-  auto mesh = source.wire.mesh().has_file() ? TetrahedraOfFile(source, path, problems)
+  auto mesh = source.wire.mesh().has_file() ? TetrahedraOfFile(source, path, notes, problems)
                                             : TetrahedraOfShape(source, path, problems);
   if (!mesh) return std::nullopt;
   Problems own;
@@ -191,7 +207,8 @@ std::optional<BrickMesh> TranslateBricks(const BodySource& source, std::vector<s
   return std::nullopt;
 }
 
-std::optional<TriangleMesh> TranslateSurfaceFile(const BodySource& source, Problems& problems) {
+std::optional<TriangleMesh> TranslateSurfaceFile(const BodySource& source, std::vector<std::string>& notes,
+                                                 Problems& problems) {
   const StageTimer timer(source.tools.profile, "meshes");
   const std::string path = JoinPath(source.path, "mesh");
   const std::string file_path = JoinPath(path, "surface");
@@ -201,7 +218,9 @@ std::optional<TriangleMesh> TranslateSurfaceFile(const BodySource& source, Probl
   const auto bytes = ReadFile(file, file_path, source.assets, problems);
   if (!bytes || file.path().empty()) return std::nullopt;
   Problems own;
-  auto surface = ReadSurface(file.path(), *bytes, own, source.tools.stop);
+  std::vector<std::string> found;
+  auto surface = ReadSurface(file.path(), *bytes, own, source.tools.stop, &found);
+  AddNotes(found, file_path, notes);
   problems.Append(file_path, own);
   if (!surface || !Spend(static_cast<std::int64_t>(surface->triangles.size()), "triangles", source.budget, file_path,
                          "use a coarser surface", problems)) {

@@ -26,14 +26,16 @@ struct TranslatedTetrahedra {
   bool sound = true;  // whether CheckMesh found no problem
 };
 
-// From a mesh file or a built-in shape. `method` is for messages.
-std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source, Method method, Problems& problems);
+// From a mesh file or a built-in shape. `method` is for messages. Adds to `notes` what was left out of the file.
+std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source, Method method,
+                                                        std::vector<std::string>& notes, Problems& problems);
 
 // The voxels of an image or a box. Adds results of the image's stages to `notes`.
 std::optional<BrickMesh> TranslateBricks(const BodySource& source, std::vector<std::string>& notes, Problems& problems);
 
-// The triangles of the mesh's surface file.
-std::optional<TriangleMesh> TranslateSurfaceFile(const BodySource& source, Problems& problems);
+// The triangles of the mesh's surface file. Adds to `notes` flaws in spite of which it was read.
+std::optional<TriangleMesh> TranslateSurfaceFile(const BodySource& source, std::vector<std::string>& notes,
+                                                 Problems& problems);
 
 }  // namespace fascicle::server
 

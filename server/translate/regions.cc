@@ -73,6 +73,7 @@ std::string TagHint(const TetMesh& mesh, const v1::Mesh& wire) {
   std::set<std::int32_t> tags(mesh.triangle_tags.begin(), mesh.triangle_tags.end());
   tags.insert(mesh.tetrahedron_tags.begin(), mesh.tetrahedron_tags.end());
   tags.insert(mesh.node_tags.begin(), mesh.node_tags.end());
+  for (const auto& [tetrahedron, tag] : mesh.further_tags) tags.insert(tag);
   if (tags.empty()) return std::string("the mesh file has no tags") + kOtherSelectors;
   return Listed("tags in the mesh file", tags);
 }
@@ -147,7 +148,9 @@ std::vector<Triangle> FacesOf(const TetMesh& mesh, const std::stop_token& stop) 
 }
 std::vector<Quad> FacesOf(const BrickMesh& mesh, const std::stop_token& stop) { return BoundaryQuads(mesh, stop); }
 // The surface as a mesh without elements.
-TetMesh FacesOf(const TriangleMesh& mesh, const std::stop_token&) { return {mesh.nodes, {}, {}, {}, {}, {}, {}, {}}; }
+TetMesh FacesOf(const TriangleMesh& mesh, const std::stop_token&) {
+  return {mesh.nodes, {}, {}, {}, {}, {}, {}, {}, {}};
+}
 
 template <class Mesh, class Faces>
 Region Select(const Mesh& mesh, const Faces& faces, const std::string& name, const Selector& selector) {

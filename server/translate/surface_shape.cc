@@ -36,7 +36,7 @@ FibreField FibresWithoutFilling(const BodySource& source, Problems& problems) {
 bool TranslateFile(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& structure,
                    Problems& others) {
   SurfaceShape& shape = body.surface();
-  auto surface = TranslateSurfaceFile(source, structure);
+  auto surface = TranslateSurfaceFile(source, body.notes, structure);
   if (surface) {
     shape.mesh = std::move(*surface);
     body.regions = SelectRegions(selectors, shape.mesh, source.tools.stop);
@@ -54,7 +54,7 @@ bool TranslateFile(const BodySource& source, const RegionSelectors& selectors, B
 bool TranslateBoundary(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& structure,
                        Problems& others) {
   SurfaceShape& shape = body.surface();
-  auto tetrahedra = TranslateTetrahedra(source, Method::kEulerian, structure);
+  auto tetrahedra = TranslateTetrahedra(source, Method::kEulerian, body.notes, structure);
   std::vector<Region> of_filling = EmptyRegions(selectors);
   if (tetrahedra) {
     of_filling = SelectRegions(selectors, tetrahedra->mesh, source.tools.stop);

@@ -11,7 +11,7 @@ bool TranslateTetShape(const BodySource& source, const RegionSelectors& selector
                        Problems& others) {
   RefuseFields(source, {"plasticity"}, "only the eulerian method supports plastic flow",
                "omit it, or use the eulerian method", others);
-  auto tetrahedra = TranslateTetrahedra(source, Method::kTet, structure);
+  auto tetrahedra = TranslateTetrahedra(source, Method::kTet, body.notes, structure);
   std::optional<std::size_t> elements, nodes;
   if (tetrahedra) {
     elements = tetrahedra->mesh.tetrahedra.size();

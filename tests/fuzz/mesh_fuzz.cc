@@ -24,15 +24,19 @@ void CheckConsistent(const TetMesh& mesh) {
   FASCICLE_CHECK(mesh.tetrahedron_tags.empty() || mesh.tetrahedron_tags.size() == mesh.tetrahedra.size(), "tags");
   for (const std::int32_t n : mesh.tagged_nodes) check_node(n);
   FASCICLE_CHECK(mesh.node_tags.size() == mesh.tagged_nodes.size(), "node tags");
+  for (const auto& [t, tag] : mesh.further_tags) {
+    FASCICLE_CHECK(t >= 0 && static_cast<std::size_t>(t) < mesh.tetrahedra.size(), "a tetrahedron is out of range");
+  }
   FASCICLE_CHECK(mesh.triangle_tags.size() == mesh.tagged_triangles.size(), "triangle tags");
 }
 
 void ReadAnything(std::string_view data) {
-  constexpr std::string_view kNames[] = {"m.msh", "m.vtu", "m.vtk", "m.mesh", "m.node"};
+  constexpr std::string_view kNames[] = {"m.msh", "m.vtu", "m.vtk", "m.mesh", "m.node", "m.inp"};
   if (data.empty()) return;
   MeshFile file;
   file.name = kNames[static_cast<unsigned char>(data[0]) % std::size(kNames)];
   file.bytes = data.substr(1);
+  file.split_solids = data.size() % 2 == 0;
   // TetGen's two files, separated by a zero.
   if (const std::size_t cut = file.bytes.find('\0'); file.name == "m.node" && cut != std::string_view::npos) {
     file.element_bytes = file.bytes.substr(cut + 1);

@@ -35,6 +35,7 @@ inline TetShape FullTetShape() {
   shape.mesh.tagged_nodes = {0};
   shape.mesh.node_tags = {1};
   shape.mesh.curved_edges = {{{0, 1}, Vec3(0.5, 0, 0.1)}};
+  shape.mesh.further_tags = {{0, 2}};
   shape.fibres.assign(6, Vec3::UnitX());
   shape.materials = {{LinearElastic(std::array{1e4, 0.3})}, {0, 0, 0, 1, 1, 1}};
   shape.activations = {{Curve::Constant(0.5)}, {0, 0, 0, 1, 1, 1}};

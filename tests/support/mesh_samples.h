@@ -250,7 +250,7 @@ inline std::vector<MeshSample> MeshSamples() {
   };
   std::vector<MeshSample> samples = {sample("gmsh2.msh", kGmsh2, 1),
                                      sample("gmsh4.msh", kGmsh4, 1),
-                                     sample("medit.mesh", kMedit, 1),
+                                     legacy("medit.mesh", kMedit, "End"),
                                      sample("ascii.vtu", kVtu, 1),
                                      sample("appended.vtu", VtuAppended(), std::string("</VTKFile>").size()),
                                      legacy("binary.vtk", VtkBinary(), "CELL_DATA"),

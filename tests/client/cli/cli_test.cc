@@ -78,6 +78,20 @@ TEST_F(CliTest, WrongCommandLinesAreInvalidInput) {
   EXPECT_EQ(Fascicle({"materials", "none"}).exit_code, 2);
 }
 
+// What could not be written is not done, whichever command printed it and in whatever way.
+TEST_F(CliTest, OutputThatCannotBeWrittenIsAnError) {
+  const std::string scene = File("scene.json", SceneText(2, 5));
+  for (const std::string& command : {std::string("schema"), std::string("schema bodies"), std::string("--help"),
+                                     std::string("examples"), std::string("materials"), std::string("completion bash"),
+                                     "validate " + scene, "--json validate " + scene, "--json run " + scene}) {
+    const Finished full = RunProgram({"/bin/sh", "-c", Program("fascicle") + " " + command + " > /dev/full"},
+                                     {{"FASCICLE_SERVER", ""}, {"DISPLAY", ""}, {"TMPDIR", Temporary()}});
+    EXPECT_EQ(full.exit_code, 1) << command;
+    EXPECT_THAT(full.err, HasSubstr("could not be written to stdout")) << command;
+  }
+  EXPECT_EQ(Fascicle({"schema"}).exit_code, 0);
+}
+
 TEST_F(CliTest, WithoutServerEveryCommandSaysSo) {
   const std::string scene = File("scene.json", SceneText(2, 5));
   for (const std::vector<std::string>& command :

@@ -202,6 +202,110 @@ TEST_F(MeshTest, LabelsOfAnImage) {
   EXPECT_EQ(Fascicle({"mesh", image, "--out", folder_ / "x.msh"}).exit_code, 2) << "without a label";
 }
 
+// A bar of two hexahedra with sets of all kinds.
+constexpr const char* kAbaqus = R"(*NODE
+1,0,0,0
+2,20,0,0
+3,20,20,0
+4,0,20,0
+5,0,0,30
+6,20,0,30
+7,20,20,30
+8,0,20,30
+9,0,0,60
+10,20,0,60
+11,20,20,60
+12,0,20,60
+*ELEMENT, TYPE=C3D8, ELSET=belly
+1,1,2,3,4,5,6,7,8
+*ELEMENT, TYPE=C3D8, ELSET=tendon
+2,5,6,7,8,9,10,11,12
+*ELSET, ELSET=whole
+belly, tendon
+*SURFACE, NAME=origin
+belly, S1
+*SURFACE, NAME=insertion
+tendon, S2
+*NSET, NSET=corner
+1
+)";
+
+TEST_F(MeshTest, ConvertsMeshesWithTheirSets) {
+  const std::string model = File("bar.inp", kAbaqus);
+  const Finished refused = Fascicle({"mesh", model, "--convert", "--out", folder_ / "bar.msh"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("bar.inp: the file has 2 hexahedra"), HasSubstr("--split-hexahedra")));
+  EXPECT_FALSE(HasFile("bar.msh"));
+  const std::vector<std::string> convert = {
+      "mesh", model, "--convert", "--split-hexahedra", "--out", folder_ / "bar.msh"};
+  const Finished made = Fascicle(convert);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(made.out, AllOf(HasSubstr("note: 2 hexahedra were split into tetrahedra"),
+                              HasSubstr("volume              24000 mm^3"),
+                              HasSubstr("region origin       physical tag 5: 2 triangles, 400 mm^2"),
+                              HasSubstr("6 tetrahedra, 1.2e+04 mm^3"), HasSubstr("1 nodes")));
+  EXPECT_THAT(ReadFile(folder_ / "bar.msh"), HasSubstr("$PhysicalNames\n6\n3 1 \"belly\"\n"));
+  std::vector<std::string> as_json = convert;
+  as_json.push_back("--json");
+  const json report = json::parse(Fascicle(as_json).out);
+  EXPECT_EQ(report["tetrahedra"], 12);
+  EXPECT_EQ(report["regions"].size(), 6u);
+
+  // A scene with these tags.
+  const std::string scene = File("scene.json", R"({"name": "bar", "bodies": [{"name": "bar", "unit": "mm",
+    "mesh": {"file": {"path": "bar.msh"}}, "material": {"neo_hookean": {"young_modulus": 1e5}},
+    "regions": [{"name": "origin", "physical_tag": 5}, {"name": "insertion", "physical_tag": 4},
+                {"name": "whole", "physical_tag": 3}, {"name": "tendon", "physical_tag": 2}],
+    "region_materials": [{"region": "tendon", "material": {"neo_hookean": {"young_modulus": 1e6}}}],
+    "constraints": [{"region": "origin"}], "loads": [{"region": "insertion", "traction": {"vector": [0, 0, 100]}}]}],
+    "duration": 1, "output": {"frame_interval": 1}, "tet": {"stepping": "quasi_static"}})");
+  const Finished run = Fascicle({"run", scene, "--json", "--out", folder_ / "out"});
+  EXPECT_EQ(run.exit_code, 0) << run.err << run.out;
+
+  // Its own format again.
+  const Finished again = Fascicle({"mesh", folder_ / "bar.msh", "--convert", "--out", folder_ / "again.msh"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(ReadFile(folder_ / "again.msh"), ReadFile(folder_ / "bar.msh"));
+}
+
+TEST_F(MeshTest, ConversionsThatFailSayWhy) {
+  const auto refusal = [&](const std::string& name, const std::string& text, std::vector<std::string> more = {}) {
+    std::vector<std::string> command = {"mesh", File(name, text), "--convert", "--out", folder_ / "x.msh"};
+    command.insert(command.end(), more.begin(), more.end());
+    const Finished finished = Fascicle(command);
+    EXPECT_EQ(finished.exit_code, 2) << name;
+    return finished.err;
+  };
+  EXPECT_THAT(refusal("a.e", "nothing"), HasSubstr("the file can't be read"));
+  EXPECT_THAT(refusal("a.xdmf", "<Xdmf/>"), HasSubstr("write it as .vtu"));
+  EXPECT_THAT(refusal("a.feb", "<febio_spec version=\"2.0\"/>"), HasSubstr("no mesh of FEBio 3 or 4"));
+  EXPECT_THAT(refusal("a.node", "1 3 0 0\n1 0 0 0\n"), HasSubstr("a.ele: there is no such file"));
+  EXPECT_THAT(refusal("bar.obj", kBar), HasSubstr("is not that of a mesh"));
+  EXPECT_THAT(refusal("b.inp", kAbaqus, {"--split-hexahedra", "--unit", "m"}),
+              HasSubstr("give another one with --unit"));
+  EXPECT_THAT(refusal("b.inp", kAbaqus, {"--size", "3"}), HasSubstr("--size"));
+  EXPECT_FALSE(HasFile("x.msh"));
+  // The other way round.
+  const Finished finished = Fascicle({"mesh", File("c.inp", kAbaqus), "--out", folder_ / "x.msh"});
+  EXPECT_EQ(finished.exit_code, 2);
+  EXPECT_THAT(finished.err, HasSubstr("--convert"));
+}
+
+TEST_F(MeshTest, SaysWhatWasRepairedOfASurface) {
+  // A cube in the bar, with the same orientation; a corner of one of its triangles is off by 1e-6.
+  std::string hollow = kBar;
+  const char* const corners[] = {"8 8 28", "12 8 28", "12 12 28", "8 12 28",
+                                 "8 8 32", "12 8 32", "12 12 32", "8 12 32"};
+  for (const char* corner : corners) hollow += std::string("v ") + corner + "\n";
+  hollow +=
+      "v 12.000001 12 32\nf 9 12 11 10\nf 13 14 17 16\nf 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 13 16\n";
+  const Finished made = Fascicle({"mesh", File("hollow.obj", hollow), "--out", folder_ / "h.msh", "--size", "2"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(made.out, AllOf(HasSubstr("welded 1 corners with others within 6.63e-05 mm"),
+                              HasSubstr("a surface lies inside of another at (10, 10, 30), 6.93 across"),
+                              HasSubstr("volume              2393")));
+}
+
 TEST_F(MeshTest, ABrokenImageIsRefused) {
   const Finished refused =
       Fascicle({"mesh", File("broken.mha", "nothing"), "--label", "3", "--out", folder_ / "broken.msh"});

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "client/import/febio_import.h"
+#include "client/import/febio_mesh.h"
 #include "core/geometry/mesh_io.h"
 #include "tests/support/sample_models.h"
 
@@ -521,6 +522,36 @@ TEST(FebioImportTest, AModelWithMostOfWhatThereIs) {
   EXPECT_EQ(body.constraints_size(), 2);
   EXPECT_EQ(ImportedMeshOf(*imported).tetrahedra.size(), 6u + 3u + 1u);
   EXPECT_THAT(NoticesOf(*imported), HasSubstr(": Contact"));
+}
+
+// The mesh alone, with its parts and sets as tags.
+TEST(FebioMeshTest, PartsAndSetsBecomeTags) {
+  Pieces pieces;
+  pieces.elements =
+      "<Elements type=\"tet4\" name=\"p\"><elem id=\"1\">1,2,3,4</elem></Elements>"
+      "<Elements type=\"penta6\" name=\"w\"><elem id=\"2\">1,3,2,6,8,7</elem></Elements>";
+  pieces.nodes += "<node id=\"6\">0,0,-10</node><node id=\"7\">10,0,-10</node><node id=\"8\">0,10,-10</node>";
+  pieces.sets +=
+      "<ElementSet name=\"both\">1,2</ElementSet>"
+      "<Surface name=\"side\"><quad4 id=\"1\">1,2,7,6</quad4><tri3 id=\"2\">1,2,4</tri3></Surface>";
+  Problems problems;
+  MeshRemarks remarks;
+  EXPECT_FALSE(client::ReadFebioMesh("m.feb", pieces.Model(), false, problems, {}, remarks));
+  EXPECT_THAT(problems.ToString(), HasSubstr("--split-hexahedra"));
+  Problems none;
+  const auto mesh = client::ReadFebioMesh("m.feb", pieces.Model(), true, none, {}, remarks);
+  ASSERT_TRUE(mesh) << none.ToString();
+  double volume = 0;
+  for (std::size_t t = 0; t < mesh->tetrahedra.size(); ++t) volume += std::abs(SignedVolume(*mesh, t));
+  EXPECT_DOUBLE_EQ(volume, 1000.0 / 6 + 500);
+  EXPECT_THAT(mesh->tetrahedron_tags, ElementsAre(1, 2, 2, 2));
+  EXPECT_EQ(mesh->further_tags.size(), 4u);
+  EXPECT_THAT(mesh->triangle_tags, ElementsAre(4, 4, 4));
+  EXPECT_EQ(mesh->nodes.size(), 7u) << "node 5 belongs to no element";
+  std::vector<std::string> names;
+  for (const TagName& name : remarks.names) names.push_back(name.name);
+  EXPECT_THAT(names, ElementsAre("p", "w", "both", "side", "s", "t"));
+  EXPECT_THAT(mesh->node_tags, ElementsAre(5, 5, 5));
 }
 
 }  // namespace

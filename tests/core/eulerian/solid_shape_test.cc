@@ -37,6 +37,15 @@ TEST(SolidShape, RefusesWhatBoundsNoSolid) {
   const auto count = static_cast<std::int32_t>(good.nodes.size());
   for (const auto& [a, b, c] : good.triangles) both.triangles.push_back({a + count, b + count, c + count});
   EXPECT_THAT(Refusal(both, 0.01), ::testing::HasSubstr("intersects itself"));
+  // A cavity.
+  TriangleMesh hollow = good;
+  for (const Vec3& node : good.nodes) hollow.nodes.push_back(0.3 * node);
+  for (const auto& [a, b, c] : good.triangles) hollow.triangles.push_back({a + count, c + count, b + count});
+  EXPECT_EQ(Refusal(hollow, 0.01), "");
+  for (std::size_t t = good.triangles.size(); t < hollow.triangles.size(); ++t) {
+    std::swap(hollow.triangles[t][0], hollow.triangles[t][1]);
+  }
+  EXPECT_THAT(Refusal(hollow, 0.01), ::testing::HasSubstr("a part of the surface has the wrong orientation"));
   EXPECT_THAT(Refusal(good, 0.05), ::testing::HasSubstr("cells across"));
   EXPECT_THAT(Refusal({}, 0.05), ::testing::HasSubstr("no triangles"));
 }

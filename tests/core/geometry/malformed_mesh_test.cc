@@ -68,6 +68,10 @@ std::vector<Malformed> MalformedFiles() {
        "an entity of dimension 1000000000"},
       {"Gmsh4HugeEntities", "m.msh", Replaced(kGmsh4, "1 0 1 2\n", "1 0 1 4000000000\n"), "",
        "4000000000 entities are announced"},
+      {"GmshPyramidBesideTetrahedra", "m.msh", Replaced(kGmsh2, "1 15 2 0 1 1", "1 7 2 10 1 1 2 3 4 5"), "",
+       "the file has 1 pyramids"},
+      {"GmshThirdOrderBesideOthers", "m.msh", Replaced(kGmsh2, "4 4 2 20 1 2 3 4 5", "4 29 2 20 1 2 3 4 5"), "",
+       "1 volume elements of the file are of kinds that are not supported"},
       // MEDIT
       {"MeditOther", "m.mesh", "$MeshFormat", "", "expected MeshVersionFormatted"},
       {"MeditTwoDimensions", "m.mesh", Replaced(kMedit, "Dimension 3", "Dimension 2"), "", "the mesh has dimension 2"},
@@ -76,7 +80,10 @@ std::vector<Malformed> MalformedFiles() {
       {"MeditNegative", "m.mesh", Replaced(kMedit, "Tetrahedra\n2", "Tetrahedra\n-2"), "",
        "the number of tetrahedra is -2"},
       {"MeditCountsFromZero", "m.mesh", Replaced(kMedit, "1 2 3 4 10", "0 1 2 3 10"), "", "which refers to node 0"},
-      {"MeditNoEnd", "m.mesh", Replaced(kMedit, "End\n", ""), "", "ends without the keyword End"},
+      {"MeditCutNumber", "m.mesh", Replaced(kMedit, "20\nEnd\n", "2"), "", "ends without the keyword End"},
+      {"MeditTwoSections", "m.mesh", Replaced(kMedit, "End\n", "Tetrahedra 0\nEnd\n"), "", "a second section Tetra"},
+      {"MeditHexahedra", "m.mesh", Replaced(kMedit, "End\n", "Hexahedra 1\n1 2 3 4 5 1 2 3 0\nEnd\n"), "",
+       "the file has 1 hexahedra; fascicle has tetrahedra only (`fascicle mesh FILE --convert --split-hexahedra"},
       // TetGen
       {"TetgenNoElements", "m.node", kTetgenNodes, "", "the .ele file with the tetrahedra is missing"},
       {"TetgenTwoDimensions", "m.node", Replaced(kTetgenNodes, "5 3 1 1", "5 2 1 1"), kTetgenElements, "dimension 2"},

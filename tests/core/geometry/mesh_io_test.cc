@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "core/base/stop.h"
 #include "core/geometry/mesh_checks.h"
+#include "core/geometry/mesh_writer.h"
+#include "core/geometry/shapes.h"
+#include "core/geometry/triangle_mesh.h"
 #include "tests/support/mesh_samples.h"
 
 namespace fascicle {
@@ -181,6 +185,191 @@ TEST(MeshIoTest, TenNodesBecomeCurvedEdges) {
     Problems problems;
     CheckMesh(*mesh, problems);
     EXPECT_TRUE(problems.empty()) << problems.ToString();
+  }
+}
+
+TEST(MeshIoTest, ByteOrderMarks) {
+  const auto mesh = Read("m.msh", std::string("\xEF\xBB\xBF") + kGmsh2);
+  ASSERT_TRUE(mesh);
+  ExpectSampleMesh(*mesh, true);
+}
+
+struct WithRemarks {
+  std::optional<TetMesh> mesh;
+  MeshRemarks remarks;
+};
+
+WithRemarks ReadAll(const std::string& name, const std::string& bytes, bool split = false) {
+  WithRemarks result;
+  Problems problems;
+  result.mesh = ReadMesh({.name = name, .bytes = bytes, .split_solids = split}, problems, {}, &result.remarks);
+  EXPECT_TRUE(problems.empty()) << name << ": " << problems.ToString();
+  return result;
+}
+
+using FurtherTags = std::vector<std::array<std::int32_t, 2>>;
+
+TEST(MeshIoTest, SeveralGroupsOfOneEntity) {
+  // The first volume has three groups, one twice; the surface has two.
+  std::string text = Replaced(kGmsh4, "1 0 0 0 1 1 1 1 10 1 3", "1 0 0 0 1 1 1 4 10 -30 40 10 1 3");
+  text = Replaced(text, "3 0 0 0 0 1 1 1 7 0", "3 0 0 0 0 1 1 2 7 8 0");
+  const auto [mesh, remarks] = ReadAll("m.msh", text);
+  ASSERT_TRUE(mesh);
+  EXPECT_EQ(mesh->tetrahedron_tags, (std::vector<std::int32_t>{10, 20}));
+  EXPECT_EQ(mesh->further_tags, (FurtherTags{{0, 30}, {0, 40}}));
+  EXPECT_EQ(mesh->tagged_triangles, (std::vector<Triangle>{{0, 2, 3}, {0, 2, 3}}));
+  EXPECT_EQ(mesh->triangle_tags, (std::vector<std::int32_t>{7, 8}));
+  EXPECT_TRUE(remarks.notes.empty());
+}
+
+TEST(MeshIoTest, ElementsWrittenOnceForEachOfTheirGroups) {
+  // The second tetrahedron again in another order of its nodes, in between, and in a third group.
+  std::string text = Replaced(kGmsh2, "$Elements\n4", "$Elements\n6");
+  text = Replaced(text, "3 4 2 10 1 1 2 3 4", "9 4 2 30 1 3 2 4 5\n3 4 2 10 1 1 2 3 4");
+  text = Replaced(text, "$EndElements", "10 4 2 40 1 2 3 4 5\n$EndElements");
+  const auto [mesh, remarks] = ReadAll("m.msh", text);
+  ASSERT_TRUE(mesh);
+  EXPECT_EQ(mesh->tetrahedra, (std::vector<Tetrahedron>{{2, 1, 3, 4}, {0, 1, 2, 3}}));
+  EXPECT_EQ(mesh->tetrahedron_tags, (std::vector<std::int32_t>{30, 10}));
+  EXPECT_EQ(mesh->further_tags, (FurtherTags{{0, 20}, {0, 40}}));
+  ASSERT_EQ(remarks.notes.size(), 1u);
+  ASSERT_EQ(remarks.names.size(), 2u);
+  EXPECT_EQ(remarks.names[1].name, "muscle");
+  // A repetition in the same group is a mistake of the mesh.
+  const auto doubled = Read("m.msh", Replaced(text, "10 4 2 40", "10 4 2 20"));
+  ASSERT_TRUE(doubled);
+  EXPECT_EQ(doubled->tetrahedra.size(), 3u);
+}
+
+TEST(MeshIoTest, GroupsOfPartitionedMeshes) {
+  // The volumes become 11 and 12: the first inherits the groups of its parent, the second has its own.
+  std::string text = Replaced(kGmsh4, "$EndEntities\n",
+                              "$EndEntities\n$PartitionedEntities\n2\n1\n9 1\n0 0 0 2\n"
+                              "11 3 1 1 1 0 0 0 1 1 1 0 0\n12 3 2 2 1 2 0 0 0 1 1 1 1 50 1 3\n"
+                              "$EndPartitionedEntities\n");
+  text = Replaced(Replaced(text, "3 1 4 1\n3 1 2 3 4", "3 11 4 1\n3 1 2 3 4"), "3 2 4 1\n4 2", "3 12 4 1\n4 2");
+  const auto [mesh, remarks] = ReadAll("m.msh", text);
+  ASSERT_TRUE(mesh);
+  EXPECT_EQ(mesh->tetrahedron_tags, (std::vector<std::int32_t>{10, 50}));
+}
+
+TEST(MeshIoTest, UnusedNodesAreLeftOut) {
+  // Two nodes of nothing, a triangle and a point on them; in the middle of the numbering.
+  std::string text = Replaced(kGmsh2, "$Nodes\n5\n1 0 0 0\n", "$Nodes\n7\n1 0 0 0\n8 7 7 7\n-3 9 9 9\n");
+  text = Replaced(text, "$Elements\n4\n", "$Elements\n6\n5 2 2 7 1 1 8 4\n6 15 2 9 1 8\n");
+  const auto [mesh, remarks] = ReadAll("m.msh", text);
+  ASSERT_TRUE(mesh);
+  ExpectSampleMesh(*mesh, true);
+  EXPECT_TRUE(std::find(mesh->node_tags.begin(), mesh->node_tags.end(), 9) == mesh->node_tags.end());
+  ASSERT_EQ(remarks.notes.size(), 1u);
+  EXPECT_EQ(remarks.notes[0], "2 nodes belong to no tetrahedron and are left out: -3, 8; so are 1 triangles on them");
+}
+
+// Two cubes, a wedge on the side of the second and a pyramid on top of it.
+std::string GmshSolids() {
+  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n15\n"
+         "1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n7 0 0 1\n8 1 0 1\n9 2 0 1\n10 0 1 1\n11 1 1 1\n"
+         "12 2 1 1\n13 3 0 0\n14 3 0 1\n15 1.5 0.5 2\n$EndNodes\n$Elements\n6\n"
+         "1 3 2 5 1 1 7 10 4\n"
+         "2 5 2 1 1 1 2 5 4 7 8 11 10\n3 5 2 2 1 2 3 6 5 8 9 12 11\n4 5 2 3 1 2 3 6 5 8 9 12 11\n"
+         "5 6 2 2 1 3 13 6 9 14 12\n6 7 2 4 1 8 9 12 11 15\n$EndElements\n";
+}
+
+TEST(MeshIoTest, SolidsAreSplitSoThatNeighboursMatch) {
+  const auto [mesh, remarks] = ReadAll("m.msh", GmshSolids(), true);
+  ASSERT_TRUE(mesh);
+  const double volume = 1 + 1 + 0.5 + 1.0 / 3;
+  EXPECT_DOUBLE_EQ(TotalVolume(*mesh), volume);
+  Problems problems;
+  EXPECT_EQ(CheckMesh(*mesh, problems).components, 1);
+  EXPECT_TRUE(problems.empty()) << problems.ToString();
+  EXPECT_DOUBLE_EQ(EnclosedVolume({mesh->nodes, BoundaryTriangles(*mesh)}), volume);
+  std::map<std::int32_t, double> of_tag;
+  for (std::size_t t = 0; t < mesh->tetrahedra.size(); ++t) of_tag[mesh->tetrahedron_tags[t]] += SignedVolume(*mesh, t);
+  for (const auto& [t, tag] : mesh->further_tags) of_tag[tag] += SignedVolume(*mesh, static_cast<std::size_t>(t));
+  EXPECT_DOUBLE_EQ(of_tag[1], 1);
+  EXPECT_DOUBLE_EQ(of_tag[2], 1.5);
+  EXPECT_DOUBLE_EQ(of_tag[3], 1);
+  EXPECT_DOUBLE_EQ(of_tag[4], 1.0 / 3);
+  EXPECT_EQ(mesh->triangle_tags, (std::vector<std::int32_t>{5, 5}));
+  EXPECT_EQ(remarks.notes.size(), 2u);
+}
+
+// The order of VTK's wedges is seen from the other side, and that of voxels goes along the axes.
+TEST(MeshIoTest, SolidsOfVtk) {
+  const std::string points = "0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1 0.5 0.5 2";
+  const auto file = [&](const std::string& cell, int type) {
+    const auto size = std::count(cell.begin(), cell.end(), ' ') + 1;
+    return "# vtk DataFile Version 3.0\nm\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 double\n" + points +
+           "\nCELLS 1 " + std::to_string(size + 1) + "\n" + std::to_string(size) + " " + cell + "\nCELL_TYPES 1\n" +
+           std::to_string(type) + "\n";
+  };
+  for (const auto& [cell, type, volume] :
+       {std::tuple("0 1 2 3 4 5 6 7", 11, 1.0), std::tuple("0 1 3 2 4 5 7 6", 12, 1.0),
+        std::tuple("0 2 1 4 6 5", 13, 0.5), std::tuple("0 1 2 4 5 6", 13, 0.5), std::tuple("4 5 7 6 8", 14, 1.0 / 3)}) {
+    const auto [mesh, remarks] = ReadAll("m.vtk", file(cell, type), true);
+    ASSERT_TRUE(mesh) << cell;
+    EXPECT_DOUBLE_EQ(TotalVolume(*mesh), volume) << cell;
+    for (std::size_t t = 0; t < mesh->tetrahedra.size(); ++t) EXPECT_GT(SignedVolume(*mesh, t), 0) << cell;
+  }
+  Problems problems;
+  EXPECT_FALSE(ReadMesh({.name = "m.vtk", .bytes = file("0 1 2 3 4 5 6 7", 42), .split_solids = true}, problems));
+}
+
+TEST(MeshIoTest, SolidsOfMedit) {
+  const std::string text =
+      "MeshVersionFormatted 1\nDimension 3\nVertices 9\n0 0 0 0\n1 0 0 0\n1 1 0 0\n0 1 0 0\n0 0 1 0\n1 0 1 0\n"
+      "1 1 1 0\n0 1 1 0\n0.5 0.5 2 0\nQuadrilaterals 1\n1 2 6 5 3\nHexahedra 1\n1 2 3 4 5 6 7 8 1\n"
+      "Pyramids 1\n5 6 7 8 9 2\n";
+  const auto [mesh, remarks] = ReadAll("m.mesh", text, true);
+  ASSERT_TRUE(mesh);
+  EXPECT_DOUBLE_EQ(TotalVolume(*mesh), 4.0 / 3);
+  EXPECT_EQ(mesh->triangle_tags, (std::vector<std::int32_t>{3, 3}));
+}
+
+TEST(MeshIoTest, MeditWithoutItsLastKeyword) {
+  const auto mesh = Read("m.mesh", Replaced(kMedit, "End\n", ""));
+  ASSERT_TRUE(mesh);
+  ExpectSampleMesh(*mesh, true);
+}
+
+// Everything that a mesh can hold comes back.
+TEST(MeshIoTest, WhatIsWrittenIsReadBack) {
+  TetMesh mesh = MakeSphere(1, 4);
+  mesh.tetrahedron_tags.assign(mesh.tetrahedra.size(), 1);
+  mesh.tetrahedron_tags[3] = 2;
+  mesh.further_tags = {{2, 5}, {3, 5}, {3, 6}};
+  mesh.tagged_triangles = {BoundaryTriangles(mesh)[1], BoundaryTriangles(mesh)[1], BoundaryTriangles(mesh)[4]};
+  mesh.triangle_tags = {7, 8, 7};
+  mesh.tagged_nodes = {4, 4, 2};
+  mesh.node_tags = {9, 10, 9};
+  for (const bool curved : {false, true}) {
+    for (const auto& [i, j, k] : BoundaryTriangles(mesh)) {
+      for (const auto& [a, b] : {std::pair(i, j), std::pair(j, k), std::pair(k, i)}) {
+        if (curved && a < b) mesh.curved_edges.push_back({{a, b}, (mesh.nodes[a] + mesh.nodes[b]).normalized()});
+      }
+    }
+    const std::vector<TagName> names = {{0, 9, "two nodes"}, {2, 7, "side"}, {3, 1, "all (\u00e4)"}};
+    const auto [read, remarks] = ReadAll("m.msh", GmshText(mesh, names));
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->nodes, mesh.nodes);
+    EXPECT_EQ(read->tetrahedra, mesh.tetrahedra);
+    EXPECT_EQ(read->tetrahedron_tags, mesh.tetrahedron_tags);
+    EXPECT_EQ(read->further_tags, mesh.further_tags);
+    EXPECT_EQ(read->tagged_triangles, mesh.tagged_triangles);
+    EXPECT_EQ(read->triangle_tags, mesh.triangle_tags);
+    EXPECT_EQ(read->tagged_nodes, mesh.tagged_nodes);
+    EXPECT_EQ(read->node_tags, mesh.node_tags);
+    std::map<std::array<std::int32_t, 2>, Vec3> middles;
+    for (const CurvedEdge& edge : read->curved_edges) middles[edge.ends] = edge.middle;
+    EXPECT_EQ(middles.size(), mesh.curved_edges.size());
+    for (const CurvedEdge& edge : mesh.curved_edges) EXPECT_EQ(middles[edge.ends], edge.middle);
+    ASSERT_EQ(remarks.names.size(), 3u);
+    for (std::size_t n = 0; n < 3; ++n) {
+      EXPECT_EQ(remarks.names[n].name, names[n].name);
+      EXPECT_EQ(remarks.names[n].dimension, names[n].dimension);
+      EXPECT_EQ(remarks.names[n].tag, names[n].tag);
+    }
   }
 }
 

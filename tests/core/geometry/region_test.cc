@@ -122,6 +122,9 @@ TEST_F(RegionTest, TetrahedraAreThoseWithTheirCentroidInside) {
   mesh_.tetrahedron_tags.assign(mesh_.tetrahedra.size(), 1);
   mesh_.tetrahedron_tags[5] = mesh_.tetrahedron_tags[77] = 3;
   EXPECT_EQ(Select(TagSelector{3}).elements, (std::vector<std::int32_t>{5, 77}));
+  mesh_.further_tags = {{77, 4}, {6, 3}, {5, 4}};
+  EXPECT_EQ(Select(TagSelector{3}).elements, (std::vector<std::int32_t>{5, 6, 77}));
+  EXPECT_EQ(Select(TagSelector{4}).elements, (std::vector<std::int32_t>{5, 77}));
 }
 
 TEST_F(RegionTest, BoxIncludesItsFaces) {

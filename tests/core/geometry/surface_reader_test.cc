@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/base/stop.h"
+#include "core/geometry/ear_clipping.h"
 #include "surface_samples.h"
 #include "tests/support/files.h"
 #include "tests/support/paths.h"
@@ -91,6 +92,88 @@ TEST(SurfaceReaderTest, PolygonsBecomeTriangles) {
   EXPECT_EQ(surface->triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
 }
 
+// Corners that turn inwards and corners on straight lines: a prism over an L whose longest side is divided.
+TEST(SurfaceReaderTest, PolygonsOfAnyShape) {
+  const std::string prism =
+      "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n"
+      "v 0 0 1\nv 1 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n";
+  for (int start = 0; start < 7; ++start) {
+    std::string lower = "f", upper = "f", sides;
+    for (int i = 0; i < 7; ++i) {
+      const int at = (start + i) % 7, next = (at + 1) % 7;
+      lower.insert(1, " " + std::to_string(1 + at));
+      upper += " " + std::to_string(8 + at);
+      sides += "f " + std::to_string(1 + at) + " " + std::to_string(1 + next) + " " + std::to_string(8 + next) + " " +
+               std::to_string(8 + at) + "\n";
+    }
+    const auto surface = Read("prism.obj", prism + lower + "\n" + upper + "\n" + sides);
+    ASSERT_TRUE(surface);
+    EXPECT_EQ(surface->triangles.size(), 2u * 5 + 7 * 2);
+    EXPECT_DOUBLE_EQ(EnclosedVolume(*surface), 3);
+    EXPECT_DOUBLE_EQ(Area(*surface), 2 * 3 + 8) << "overlapping triangles have a larger area";
+    for (const auto& [a, b, c] : surface->triangles) {
+      const Vec3 ab = surface->nodes[b] - surface->nodes[a], ac = surface->nodes[c] - surface->nodes[a];
+      EXPECT_GT(ab.cross(ac).norm(), 0.1);
+    }
+  }
+}
+
+std::string Replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+std::string Upper(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
+void ExpectCorner(const std::string& name, const std::string& bytes, const std::string& note) {
+  Problems problems;
+  std::vector<std::string> notes;
+  const auto surface = ReadSurface(name, bytes, problems, {}, &notes);
+  ASSERT_TRUE(surface) << name << ": " << problems.ToString();
+  EXPECT_EQ(surface->triangles, CornerSurface().triangles) << name;
+  ASSERT_EQ(notes.size(), note.empty() ? 0u : 1u) << name;
+  if (!note.empty()) {
+    EXPECT_THAT(notes[0], HasSubstr(note));
+  }
+}
+
+TEST(SurfaceReaderTest, ByteOrderMarksAndUpperCase) {
+  const std::string mark = "\xEF\xBB\xBF";
+  for (const SurfaceSample& sample : SurfaceSamples()) {
+    ExpectCorner(Upper(sample.name), sample.bytes, "");
+    if (sample.bytes.find('\0') == std::string::npos) ExpectCorner(sample.name, mark + sample.bytes, "");
+  }
+  ExpectCorner("a.obj", mark + Replaced(kObj, "# a comment\nmtllib none.mtl\n", ""), "");
+  ExpectCorner("a.stl", Upper(kAsciiStl), "");
+  ExpectCorner("a.stl", Replaced(Replaced(kAsciiStl, "facet", "Facet"), "vertex", "Vertex"), "");
+}
+
+TEST(SurfaceReaderTest, LineEndsOfAnySystem) {
+  for (const std::string end : {"\r\n", "\r"}) {
+    ExpectCorner("a.obj", Replaced(kObj, "\n", end), "");
+    ExpectCorner("a.stl", Replaced(kAsciiStl, "\n", end), "");
+    ExpectCorner("a.ply", Replaced(kAsciiPly, "\n", end), "");
+    ExpectCorner("a.obj", Replaced(Replaced(kObj, "f 1 2 3", "f 1 \\\n 2 \\\n3"), "\n", end), "");
+  }
+  EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\rv 1 zero 0\r"), HasSubstr("line 2: expected a coordinate"));
+  EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\nv 1 0 \\\n0\nv 1 zero 0\n"), HasSubstr("line 4: expected a coordinate"));
+}
+
+TEST(SurfaceReaderTest, FlawsOfStlAreReadWithANote) {
+  const std::string binary = BinaryStl(CornerSurface());
+  ExpectCorner("a.stl", binary + "\r\n", "the last 2 bytes of the file, after its 4 triangles, are left out");
+  ExpectCorner("a.stl", binary + std::string(1000, '\0'), "the last 1000 bytes");
+  std::string uncounted = binary;
+  uncounted.replace(80, 4, std::string(4, '\0'));
+  ExpectCorner("a.stl", uncounted, "announces no triangles but has 4");
+  ExpectCorner("a.stl", Replaced(kAsciiStl, "endsolid corner\n", ""), "ends without `endsolid`, after 4 triangles");
+}
+
 TEST(SurfaceReaderTest, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(ProblemsOf("a.step", ""), HasSubstr(".stl, .obj, .ply, .vtp"));
   EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\nv 1 zero 0\n"),
@@ -100,7 +183,12 @@ TEST(SurfaceReaderTest, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(ProblemsOf("a.obj", "v 0 0 0\n"), HasSubstr("no triangles"));
   EXPECT_THAT(ProblemsOf("a.stl", std::string(kAsciiStl).substr(0, std::string(kAsciiStl).find(" endloop"))),
               HasSubstr("is the file complete?"));
-  EXPECT_THAT(ProblemsOf("a.stl", BinaryStl(CornerSurface()) + "x"), HasSubstr("line 1"));
+  EXPECT_THAT(ProblemsOf("a.stl", BinaryStl(CornerSurface()).substr(0, 250)), HasSubstr("announces 4 triangles"));
+  EXPECT_THAT(ProblemsOf("a.stl", Replaced(kAsciiStl, "1 0 0", "1,0 0 0")), HasSubstr("a decimal point, not a comma"));
+  EXPECT_THAT(ProblemsOf("a.vtu", ""), HasSubstr("--convert"));
+  std::string many = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
+  for (std::size_t i = 0; i <= kMostCorners; ++i) many += " " + std::to_string(1 + i % 3);
+  EXPECT_THAT(ProblemsOf("a.obj", many + "\n"), HasSubstr("a polygon of 20001 corners"));
   EXPECT_THAT(ProblemsOf("a.ply", "ply\nformat ascii 1.0\nelement vertex 99999999\n"), HasSubstr("announced"));
   EXPECT_THAT(ProblemsOf("a.vtp", "<VTKFile type=\"UnstructuredGrid\"/>"), HasSubstr("poly data"));
 }

@@ -155,5 +155,18 @@ TEST(TetrahedralizeTest, RefusesSizesThatMakeNoSense) {
               HasSubstr("hole at"));
 }
 
+// A cavity is left empty, whatever the orientation of its surface.
+TEST(TetrahedralizeTest, CavitiesAreLeftEmpty) {
+  TriangleMesh inner = SurfaceOf(MakeSphere(0.5, 12));
+  for (const bool inverted : {false, true}) {
+    const TriangleMesh outer = SurfaceOf(MakeSphere(1, 12));
+    const MeshingResult result = Mesh(Joined(outer, inverted ? InsideOut(inner) : inner), 6000);
+    EXPECT_NEAR(result.report.volume, EnclosedVolume(outer) - EnclosedVolume(inner), 1e-4);
+    for (std::size_t t = 0; t < result.mesh.tetrahedra.size(); ++t) {
+      EXPECT_GT(Centroid(result.mesh, t).norm(), 0.45);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace fascicle
