@@ -48,6 +48,7 @@ int Main(int argc, char** argv) {
   AddExport(app, context);
   AddRender(app, context);
   AddPlot(app, context);
+  AddSample(app, context);
   AddMesh(app, context);
   AddPhantom(app, context);
   AddSegment(app, context);

@@ -4,6 +4,8 @@
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
+#include <vtkInformation.h>
+#include <vtkInformationStringKey.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -49,6 +51,10 @@ vtkSmartPointer<vtkPoints> MakePoints(const std::vector<Vec3>& positions) {
   return points;
 }
 
+void SetUnit(vtkDoubleArray& array, const std::string& unit) {
+  array.GetInformation()->Set(vtkDataArray::UNITS_LABEL(), unit.c_str());
+}
+
 void AddTriangles(const std::vector<std::array<std::uint32_t, 3>>& triangles, vtkCellArray& cells) {
   for (const auto& t : triangles) cells.InsertNextCell({vtkIdType{t[0]}, vtkIdType{t[1]}, vtkIdType{t[2]}});
 }
@@ -72,6 +78,7 @@ void SetMesh(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnst
 
 void AddDisplacement(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnstructuredGrid& grid) {
   const auto displacement = MakeArray("displacement", 3, positions.size());
+  SetUnit(*displacement, "m");
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Vec3 u = positions[i] - shape.positions[i];
     displacement->SetTypedTuple(static_cast<vtkIdType>(i), u.data());
@@ -124,6 +131,7 @@ void WriteBody(const BodyShape& shape, const v1::BodyFrame& frame, const fs::pat
   AddRestFibres(shape, *grid);
   for (const v1::FieldValues& field : frame.fields()) {
     const auto array = MakeArray(field.name(), field.components(), DecodeField(field, shape));
+    SetUnit(*array, field.unit());
     const bool at_nodes = field.location() == v1::FieldValues::LOCATION_NODE;
     (at_nodes ? static_cast<vtkFieldData*>(grid->GetPointData()) : grid->GetCellData())->AddArray(array);
   }
