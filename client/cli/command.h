@@ -94,6 +94,7 @@ void AddDelete(CLI::App& app, Context& context);
 void AddExport(CLI::App& app, Context& context);
 void AddRender(CLI::App& app, Context& context);
 void AddPlot(CLI::App& app, Context& context);
+void AddSample(CLI::App& app, Context& context);
 void AddMesh(CLI::App& app, Context& context);
 void AddPhantom(CLI::App& app, Context& context);
 void AddSegment(CLI::App& app, Context& context);

@@ -46,6 +46,7 @@ int Run(int argc, char** argv) {
   AddExport(app, context);
   AddRender(app, context);
   AddPlot(app, context);
+  AddSample(app, context);
   AddMesh(app, context);
   AddPhantom(app, context);
   AddSegment(app, context);

@@ -314,7 +314,6 @@ int MakeMesh(const MeshOptions& options, const Context& context) {
       std::printf("label %d: smoothing changed its volume by %+.3f %%\n", *options.label,
                   100 * (result->report.surface_volume / *input.voxel_volume - 1));
     }
-    for (const std::string& note : input.notes) std::printf("note: %s\n", note.c_str());
     PrintReport(options, *result, regions);
   }
   return kDone;

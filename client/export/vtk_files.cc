@@ -3,6 +3,8 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
+#include <vtkInformation.h>
+#include <vtkInformationStringKey.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
@@ -38,8 +40,13 @@ vtkSmartPointer<vtkDoubleArray> MakeArray(const std::string& name, int component
   return array;
 }
 
+void SetUnit(vtkDoubleArray& array, const std::string& unit) {
+  array.GetInformation()->Set(vtkDataArray::UNITS_LABEL(), unit.c_str());
+}
+
 void AddDisplacement(const BodyShape& shape, const std::vector<Vec3>& positions, vtkUnstructuredGrid& grid) {
   const auto displacement = MakeArray("displacement", 3, positions.size());
+  SetUnit(*displacement, "m");
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Vec3 u = positions[i] - shape.positions[i];
     displacement->SetTypedTuple(static_cast<vtkIdType>(i), u.data());
@@ -91,6 +98,7 @@ void WriteBody(const BodyShape& shape, const v1::BodyFrame& frame, const fs::pat
   AddRestFibres(shape, *grid);
   for (const v1::FieldValues& field : frame.fields()) {
     const auto array = MakeArray(field.name(), field.components(), DecodeField(field, shape));
+    SetUnit(*array, field.unit());
     const bool at_nodes = field.location() == v1::FieldValues::LOCATION_NODE;
     (at_nodes ? static_cast<vtkFieldData*>(grid->GetPointData()) : grid->GetCellData())->AddArray(array);
   }

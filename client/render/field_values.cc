@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/component_names.h"
+
 namespace fascicle::client {
 namespace {
 
@@ -61,30 +63,26 @@ Tuples FindField(const BodyShape& shape, const v1::BodyFrame& frame, const std::
                            " (see the scene's output.fields)");
 }
 
-std::vector<std::string> ComponentNames(std::size_t components) {
-  if (components == 3) return {"x", "y", "z"};
-  if (components == 6) return {"xx", "yy", "zz", "xy", "yz", "xz"};
-  return {};
-}
+bool IsVector(const std::vector<std::string>& names) { return names.size() == 3 && names.front() == "x"; }
 
 // One value per tuple: a component or, for vectors, the magnitude.
 std::vector<double> Reduce(const Tuples& tuples, const std::string& field, const std::string& component) {
   const std::size_t n = tuples.components;
   std::size_t chosen = 0;
-  if (!component.empty() || n > 3) {
-    const std::vector<std::string> names = ComponentNames(n);
+  const std::vector<std::string> names = ComponentNames(field, n);
+  if (!component.empty() || (n > 1 && !IsVector(names))) {
     while (chosen < names.size() && names[chosen] != component) ++chosen;
     if (chosen == names.size()) {
       std::string hint;
       for (const std::string& name : names) hint += " " + field + "/" + name;
-      throw std::runtime_error(names.empty() ? "field `" + field + "` has no components"
-                                             : "give one of the components:" + hint);
+      throw std::runtime_error(n == 1 ? "field `" + field + "` has no components"
+                                      : "give one of the components:" + hint);
     }
   }
   std::vector<double> values(tuples.values.size() / n);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double* tuple = &tuples.values[i * n];
-    values[i] = n == 3 && component.empty() ? Eigen::Map<const Vec3>(tuple).norm() : tuple[chosen];
+    values[i] = n > 1 && component.empty() ? Eigen::Map<const Vec3>(tuple).norm() : tuple[chosen];
   }
   return values;
 }

@@ -17,8 +17,8 @@ struct NodeValues {
 };
 
 // Values of `field` for colouring: `displacement`, the name of a field of the frame, or NAME/COMPONENT such as
-// `displacement/z`, `cauchy_stress/xx`. A vector without a component gives its magnitude; values of elements are
-// averaged to nodes by rest volume. Throws std::runtime_error that lists the existing fields.
+// `displacement/z`, `cauchy_stress/xx`, `principal_strains/1`. A vector without a component gives its magnitude; values
+// of elements are averaged to nodes by rest volume. Throws std::runtime_error that lists the existing fields.
 NodeValues ValuesAtNodes(const BodyShape& shape, const v1::BodyFrame& frame, const std::string& field);
 
 // Whether ValuesAtNodes finds such a field, with any component.

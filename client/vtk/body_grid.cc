@@ -6,9 +6,6 @@
 namespace fascicle::client {
 namespace {
 
-// The corners of a brick in VTK's order of a hexahedron: around the lower side, then around the upper one.
-constexpr std::array<std::size_t, 8> kHexahedronCorners = {0, 1, 3, 2, 4, 5, 7, 6};
-
 template <std::size_t kNodes, class Element>
 std::array<vtkIdType, kNodes> NodesOf(const Element& element, const std::array<std::size_t, kNodes>& order) {
   std::array<vtkIdType, kNodes> nodes;

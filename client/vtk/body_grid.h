@@ -15,6 +15,9 @@
 // Decoded geometry as VTK's data, in double precision and metres. Thread-safe.
 namespace fascicle::client {
 
+// The corners of a brick in VTK's order of a hexahedron: around the lower side, then around the upper one.
+inline constexpr std::array<std::size_t, 8> kHexahedronCorners = {0, 1, 3, 2, 4, 5, 7, 6};
+
 vtkSmartPointer<vtkPoints> MakePoints(const std::vector<Vec3>& positions);
 
 vtkSmartPointer<vtkCellArray> MakeTriangles(const std::vector<std::array<std::uint32_t, 3>>& triangles);

@@ -53,6 +53,7 @@ EulerianState BodyStepper::InitialState(const std::function<Vec3(const Vec3&)>& 
   state.surface = body_->shape.surface().nodes;
   state.pressure.assign(grid.cell_count(), std::numeric_limits<double>::quiet_NaN());
   state.reactions.assign(body_->supports.size(), Vec3::Zero());
+  state.moments = state.reactions;
   FindSurface(*body_, *team_, state);
   StartPlasticity(*body_, state);
   return state;
@@ -152,8 +153,12 @@ void BodyStepper::TakeVelocities(const VelocityProgram& program, std::size_t bod
 StepProblem BodyStepper::FinishVelocities(double dt) {
   std::vector<Vec3>& v = made_.v;
   made_.reactions.assign(body_->supports.size(), Vec3::Zero());
+  made_.moments = made_.reactions;
   for (std::size_t n = 0; n < impulses_.size(); ++n) {
-    if (roles_.IsPrescribed(n)) made_.reactions[roles_.support[n]] += impulses_[n] / dt;
+    if (!roles_.IsPrescribed(n)) continue;
+    const Vec3 force = impulses_[n] / dt;
+    made_.reactions[roles_.support[n]] += force;
+    made_.moments[roles_.support[n]] += body_->grid.NodePosition(body_->grid.NodeAt(n)).cross(force);
   }
   if (!AllFinite(v)) return StepProblem::kNotFinite;
   for (const NodeRoles::Constrained& constrained : roles_.constrained) {

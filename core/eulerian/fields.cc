@@ -13,9 +13,8 @@ namespace {
 constexpr double kFieldReach = 2;
 
 // Stress of a cell, with the pressure that kept its volume [Pa].
-Mat3 StressOf(const EulerianBody& body, const EulerianState& state, const BodyControls& now, const EulerianCells& cells,
+Mat3 StressOf(const EulerianBody& body, const EulerianState& state, const FibreState& fibre, const EulerianCells& cells,
               std::size_t cell) {
-  const FibreState fibre = FibreOf(body, state, now, body.grid.CellAt(cell));
   const Mat3 Fe = ElasticGradient(body, state, cells, cell);
   Mat3 sigma = std::visit([&](const auto& law) { return CauchyStress(law, Fe, fibre); }, body.material);
   if (std::isfinite(state.pressure[cell])) sigma -= state.pressure[cell] * Mat3::Identity();
@@ -24,22 +23,31 @@ Mat3 StressOf(const EulerianBody& body, const EulerianState& state, const BodyCo
 
 // What means over cells are taken of: the field, or the tensor that it is computed from.
 OutputField Averaged(OutputField field) {
-  return InfoOf(field).from == FieldSource::kStress ? OutputField::kCauchyStress : field;
+  return InfoOf(field).from == FieldSource::kStress ? OutputField::kCauchyStress : InfoOf(field).mean_of;
 }
 
 // That in a cell, component by component.
 std::vector<double> CellValue(const EulerianBody& body, const EulerianState& state, const BodyControls& now,
-                              const EulerianCells& cells, OutputField field, std::size_t cell) {
+                              const EulerianCells& cells, const AskedField& asked, std::size_t cell) {
+  const FieldSource from = InfoOf(asked.field).from;
+  FibreState fibre = FibreOf(body, state, now, body.grid.CellAt(cell));
   MaterialPoint point;
-  if (InfoOf(field).from == FieldSource::kStress) {
-    point.sigma = StressOf(body, state, now, cells, cell);
-  } else {
-    point.F = cells.F[cell];
-    point.J = cells.J[cell];
-    point.a0 = FibreOf(body, state, now, body.grid.CellAt(cell)).direction;
+  point.F = cells.F[cell];
+  point.J = cells.J[cell];
+  point.a0 = fibre.direction;
+  point.line_of_action = asked.line_of_action;
+  if (from == FieldSource::kStress || from == FieldSource::kFibreStress) {
+    point.sigma = StressOf(body, state, fibre, cells, cell);
+  } else if (from == FieldSource::kEnergy) {
+    const Mat3 Fe = ElasticGradient(body, state, cells, cell);
+    point.energy_density = std::visit([&](const auto& law) { return law.Energy(Fe, fibre); }, body.material);
   }
-  std::vector<double> values(InfoOf(Averaged(field)).components);
-  PutField(Averaged(field), point, values.data());
+  if (from == FieldSource::kFibreStress) {
+    fibre.activation = 0;
+    point.passive_sigma = StressOf(body, state, fibre, cells, cell);
+  }
+  std::vector<double> values(InfoOf(Averaged(asked.field)).components);
+  PutField(Averaged(asked.field), point, values.data());
   return values;
 }
 
@@ -68,46 +76,47 @@ Mat3 Tensor(const std::vector<double>& s) {
   return (Mat3() << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]).finished();
 }
 
-// From the mean at a vertex to the field's values there.
-std::vector<double> AtVertex(OutputField field, const std::vector<double>& mean) {
+// From the mean at a point to the field's values there.
+std::vector<double> AtPoint(OutputField field, const std::vector<double>& mean) {
   const OutputFieldInfo& info = InfoOf(field);
-  std::vector<double> values = mean;
+  std::vector<double> values(info.components);
   if (info.from == FieldSource::kStress) {
     MaterialPoint point;
     point.sigma = Tensor(mean);
-    values.resize(info.components);
     PutField(field, point, values.data());
+  } else {
+    PutFromMean(field, mean.data(), values.data());
   }
-  if (info.is_direction) NormalizeDirections(values);
   return values;
 }
 
-std::vector<double> AtVertices(const EulerianBody& body, const EulerianState& state, OutputField field) {
-  const std::size_t components = InfoOf(field).components;
-  std::vector<double> values(components * state.surface.size());
-  for (std::size_t v = 0; v < state.surface.size(); ++v) {
-    MaterialPoint point;
-    point.v = Interpolate(body.grid, {&state.v, &state.known}, state.surface[v]).value_or(Vec3::Zero());
-    PutField(field, point, &values[components * v]);
+std::vector<double> VelocitiesAt(const EulerianBody& body, const EulerianState& state,
+                                 const std::vector<Vec3>& points) {
+  std::vector<double> values;
+  for (const Vec3& x : points) {
+    const Vec3 v = Interpolate(body.grid, {&state.v, &state.known}, x).value_or(Vec3::Zero());
+    values.insert(values.end(), v.begin(), v.end());
   }
   return values;
 }
 
 }  // namespace
 
-std::vector<double> FieldValuesOf(const EulerianBody& body, const EulerianState& state, const BodyControls& now,
-                                  const EulerianCells& cells, OutputField field) {
-  if (InfoOf(field).from == FieldSource::kMotion) return AtVertices(body, state, field);
+std::vector<double> FieldValuesAt(const EulerianBody& body, const EulerianState& state, const BodyControls& now,
+                                  const EulerianCells& cells, const AskedField& asked,
+                                  const std::vector<Vec3>& points) {
+  if (InfoOf(asked.field).from == FieldSource::kMotion) return VelocitiesAt(body, state, points);
   std::vector<std::vector<double>> of_cell(cells.inside.size());
   const auto value_of = [&](std::size_t cell) -> const std::vector<double>& {
-    if (of_cell[cell].empty()) of_cell[cell] = CellValue(body, state, now, cells, field, cell);
+    if (of_cell[cell].empty()) of_cell[cell] = CellValue(body, state, now, cells, asked, cell);
     return of_cell[cell];
   };
   std::vector<double> values;
-  for (const Vec3& x : state.surface) {
-    const std::vector<double> mean = MeanAround(body.grid, cells, x, InfoOf(Averaged(field)).components, value_of);
-    const std::vector<double> at_vertex = AtVertex(field, mean);
-    values.insert(values.end(), at_vertex.begin(), at_vertex.end());
+  for (const Vec3& x : points) {
+    const std::vector<double> mean =
+        MeanAround(body.grid, cells, x, InfoOf(Averaged(asked.field)).components, value_of);
+    const std::vector<double> at_point = AtPoint(asked.field, mean);
+    values.insert(values.end(), at_point.begin(), at_point.end());
   }
   return values;
 }

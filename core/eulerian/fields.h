@@ -4,16 +4,23 @@
 #include <vector>
 
 #include "core/eulerian/cells.h"
+#include "core/scene/output_fields.h"
 
 namespace fascicle {
 
-// A field at the vertices of the surface, component fastest, in SI units. Velocities are interpolated; all others are
-// means over the solid cells within two cells of a vertex, weighted by solid part and distance. Stresses include the
-// pressure that preserves volume.
+// A field, and the line of action that pennation_angle refers to.
+struct AskedField {
+  OutputField field;
+  Vec3 line_of_action = Vec3::UnitX();
+};
+
+// A field at points of the body, such as the vertices of its surface, component fastest, in SI units. Velocities are
+// interpolated; all others are means over the solid cells within two cells of a point, weighted by solid part and
+// distance, or follow from such means. Stresses include the pressure that preserves volume.
 //   now    the controls of the body at the state's time
 //   cells  those of the state (UpdateCells)
-std::vector<double> FieldValuesOf(const EulerianBody& body, const EulerianState& state, const BodyControls& now,
-                                  const EulerianCells& cells, OutputField field);
+std::vector<double> FieldValuesAt(const EulerianBody& body, const EulerianState& state, const BodyControls& now,
+                                  const EulerianCells& cells, const AskedField& asked, const std::vector<Vec3>& points);
 
 }  // namespace fascicle
 

@@ -30,6 +30,7 @@ void EulerianState::Save(const std::string& prefix, ArchiveWriter& archive) cons
   archive.PutVectors(prefix + "plastic", Columns(plastic));
   archive.PutVectors(prefix + "plastic_places", plastic_places);
   archive.PutVectors(prefix + "reactions", reactions);
+  archive.PutVectors(prefix + "moments", moments);
   archive.PutVectors(prefix + "position", std::span(&pose.position, 1));
   archive.PutDoubles(prefix + "quaternion", pose.quaternion);
 }
@@ -50,6 +51,7 @@ void EulerianState::Load(const std::string& prefix, ArchiveReader& archive) {
   for (std::size_t k = 0; k < columns.size(); ++k) plastic[k / 3].col(static_cast<Eigen::Index>(k % 3)) = columns[k];
   archive.GetVectors(prefix + "plastic_places", std::span(plastic_places));
   archive.GetVectors(prefix + "reactions", std::span(reactions));
+  archive.GetVectors(prefix + "moments", std::span(moments));
   archive.GetVectors(prefix + "position", std::span(&pose.position, 1));
   archive.GetDoubles(prefix + "quaternion", std::span(pose.quaternion));
 }

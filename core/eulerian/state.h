@@ -30,6 +30,7 @@ struct EulerianState {
   std::vector<Mat3> plastic;
   std::vector<Vec3> plastic_places;
   std::vector<Vec3> reactions;  // the force of each support on the body, the mean of the last step [N]
+  std::vector<Vec3> moments;    // its moment about the origin [N m]
   Pose pose;                    // of the grid in the world: identity, because grids do not move
 
   // Names in the archive begin with `prefix`.

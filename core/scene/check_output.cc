@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 #include <span>
+#include <utility>
 
 #include "core/scene/checks.h"
 #include "core/scene/output_fields.h"
@@ -19,6 +20,27 @@ bool HasFibres(const Body& body) {
   return std::visit(Fibres{}, body.shape);
 }
 
+bool IsSupport(const Body& body, std::int32_t region) {
+  return std::any_of(body.constraints.begin(), body.constraints.end(),
+                     [region](const Constraint& constraint) { return constraint.region == region; });
+}
+
+void CheckMoments(const Scene& scene, Problems& problems) {
+  std::set<std::pair<std::int32_t, std::int32_t>> before;
+  for (std::size_t i = 0; i < scene.output.moments.size(); ++i) {
+    const SupportMoment& moment = scene.output.moments[i];
+    const std::string path = JoinPath("output", IndexPath("moments", i));
+    if (moment.body < 0 || moment.body >= static_cast<std::int32_t>(scene.bodies.size())) {
+      problems.Add(JoinPath(path, "body"), "there is no such body");
+    } else if (!IsSupport(scene.bodies[moment.body], moment.region)) {
+      problems.Add(JoinPath(path, "region"), "is not the region of a support",
+                   "give the region of one of the body's constraints");
+    } else if (!before.emplace(moment.body, moment.region).second) {
+      problems.Add(JoinPath(path, "region"), "has a point already", "give one entry for each support");
+    }
+  }
+}
+
 }  // namespace
 
 void CheckOutput(const Scene& scene, Problems& problems) {
@@ -29,9 +51,10 @@ void CheckOutput(const Scene& scene, Problems& problems) {
   } else if (scene.duration / output.frame_interval > kMaxFrames) {
     problems.Add("output.frame_interval", "this gives more than 100,000 frames", "use a longer interval");
   }
-  const bool fibres = std::any_of(scene.bodies.begin(), scene.bodies.end(), HasFibres);
+  const FieldMeans means = {scene.method, std::any_of(scene.bodies.begin(), scene.bodies.end(), HasFibres),
+                            output.line_of_action.has_value()};
   for (std::size_t i = 0; i < output.fields.size(); ++i) {
-    CheckOutputField(output.fields[i], std::span(output.fields).first(i), scene.method, fibres,
+    CheckOutputField(output.fields[i], std::span(output.fields).first(i), means,
                      JoinPath("output", IndexPath("fields", i)), problems);
   }
   std::set<std::string> names;
@@ -47,6 +70,7 @@ void CheckOutput(const Scene& scene, Problems& problems) {
       problems.Add(JoinPath(path, "point"), "there is no such node");
     }
   }
+  CheckMoments(scene, problems);
 }
 
 }  // namespace fascicle::scene_checks

@@ -23,7 +23,19 @@ enum class OutputField {
   kPressure,
   kVolumeRatio,
   kFibreStretch,
-  kFibreDirection
+  kFibreDirection,
+  kGreenLagrangeStrain,
+  kLogarithmicStrain,
+  kPrincipalStrains,
+  kPrincipalStresses,
+  kPrincipalStressDirections,
+  kStrainEnergyDensity,
+  kFibreStress,
+  kActiveFibreStress,
+  kPassiveFibreStress,
+  kInternalForce,
+  kReactionForce,
+  kPennationAngle
 };
 
 // Where the values of a field are.
@@ -32,8 +44,11 @@ enum class FieldLocation { kNode, kTetrahedron, kBrick };
 // The input from which a field is computed at each point.
 enum class FieldSource {
   kMotion,       // of nodes: MaterialPoint::v; its values are at nodes
-  kDeformation,  // F, J and a0
-  kStress        // sigma; averages over cells are taken of the tensor
+  kNodalForce,   // MaterialPoint::force; its values are at nodes
+  kDeformation,  // F, J, a0 and line_of_action
+  kStress,       // sigma; averages over cells are taken of the tensor
+  kFibreStress,  // sigma, passive_sigma, F and a0
+  kEnergy        // energy_density
 };
 
 // Properties of a field.
@@ -46,9 +61,17 @@ struct OutputFieldInfo {
   std::array<bool, 3> methods = {true, true, true};  // those that provide it: tet, voxel, eulerian
   bool needs_fibres = false;
   bool is_direction = false;  // of unit length, or zero if there is no direction
+  // The field whose averages over an element are taken: itself, or the tensor from whose average it follows
+  // (PutFromMean).
+  OutputField mean_of = field;
 };
 
-constexpr std::size_t kMostComponents = 6;
+constexpr std::size_t kMostComponents = 9;
+
+// Whether the values of a field are at nodes in every method.
+inline bool IsNodal(const OutputFieldInfo& info) {
+  return info.from == FieldSource::kMotion || info.from == FieldSource::kNodalForce;
+}
 
 // The table, in the order of OutputField.
 std::span<const OutputFieldInfo> OutputFields();
@@ -63,11 +86,20 @@ struct MaterialPoint {
   double J = 1;               // det F [1]
   Vec3 a0 = Vec3::Zero();     // rest direction of the fibre; zero: none
   Mat3 sigma = Mat3::Zero();  // Cauchy stress [Pa]
+  // Cauchy stress of the same deformation without activation [Pa].
+  Mat3 passive_sigma = Mat3::Zero();
+  double energy_density = 0;            // elastic, per rest volume [J/m^3]
+  Vec3 force = Vec3::Zero();            // on a node [N]
+  Vec3 line_of_action = Vec3::UnitX();  // of muscles; unit
 };
 
 // The field at a point: InfoOf(field).components values. Directions are not normalized yet (F a0), so that they can be
 // averaged.
 void PutField(OutputField field, const MaterialPoint& at, double* values);
+
+// The field from the average of InfoOf(field).mean_of: directions normalized, principal values of the averaged tensor,
+// otherwise the average itself.
+void PutFromMean(OutputField field, const double* mean, double* values);
 
 // Normalizes directions from PutField or their averages; zero stays zero.
 void NormalizeDirections(std::span<double> values);
@@ -76,9 +108,15 @@ void NormalizeDirections(std::span<double> values);
 FieldLocation LocationOf(const OutputFieldInfo& info, Method method);
 std::size_t PlacesOf(const OutputFieldInfo& info, const Shape& shape);
 
+// What a scene offers to its fields.
+struct FieldMeans {
+  Method method = Method::kTet;
+  bool fibres = false;          // whether any body has fibres
+  bool line_of_action = false;  // whether Output::line_of_action is given
+};
+
 // Adds a problem at `path` if the field is already in `before`, or the scene cannot provide it.
-//   fibres  whether any body has fibres
-void CheckOutputField(OutputField field, std::span<const OutputField> before, Method method, bool fibres,
+void CheckOutputField(OutputField field, std::span<const OutputField> before, const FieldMeans& scene,
                       const std::string& path, Problems& problems);
 
 }  // namespace fascicle

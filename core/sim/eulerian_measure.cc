@@ -3,9 +3,34 @@
 #include "core/eulerian/elasticity.h"
 #include "core/eulerian/fields.h"
 #include "core/eulerian/surface.h"
+#include "core/scene/probe_place.h"
 #include "core/sim/series.h"
 
 namespace fascicle {
+namespace {
+
+AskedField FieldAsked(const Scene& scene, OutputField field) {
+  return {field, scene.output.line_of_action.value_or(Vec3::UnitX())};
+}
+
+// The current position of a probe on the surface.
+Vec3 PositionOf(const Scene& scene, const Probe& probe, const EulerianState& state) {
+  Vec3 x = Vec3::Zero();
+  const Shape& shape = scene.bodies[probe.body].shape;
+  for (const auto& [node, weight] : WeightsAt(PlaceOf(probe, shape), shape)) x += weight * state.surface[node];
+  return x;
+}
+
+Vec3 DisplacementOf(const Scene& scene, const Probe& probe, const EulerianState& state) {
+  Vec3 u = Vec3::Zero();
+  const Body& body = scene.bodies[probe.body];
+  for (const auto& [node, weight] : WeightsAt(PlaceOf(probe, body.shape), body.shape)) {
+    u += weight * (state.surface[node] - body.nodes()[node]);
+  }
+  return u;
+}
+
+}  // namespace
 
 std::vector<SeriesInfo> EulerianSeriesOf(const Scene& scene) {
   std::vector<SeriesInfo> series = {
@@ -27,7 +52,7 @@ std::vector<SeriesInfo> EulerianSeriesOf(const Scene& scene) {
 
 std::vector<double> MeasureEulerianSeries(const Scene& scene, const std::vector<const EulerianBody*>& bodies,
                                           const EulerianWorldState& world, const Controls& now,
-                                          const std::vector<Vec3>& reactions, std::int64_t iterations_before,
+                                          const std::vector<Reaction>& reactions, std::int64_t iterations_before,
                                           ThreadTeam& team) {
   double elastic = 0, kinetic = 0;
   std::vector<double> of_bodies;
@@ -60,6 +85,34 @@ std::vector<double> MeasureEulerianSeries(const Scene& scene, const std::vector<
   return values;
 }
 
+std::vector<SeriesInfo> EulerianLaterSeriesOf(const Scene& scene) {
+  std::vector<SeriesInfo> series;
+  AddMomentSeries(scene, series);
+  AddInnerProbeSeries(scene, series);
+  return series;
+}
+
+std::vector<double> MeasureEulerianLaterSeries(const Scene& scene, const std::vector<const EulerianBody*>& bodies,
+                                               const EulerianWorldState& world, const Controls& now,
+                                               const std::vector<Reaction>& reactions, ThreadTeam& team) {
+  std::vector<double> values;
+  AddMomentValues(scene, reactions, values);
+  std::vector<EulerianCells> cells(bodies.size());
+  const bool has_fields = !scene.output.probes.empty() && !scene.output.fields.empty();
+  for (std::size_t b = 0; has_fields && b < bodies.size(); ++b) {
+    UpdateCells(*bodies[b], world.bodies[b], team, cells[b]);
+  }
+  const ProbeMeasures probes = {
+      [&](const Probe& probe) { return DisplacementOf(scene, probe, world.bodies[probe.body]); },
+      [&](const Probe& probe, OutputField field) {
+        const auto b = static_cast<std::size_t>(probe.body);
+        return FieldValuesAt(*bodies[b], world.bodies[b], ControlsOf(scene, b, now), cells[b], FieldAsked(scene, field),
+                             {PositionOf(scene, probe, world.bodies[b])});
+      }};
+  AddInnerProbeValues(scene, probes, values);
+  return values;
+}
+
 BodyFrame MeasureEulerianBody(const Scene& scene, const EulerianBody& body, const EulerianState& state,
                               const BodyControls& now, ThreadTeam& team) {
   BodyFrame frame;
@@ -68,7 +121,8 @@ BodyFrame MeasureEulerianBody(const Scene& scene, const EulerianBody& body, cons
   EulerianCells cells;
   UpdateCells(body, state, team, cells);
   for (const OutputField field : scene.output.fields) {
-    frame.fields.push_back(FieldOf(field, Method::kEulerian, FieldValuesOf(body, state, now, cells, field)));
+    frame.fields.push_back(FieldOf(field, Method::kEulerian,
+                                   FieldValuesAt(body, state, now, cells, FieldAsked(scene, field), state.surface)));
   }
   return frame;
 }

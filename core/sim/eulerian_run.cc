@@ -34,6 +34,7 @@ class EulerianRun : public MethodRun {
         world_(scene, PointersTo(bodies_), team, profile) {}
 
   std::vector<SeriesInfo> Series() const override { return EulerianSeriesOf(scene_); }
+  std::vector<SeriesInfo> LaterSeries() const override { return EulerianLaterSeriesOf(scene_); }
 
   void Start(const Controls&) override { state_ = world_.InitialState(); }
   StepOutcome SolveStart(const Controls&) override { return {}; }
@@ -56,23 +57,26 @@ class EulerianRun : public MethodRun {
     return largest;
   }
 
-  std::vector<BodyFrame> MeasureBodies(const Controls& now) const override {
+  std::vector<BodyFrame> MeasureBodies(const Controls& now, const Controls&) const override {
     std::vector<BodyFrame> frames;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       frames.push_back(MeasureEulerianBody(scene_, *bodies_[b], state_.bodies[b], ControlsOf(scene_, b, now), team_));
     }
     return frames;
   }
-  std::vector<Vec3> Reactions(const Controls&, const Controls&) const override {
-    std::vector<Vec3> reactions;
+  std::vector<Reaction> Reactions(const Controls&, const Controls&) const override {
+    std::vector<Reaction> reactions;
     for (const EulerianState& body : state_.bodies) {
-      reactions.insert(reactions.end(), body.reactions.begin(), body.reactions.end());
+      for (std::size_t s = 0; s < body.reactions.size(); ++s) reactions.push_back({body.reactions[s], body.moments[s]});
     }
     return reactions;
   }
-  std::vector<double> MeasureSeries(const Controls& now, const std::vector<Vec3>& reactions,
+  std::vector<double> MeasureSeries(const Controls& now, const std::vector<Reaction>& reactions,
                                     std::int64_t iterations_before) const override {
     return MeasureEulerianSeries(scene_, PointersTo(bodies_), state_, now, reactions, iterations_before, team_);
+  }
+  std::vector<double> MeasureLaterSeries(const Controls& now, const std::vector<Reaction>& reactions) const override {
+    return MeasureEulerianLaterSeries(scene_, PointersTo(bodies_), state_, now, reactions, team_);
   }
 
   void Save(ArchiveWriter& archive) const override { state_.Save(archive); }

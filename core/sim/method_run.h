@@ -10,6 +10,7 @@
 #include "core/base/profile.h"
 #include "core/base/step_problem.h"
 #include "core/scene/controls.h"
+#include "core/scene/support_moment.h"
 #include "core/sim/frame.h"
 
 namespace fascicle {
@@ -37,7 +38,10 @@ class MethodRun {
  public:
   virtual ~MethodRun() = default;
 
+  // The series that the frame's digest covers, and those that follow them. A new series belongs to the latter, so that
+  // it changes no digest.
   virtual std::vector<SeriesInfo> Series() const = 0;
+  virtual std::vector<SeriesInfo> LaterSeries() const = 0;
 
   // Sets the state at time 0. Call before anything below, also before loading. start: the controls at time 0.
   virtual void Start(const Controls& start) = 0;
@@ -54,14 +58,16 @@ class MethodRun {
   // Largest speed of a node [m/s].
   virtual double LargestSpeed() const = 0;
 
-  // Positions and the requested fields of every body. now: the controls at the current time.
-  virtual std::vector<BodyFrame> MeasureBodies(const Controls& now) const = 0;
-  // The force of each constraint on its body, in the scene's order [N]. later: the controls after another step of the
-  // same length as the last one.
-  virtual std::vector<Vec3> Reactions(const Controls& now, const Controls& later) const = 0;
+  // Positions and the requested fields of every body. now: the controls at the current time; later: those after another
+  // step of the same length as the last one.
+  virtual std::vector<BodyFrame> MeasureBodies(const Controls& now, const Controls& later) const = 0;
+  // What each constraint does to its body, in the scene's order.
+  virtual std::vector<Reaction> Reactions(const Controls& now, const Controls& later) const = 0;
   // One value for each of Series(). `reactions`: see above. `iterations_before`: of the clock at the previous frame.
-  virtual std::vector<double> MeasureSeries(const Controls& now, const std::vector<Vec3>& reactions,
+  virtual std::vector<double> MeasureSeries(const Controls& now, const std::vector<Reaction>& reactions,
                                             std::int64_t iterations_before) const = 0;
+  // One value for each of LaterSeries().
+  virtual std::vector<double> MeasureLaterSeries(const Controls& now, const std::vector<Reaction>& reactions) const = 0;
 
   virtual void Save(ArchiveWriter& archive) const = 0;
   virtual void Load(ArchiveReader& archive) = 0;

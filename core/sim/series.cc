@@ -3,6 +3,8 @@
 #include <map>
 #include <string>
 
+#include "core/base/component_names.h"
+
 namespace fascicle {
 namespace {
 
@@ -45,11 +47,11 @@ void AddBodySeries(const Body& body, std::vector<SeriesInfo>& series) {
   }
 }
 
-void AddBodyValues(const Body& body, const BodyControls& controls, std::span<const Vec3> forces,
+void AddBodyValues(const Body& body, const BodyControls& controls, std::span<const Reaction> reactions,
                    std::vector<double>& values) {
   for (const RegionReaction& reaction : RegionReactions(body)) {
     Vec3 sum = Vec3::Zero();
-    for (const std::size_t k : reaction.constraints) sum += forces[k];
+    for (const std::size_t k : reaction.constraints) sum += reactions[k].force;
     values.insert(values.end(), sum.begin(), sum.end());
   }
   for (std::size_t k = 0; k < body.loads.size(); ++k) {
@@ -59,8 +61,73 @@ void AddBodyValues(const Body& body, const BodyControls& controls, std::span<con
 
 void AddProbeSeries(const Scene& scene, std::vector<SeriesInfo>& series) {
   for (const Probe& probe : scene.output.probes) {
+    const std::string place = probe.inside ? "nearest_node/" : "";
+    const std::string of = probe.inside ? "displacement of the nearest node along " : "displacement along ";
+    for (const char* axis : kAxes) series.push_back({"probe/" + probe.name + "/" + place + axis, "m", of + axis});
+  }
+}
+
+void AddMomentSeries(const Scene& scene, std::vector<SeriesInfo>& series) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    for (const RegionReaction& reaction : RegionReactions(body)) {
+      const std::string& region = body.regions[reaction.region].name;
+      const std::string name = body.name + "/moment/" + region + "/";
+      for (const char* axis : kAxes) {
+        series.push_back({name + axis, "N m",
+                          "moment of the support of `" + region + "` on the body about its point, along " + axis});
+      }
+      if (!MomentReferenceOf(scene, b, reaction.region).axis) continue;
+      series.push_back({name + "axis", "N m", "moment of the support of `" + region + "` on the body about its axis"});
+    }
+  }
+}
+
+void AddMomentValues(const Scene& scene, std::span<const Reaction> reactions, std::vector<double>& values) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    for (const RegionReaction& reaction : RegionReactions(body)) {
+      Reaction sum;
+      for (const std::size_t k : reaction.constraints) {
+        sum.force += reactions[k].force;
+        sum.moment += reactions[k].moment;
+      }
+      const MomentReference reference = MomentReferenceOf(scene, b, reaction.region);
+      const Vec3 moment = sum.moment - reference.point.cross(sum.force);
+      values.insert(values.end(), moment.begin(), moment.end());
+      if (reference.axis) values.push_back(moment.dot(*reference.axis));
+    }
+    reactions = reactions.subspan(body.constraints.size());
+  }
+}
+
+void AddInnerProbeSeries(const Scene& scene, std::vector<SeriesInfo>& series) {
+  for (const Probe& probe : scene.output.probes) {
+    const std::string name = "probe/" + probe.name + "/";
     for (const char* axis : kAxes) {
-      series.push_back({"probe/" + probe.name + "/" + axis, "m", std::string("displacement along ") + axis});
+      if (probe.inside) series.push_back({name + axis, "m", std::string("displacement along ") + axis});
+    }
+    for (const OutputField field : scene.output.fields) {
+      const OutputFieldInfo& info = InfoOf(field);
+      if (info.from == FieldSource::kNodalForce) continue;
+      for (const std::string& component : ComponentNames(info.name, info.components)) {
+        series.push_back({name + info.name + (component.empty() ? "" : "/" + component), info.unit,
+                          std::string(info.name) + " at the probe" + (component.empty() ? "" : ", " + component)});
+      }
+    }
+  }
+}
+
+void AddInnerProbeValues(const Scene& scene, const ProbeMeasures& measures, std::vector<double>& values) {
+  for (const Probe& probe : scene.output.probes) {
+    if (probe.inside) {
+      const Vec3 u = measures.displacement(probe);
+      values.insert(values.end(), u.begin(), u.end());
+    }
+    for (const OutputField field : scene.output.fields) {
+      if (InfoOf(field).from == FieldSource::kNodalForce) continue;
+      const std::vector<double> at_probe = measures.field_values(probe, field);
+      values.insert(values.end(), at_probe.begin(), at_probe.end());
     }
   }
 }

@@ -15,7 +15,7 @@ namespace fascicle {
 namespace {
 
 constexpr const char* kCheckpointKind = "fascicle checkpoint";
-constexpr std::uint32_t kCheckpointVersion = 3;
+constexpr std::uint32_t kCheckpointVersion = 4;
 
 struct ProblemText {
   const char* reason;
@@ -72,6 +72,9 @@ struct Simulation::Impl {
         source(*scene),
         method(MakeMethodRun(*scene, team, p)),
         layout{FloorBodies(*scene), {}, method->Series()} {
+    layout.digest_series = layout.series.size();
+    const std::vector<SeriesInfo> later = method->LaterSeries();
+    layout.series.insert(layout.series.end(), later.begin(), later.end());
     const double intervals = scene->duration / scene->output.frame_interval;
     // The tolerance prevents rounding from adding a frame to a whole number of intervals.
     last_frame = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(intervals * (1 - 1e-12))));
@@ -111,14 +114,18 @@ struct Simulation::Impl {
     frame.index = next_frame;
     frame.time = clock.time;
     frame.step = clock.step;
+    source.Evaluate(clock.time + clock.time_step, next);
     {
       const StageTimer fields(profile, "fields");
-      frame.bodies = method->MeasureBodies(now);
+      frame.bodies = method->MeasureBodies(now, next);
     }
     {
       const StageTimer series_timer(profile, "series");
-      source.Evaluate(clock.time + clock.time_step, next);
-      frame.series = method->MeasureSeries(now, method->Reactions(now, next), iterations_at_frame);
+      const std::vector<Reaction> reactions = method->Reactions(now, next);
+      frame.series = method->MeasureSeries(now, reactions, iterations_at_frame);
+      frame.digest_series = layout.digest_series;
+      const std::vector<double> later = method->MeasureLaterSeries(now, reactions);
+      frame.series.insert(frame.series.end(), later.begin(), later.end());
     }
     {
       const StageTimer digest(profile, "digest");

@@ -2,13 +2,14 @@
 
 #include "core/sim/series.h"
 #include "core/tet/diagnostics.h"
-#include "core/tet/fields.h"
 #include "core/tet/floor_contact.h"
 
 namespace fascicle {
 namespace {
 
 constexpr const char* kAxisNames[] = {"x", "y", "z"};
+
+bool IsQuasiStatic(const TetModel& model) { return model.scene().tet.stepping == Stepping::kQuasiStatic; }
 
 std::size_t NodeOf(const TetModel& model, const Probe& probe) {
   return model.bodies()[probe.body].node_begin + static_cast<std::size_t>(probe.node);
@@ -20,7 +21,7 @@ std::vector<SeriesInfo> SeriesOf(const TetModel& model) {
   std::vector<SeriesInfo> series = {
       {"energy/elastic", "J", "elastic energy of all bodies, including the potential of active fibres"},
       {"energy/kinetic", "J", "kinetic energy of all bodies"},
-      {"energy/external_work", "J", "work of loads and gravity so far"},
+      {"energy/load_work", "J", "work of loads and gravity so far, by the trapezoidal rule"},
       {"energy/dissipated", "J", "energy dissipated by damping so far"},
       {"solver/step", "s", "length of the last time step"},
       {"solver/iterations", "1", "iterations of linear solves, or of Newton's method, since the previous frame"},
@@ -45,19 +46,36 @@ std::vector<SeriesInfo> SeriesOf(const TetModel& model) {
   return series;
 }
 
+std::vector<SeriesInfo> LaterSeriesOf(const TetModel& model) {
+  std::vector<SeriesInfo> series = {{"energy/external_work", "J", "work of loads, gravity and supports so far"}};
+  if (IsQuasiStatic(model)) series.push_back({"energy/activation_work", "J", "work of the fibres' activation so far"});
+  AddMomentSeries(model.scene(), series);
+  AddInnerProbeSeries(model.scene(), series);
+  return series;
+}
+
+std::vector<double> MeasureLaterSeries(const TetModel& model, const TetState& state, const Controls& now,
+                                       const std::vector<Reaction>& reactions, ThreadTeam& team) {
+  std::vector<double> values = {state.external_work};
+  if (IsQuasiStatic(model)) values.push_back(state.activation_work);
+  AddMomentValues(model.scene(), reactions, values);
+  const ProbeMeasures probes = {
+      [&](const Probe& probe) { return DisplacementAt(model, probe, state); },
+      [&](const Probe& probe, OutputField field) { return FieldValuesAt(model, probe, field, state, now, team); }};
+  AddInnerProbeValues(model.scene(), probes, values);
+  return values;
+}
+
 std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, const Controls& now,
-                                  const std::vector<Vec3>& reactions, std::int64_t iterations_before,
+                                  const std::vector<Reaction>& reactions, std::int64_t iterations_before,
                                   ThreadTeam& team) {
   double elastic = 0;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     elastic += ElasticEnergy(model, b, FibreDrive{now.activations}, state.positions, team);
   }
-  std::vector<double> values = {elastic,
-                                KineticEnergy(model, state.velocities, team),
-                                state.external_work,
-                                state.dissipated,
-                                state.time_step,
-                                static_cast<double>(state.iterations - iterations_before)};
+  std::vector<double> values = {elastic,         KineticEnergy(model, state.velocities, team),
+                                state.load_work, state.dissipated,
+                                state.time_step, static_cast<double>(state.iterations - iterations_before)};
   if (!model.scene().floors.empty()) values.push_back(FloorEnergy(model, state.positions));
   for (const Vec3& force : FloorForces(model, state.positions)) {
     values.insert(values.end(), force.begin(), force.end());
@@ -78,7 +96,7 @@ std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, 
   return values;
 }
 
-std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& state, const Controls& now,
+std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& state, const StateControls& controls,
                                      ThreadTeam& team) {
   std::vector<BodyFrame> frames(model.bodies().size());
   for (std::size_t b = 0; b < frames.size(); ++b) {
@@ -86,8 +104,7 @@ std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& stat
     frames[b].positions.assign(state.positions.begin() + static_cast<std::ptrdiff_t>(body.node_begin),
                                state.positions.begin() + static_cast<std::ptrdiff_t>(body.mesh_node_end));
     for (const OutputField field : model.scene().output.fields) {
-      frames[b].fields.push_back(
-          FieldOf(field, Method::kTet, FieldValuesOf(model, b, field, FibreDrive{now.activations}, state, team)));
+      frames[b].fields.push_back(FieldOf(field, Method::kTet, FieldValuesOf(model, b, field, state, controls, team)));
     }
   }
   return frames;

@@ -15,6 +15,7 @@ class TetRun : public MethodRun {
       : team_(team), model_(scene, team.stop()), solver_(model_, team, profile) {}
 
   std::vector<SeriesInfo> Series() const override { return SeriesOf(model_); }
+  std::vector<SeriesInfo> LaterSeries() const override { return LaterSeriesOf(model_); }
 
   void Start(const Controls& start) override { state_ = solver_.InitialState(start); }
   StepOutcome SolveStart(const Controls&) override { return {}; }
@@ -27,15 +28,18 @@ class TetRun : public MethodRun {
 
   double LargestSpeed() const override { return fascicle::LargestSpeed(state_.velocities); }
 
-  std::vector<BodyFrame> MeasureBodies(const Controls& now) const override {
-    return fascicle::MeasureBodies(model_, state_, now, team_);
+  std::vector<BodyFrame> MeasureBodies(const Controls& now, const Controls& later) const override {
+    return fascicle::MeasureBodies(model_, state_, {now, later}, team_);
   }
-  std::vector<Vec3> Reactions(const Controls& now, const Controls& later) const override {
+  std::vector<Reaction> Reactions(const Controls& now, const Controls& later) const override {
     return fascicle::Reactions(model_, state_, now, later, team_);
   }
-  std::vector<double> MeasureSeries(const Controls& now, const std::vector<Vec3>& reactions,
+  std::vector<double> MeasureSeries(const Controls& now, const std::vector<Reaction>& reactions,
                                     std::int64_t iterations_before) const override {
     return fascicle::MeasureSeries(model_, state_, now, reactions, iterations_before, team_);
+  }
+  std::vector<double> MeasureLaterSeries(const Controls& now, const std::vector<Reaction>& reactions) const override {
+    return fascicle::MeasureLaterSeries(model_, state_, now, reactions, team_);
   }
 
   void Save(ArchiveWriter& archive) const override { state_.Save(archive); }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/materials/rotation.h"
+#include "core/scene/probe_place.h"
 #include "core/sim/series.h"
 #include "core/voxel/brick.h"
 #include "core/voxel/fields.h"
@@ -48,11 +49,17 @@ std::vector<double> ValuesAt(const std::vector<MaterialPoint>& points, OutputFie
   return values;
 }
 
+// [m/s], along the world axes.
+Vec3 VelocityOf(const VoxelSceneBody& body, const VoxelState& state, double time_step, std::int32_t node) {
+  if (!(time_step > 0)) return Vec3::Zero();
+  const Vec3 change = state.displacement.At(node) - state.previous.At(node);
+  return body.ToWorld(change / time_step);
+}
+
 std::vector<MaterialPoint> NodesOf(const VoxelSceneBody& body, const VoxelState& state, double time_step) {
   std::vector<MaterialPoint> points(static_cast<std::size_t>(state.displacement.nodes()));
-  for (std::int32_t n = 0; time_step > 0 && n < state.displacement.nodes(); ++n) {
-    const Vec3 change = state.displacement.At(n) - state.previous.At(n);
-    points[static_cast<std::size_t>(n)].v = body.ToWorld(change / time_step);
+  for (std::int32_t n = 0; n < state.displacement.nodes(); ++n) {
+    points[static_cast<std::size_t>(n)].v = VelocityOf(body, state, time_step, n);
   }
   return points;
 }
@@ -60,12 +67,15 @@ std::vector<MaterialPoint> NodesOf(const VoxelSceneBody& body, const VoxelState&
 std::vector<MaterialPoint> CentresOf(const VoxelSceneBody& body, const VoxelState& state, FieldSource wanted) {
   const std::vector<Mat3> gradients = GradientsAtCentres(body.model(), state.displacement);
   std::vector<Mat3> stresses;
+  std::vector<double> energies;
   if (wanted == FieldSource::kStress) stresses = StressesOf(body, state.displacement);
+  if (wanted == FieldSource::kEnergy) energies = EnergyDensityAtCentres(body.model(), state.displacement);
   std::vector<MaterialPoint> points(gradients.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
     points[p].F = body.direction() * gradients[p] * body.direction().transpose();
     points[p].J = gradients[p].determinant();
     if (!stresses.empty()) points[p].sigma = stresses[p];
+    if (!energies.empty()) points[p].energy_density = energies[p];
   }
   return points;
 }
@@ -78,6 +88,32 @@ std::vector<double> FieldValuesOf(const VoxelSceneBody& body, const VoxelState& 
   std::vector<double> values = ValuesAt(points, field);
   if (InfoOf(field).is_direction) NormalizeDirections(values);
   return values;
+}
+
+// Fields of elements are those at the centre of the probe's voxel, where they are most accurate; nodal values are
+// interpolated.
+std::vector<double> FieldValuesAt(const VoxelSceneBody& body, const VoxelState& state, double time_step,
+                                  const Probe& probe, OutputField field) {
+  const ProbePlace place = PlaceOf(probe, body.source().shape);
+  if (InfoOf(field).from == FieldSource::kMotion) {
+    Vec3 v = Vec3::Zero();
+    for (const auto& [node, weight] : WeightsAt(place, body.source().shape)) {
+      v += weight * VelocityOf(body, state, time_step, node);
+    }
+    return {v.begin(), v.end()};
+  }
+  const std::vector<double> values = FieldValuesOf(body, state, time_step, field);
+  const auto components = static_cast<std::ptrdiff_t>(InfoOf(field).components);
+  const auto first = values.begin() + components * place.element;
+  return {first, first + components};
+}
+
+Vec3 DisplacementAt(const VoxelSceneBody& body, const VoxelState& state, const Probe& probe) {
+  Vec3 u = Vec3::Zero();
+  for (const auto& [node, weight] : WeightsAt(PlaceOf(probe, body.source().shape), body.source().shape)) {
+    u += weight * state.displacement.At(node);
+  }
+  return body.ToWorld(u);
 }
 
 Vec3 PositionOf(const VoxelSceneBody& body, const VoxelField<double>& u, std::size_t node) {
@@ -103,7 +139,7 @@ std::vector<SeriesInfo> VoxelSeriesOf(const Scene& scene) {
 }
 
 std::vector<double> MeasureVoxelSeries(const Scene& scene, const VoxelSolver& solver, const VoxelSceneState& state,
-                                       const Controls& now, const std::vector<Vec3>& reactions,
+                                       const Controls& now, const std::vector<Reaction>& reactions,
                                        std::int64_t iterations_before) {
   double elastic = 0, kinetic = 0;
   for (const double energy : state.elastic) elastic += energy;
@@ -129,6 +165,32 @@ std::vector<double> MeasureVoxelSeries(const Scene& scene, const VoxelSolver& so
     const Vec3 u = solver.bodies()[b]->ToWorld(state.bodies[b].displacement.At(probe.node));
     values.insert(values.end(), u.begin(), u.end());
   }
+  return values;
+}
+
+std::vector<SeriesInfo> VoxelLaterSeriesOf(const Scene& scene) {
+  std::vector<SeriesInfo> series;
+  AddMomentSeries(scene, series);
+  AddInnerProbeSeries(scene, series);
+  return series;
+}
+
+std::vector<double> MeasureVoxelLaterSeries(const Scene& scene, const VoxelSolver& solver, const VoxelSceneState& state,
+                                            const std::vector<Reaction>& reactions) {
+  std::vector<double> values;
+  AddMomentValues(scene, reactions, values);
+  const auto body_of = [&](const Probe& probe) -> const VoxelSceneBody& {
+    return *solver.bodies()[static_cast<std::size_t>(probe.body)];
+  };
+  const auto state_of = [&](const Probe& probe) -> const VoxelState& {
+    return state.bodies[static_cast<std::size_t>(probe.body)];
+  };
+  const ProbeMeasures probes = {
+      [&](const Probe& probe) { return DisplacementAt(body_of(probe), state_of(probe), probe); },
+      [&](const Probe& probe, OutputField field) {
+        return FieldValuesAt(body_of(probe), state_of(probe), state.time_step, probe, field);
+      }};
+  AddInnerProbeValues(scene, probes, values);
   return values;
 }
 

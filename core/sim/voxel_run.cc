@@ -15,6 +15,7 @@ class VoxelMethodRun : public MethodRun {
       : scene_(scene), solver_(scene, team, profile) {}
 
   std::vector<SeriesInfo> Series() const override { return VoxelSeriesOf(scene_); }
+  std::vector<SeriesInfo> LaterSeries() const override { return VoxelLaterSeriesOf(scene_); }
 
   void Start(const Controls&) override { state_ = solver_.InitialState(); }
   StepOutcome SolveStart(const Controls& start) override { return OutcomeOf(solver_.SolveStart(state_, start)); }
@@ -34,19 +35,22 @@ class VoxelMethodRun : public MethodRun {
     return state_.time_step > 0 ? largest / state_.time_step : 0;
   }
 
-  std::vector<BodyFrame> MeasureBodies(const Controls&) const override {
+  std::vector<BodyFrame> MeasureBodies(const Controls&, const Controls&) const override {
     return MeasureVoxelBodies(scene_, solver_, state_);
   }
-  std::vector<Vec3> Reactions(const Controls&, const Controls&) const override {
-    std::vector<Vec3> reactions;
-    for (const std::vector<Vec3>& of_body : state_.reactions) {
+  std::vector<Reaction> Reactions(const Controls&, const Controls&) const override {
+    std::vector<Reaction> reactions;
+    for (const std::vector<Reaction>& of_body : state_.reactions) {
       reactions.insert(reactions.end(), of_body.begin(), of_body.end());
     }
     return reactions;
   }
-  std::vector<double> MeasureSeries(const Controls& now, const std::vector<Vec3>& reactions,
+  std::vector<double> MeasureSeries(const Controls& now, const std::vector<Reaction>& reactions,
                                     std::int64_t iterations_before) const override {
     return MeasureVoxelSeries(scene_, solver_, state_, now, reactions, iterations_before);
+  }
+  std::vector<double> MeasureLaterSeries(const Controls&, const std::vector<Reaction>& reactions) const override {
+    return MeasureVoxelLaterSeries(scene_, solver_, state_, reactions);
   }
 
   void Save(ArchiveWriter& archive) const override { state_.Save(archive); }

@@ -9,6 +9,9 @@
 namespace fascicle {
 namespace {
 
+// Whether velocities have no effect: neither inertia nor damping.
+bool IsQuasiStatic(const TetModel& model) { return model.scene().tet.stepping == Stepping::kQuasiStatic; }
+
 struct NodalForces {
   NodalVector elastic, viscous, external;
 
@@ -23,7 +26,11 @@ struct NodalForces {
       drive.inverse_step = 1 / state.time_step;
     }
     ElasticForce(model, drive, state.positions, team, workspace, elastic);
-    ViscousForce(model, state.positions, state.velocities, team, workspace, viscous);
+    if (IsQuasiStatic(model)) {
+      viscous.assign(model.nodes(), Vec3::Zero());
+    } else {
+      ViscousForce(model, state.positions, state.velocities, team, workspace, viscous);
+    }
     ExternalForce(model, controls, team, external);
     AddFloorForce(model, state.positions, external);
   }
@@ -62,21 +69,43 @@ VolumeRatios VolumeRatiosOf(const TetModel& model, std::size_t body_index, const
   return ratios;
 }
 
-std::vector<Vec3> Reactions(const TetModel& model, const TetState& state, const Controls& now, const Controls& later,
-                            ThreadTeam& team) {
+NodalVector ReactionForces(const TetModel& model, const TetState& state, const Controls& now, const Controls& later,
+                           ThreadTeam& team) {
   const NodalForces forces(model, state, now, team);
-  std::vector<Vec3> reactions(model.supports().size(), Vec3::Zero());
+  NodalVector reactions(model.nodes(), Vec3::Zero());
+  for (std::size_t s = 0; s < model.supports().size(); ++s) {
+    const Support& support = model.supports()[s];
+    for (std::size_t i = 0; i < support.nodes.size(); ++i) {
+      const std::int32_t n = support.nodes[i];
+      Vec3 inertia = Vec3::Zero();
+      if (!IsQuasiStatic(model)) {
+        const Vec3 acceleration =
+            PrescribedAcceleration(now.motions[s], later.motions[s], state.time_step, model.rest_positions()[n]);
+        inertia = model.mass()[n] * (acceleration + model.mass_damping()[n] * state.velocities[n]);
+      }
+      const Vec3 reaction = inertia - forces.elastic[n] - forces.viscous[n] - forces.external[n];
+      for (int c = 0; c < 3; ++c) {
+        if (support.owned[i][c]) reactions[n][c] = reaction[c];
+      }
+    }
+  }
+  return reactions;
+}
+
+std::vector<Reaction> Reactions(const TetModel& model, const TetState& state, const Controls& now,
+                                const Controls& later, ThreadTeam& team) {
+  const NodalVector forces = ReactionForces(model, state, now, later, team);
+  std::vector<Reaction> reactions(model.supports().size());
   for (std::size_t s = 0; s < reactions.size(); ++s) {
     const Support& support = model.supports()[s];
     for (std::size_t i = 0; i < support.nodes.size(); ++i) {
       const std::int32_t n = support.nodes[i];
-      const Vec3 acceleration =
-          PrescribedAcceleration(now.motions[s], later.motions[s], state.time_step, model.rest_positions()[n]);
-      const Vec3 inertia = model.mass()[n] * (acceleration + model.mass_damping()[n] * state.velocities[n]);
-      const Vec3 reaction = inertia - forces.elastic[n] - forces.viscous[n] - forces.external[n];
+      Vec3 force = Vec3::Zero();
       for (int c = 0; c < 3; ++c) {
-        if (support.owned[i][c]) reactions[s][c] += reaction[c];
+        if (support.owned[i][c]) force[c] = forces[n][c];
       }
+      reactions[s].force += force;
+      reactions[s].moment += state.positions[n].cross(force);
     }
   }
   return reactions;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/scene/support_moment.h"
 #include "core/tet/controls.h"
 #include "core/tet/forces.h"
 #include "core/tet/state.h"
@@ -19,13 +20,17 @@ struct VolumeRatios {
 };
 VolumeRatios VolumeRatiosOf(const TetModel& model, std::size_t body, const NodalVector& x);
 
-// Reaction of each support, the force on its body [N]: m a - (elastic + viscous + mass damping + external force, floors
-// included) over the components that the support prescribes, where a is the prescribed acceleration. A component
-// prescribed by two supports counts for the first.
+// Force of supports on each node [N]: m a - (elastic + viscous + mass damping + external force, floors included) over
+// the components that a support prescribes, where a is the prescribed acceleration; zero elsewhere. In quasi-static
+// stepping there is neither inertia nor damping.
 //   now    the controls at the state's time
 //   later  those after another step as long as the last one: a is the difference of their velocities over that step
-std::vector<Vec3> Reactions(const TetModel& model, const TetState& state, const Controls& now, const Controls& later,
-                            ThreadTeam& team);
+NodalVector ReactionForces(const TetModel& model, const TetState& state, const Controls& now, const Controls& later,
+                           ThreadTeam& team);
+
+// The resultants of these forces for each support. A component prescribed by two supports counts for the first.
+std::vector<Reaction> Reactions(const TetModel& model, const TetState& state, const Controls& now,
+                                const Controls& later, ThreadTeam& team);
 
 // Largest speed of a node [m/s].
 double LargestSpeed(const NodalVector& v);

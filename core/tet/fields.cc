@@ -1,49 +1,114 @@
 #include "core/tet/fields.h"
 
+#include <Eigen/LU>
+
+#include <algorithm>
 #include <array>
 
-#include "core/scene/output_fields.h"
+#include "core/scene/probe_place.h"
+#include "core/tet/diagnostics.h"
 #include "core/tet/points.h"
 
 namespace fascicle {
 namespace {
 
-std::vector<double> AtNodes(const TetBody& body, OutputField field, const NodalVector& v) {
-  const std::size_t components = InfoOf(field).components;
-  std::vector<double> values(components * (body.mesh_node_end - body.node_begin));
-  for (std::size_t n = body.node_begin; n < body.mesh_node_end; ++n) {
-    MaterialPoint point;
-    point.v = v[n];
-    PutField(field, point, &values[components * (n - body.node_begin)]);
+// What elements need besides the positions.
+struct FieldInputs {
+  const TetModel& model;
+  const NodalVector& x;
+  FibreDrive drive;
+  Vec3 line_of_action;
+  ForceWorkspace patches;
+
+  FieldInputs(const TetModel& m, FieldSource from, const NodalVector& positions, const Controls& now, ThreadTeam& team)
+      : model(m),
+        x(positions),
+        drive(now.activations),
+        line_of_action(m.scene().output.line_of_action.value_or(Vec3::UnitX())) {
+    if (from != FieldSource::kDeformation) UpdatePatches(model, x, team, patches);
   }
-  return values;
+};
+
+// The elastic energy of the patches per volume of an element at barycentric coordinates L [J/m^3].
+double PatchEnergyDensity(const FieldInputs& inputs, std::size_t e, const std::array<double, 4>& L) {
+  const VolumePatches& patches = inputs.model.patches();
+  if (patches.empty() || patches.of_element[e][0] == VolumePatches::kNone) return 0;
+  double sum = 0;
+  for (int c = 0; c < 4; ++c) {
+    const std::int32_t n = patches.of_element[e][c];
+    sum += L[c] * PatchEnergy{patches.modulus[n]}.Value(inputs.patches.ratio[n]);
+  }
+  return sum;
 }
 
-// Values of the elements of a body, in the order of its mesh, averaged over the points of each.
-template <bool kStress>
-std::vector<double> OverElements(const TetModel& model, std::size_t body_index, OutputField field,
-                                 const FibreDrive& drive, const NodalVector& x, ThreadTeam& team) {
+// The pressure of the patches there [Pa].
+double PressureAt(const FieldInputs& inputs, std::size_t e, const std::array<double, 4>& L) {
+  const VolumePatches& patches = inputs.model.patches();
+  if (patches.empty() || patches.of_element[e][0] == VolumePatches::kNone) return 0;
+  double sum = 0;
+  for (int c = 0; c < 4; ++c) sum += L[c] * inputs.patches.pressure[patches.of_element[e][c]];
+  return sum;
+}
+
+// A point of an element, from its deformation gradient.
+template <class Element, FieldSource kFrom, class Law>
+MaterialPoint PointOf(const FieldInputs& inputs, const Law& law, std::size_t e, const Mat3& F,
+                      const std::array<double, 4>& L) {
+  MaterialPoint point;
+  point.F = F;
+  point.J = Determinant(F);
+  point.a0 = inputs.model.fibres()[e];
+  point.line_of_action = inputs.line_of_action;
+  if constexpr (kFrom == FieldSource::kStress || kFrom == FieldSource::kFibreStress) {
+    FibreState fibre = FibreAt<Element>(inputs.model, e, inputs.drive, 0);
+    const double pressure = PressureAt(inputs, e, L);
+    const Mat3 P = law.Stress(F, fibre);
+    point.sigma = P * F.transpose() / point.J + pressure * Mat3::Identity();
+    if constexpr (kFrom == FieldSource::kFibreStress) {
+      fibre.activation = 0;
+      const Mat3 passive = law.Stress(F, fibre);
+      point.passive_sigma = passive * F.transpose() / point.J + pressure * Mat3::Identity();
+    }
+  }
+  if constexpr (kFrom == FieldSource::kEnergy) {
+    point.energy_density =
+        law.Energy(F, FibreAt<Element>(inputs.model, e, inputs.drive, 0)) + PatchEnergyDensity(inputs, e, L);
+  }
+  return point;
+}
+
+template <class Element>
+std::array<double, 4> QuadraturePoint(int q) {
+  return {Element::Barycentric(q, 0), Element::Barycentric(q, 1), Element::Barycentric(q, 2),
+          Element::Barycentric(q, 3)};
+}
+
+// Calls call.operator()<source>() with a source of elements' fields as a constant.
+template <class Call>
+decltype(auto) WithSource(FieldSource from, const Call& call) {
+  if (from == FieldSource::kStress) return call.template operator()<FieldSource::kStress>();
+  if (from == FieldSource::kFibreStress) return call.template operator()<FieldSource::kFibreStress>();
+  if (from == FieldSource::kEnergy) return call.template operator()<FieldSource::kEnergy>();
+  return call.template operator()<FieldSource::kDeformation>();
+}
+
+// Averages over the points of each element of a body, in the order of its mesh.
+template <FieldSource kFrom>
+std::vector<double> OverElements(const FieldInputs& inputs, std::size_t body_index, OutputField field,
+                                 ThreadTeam& team) {
+  const TetModel& model = inputs.model;
   const TetBody& body = model.bodies()[body_index];
   const std::size_t components = InfoOf(field).components;
   std::vector<double> values(components * (body.tet_end - body.tet_begin));
-  ForceWorkspace workspace;
-  if (kStress) UpdatePatches(model, x, team, workspace);
   model.VisitElement([&]<class Element>(Element) {
     for (const TetGroup& group : model.groups()) {
       if (group.body != body_index) continue;
       ForElementsOfGroup(model, group, team, [&](const auto& law, std::size_t e) {
-        const auto positions = ValuesOf<Element>(model, e, x);
+        const auto positions = ValuesOf<Element>(model, e, inputs.x);
         double* const of_element = &values[components * static_cast<std::size_t>(model.source_tetrahedron()[e])];
         for (int q = 0; q < Element::kPoints; ++q) {
-          MaterialPoint point;
-          point.F = GradientAt<Element>(model, e, positions, q);
-          point.J = Determinant(point.F);
-          point.a0 = model.fibres()[e];
-          if constexpr (kStress) {
-            const Mat3 P = law.Stress(point.F, FibreAt<Element>(model, e, drive, q));
-            const double pressure = PatchPressure<Element>(model.patches(), workspace.pressure, e, q);
-            point.sigma = P * point.F.transpose() / point.J + pressure * Mat3::Identity();
-          }
+          const Mat3 F = GradientAt<Element>(model, e, positions, q);
+          const MaterialPoint point = PointOf<Element, kFrom>(inputs, law, e, F, QuadraturePoint<Element>(q));
           std::array<double, kMostComponents> at_point;
           PutField(field, point, at_point.data());
           for (std::size_t c = 0; c < components; ++c) of_element[c] += Element::kPointWeight * at_point[c];
@@ -54,25 +119,144 @@ std::vector<double> OverElements(const TetModel& model, std::size_t body_index, 
   return values;
 }
 
-}  // namespace
-
-std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body, OutputField field, const FibreDrive& drive,
-                                  const TetState& state, ThreadTeam& team) {
-  const NodalVector& x = state.positions;
-  std::vector<double> values;
-  switch (InfoOf(field).from) {
-    case FieldSource::kMotion:
-      values = AtNodes(model.bodies()[body], field, state.velocities);
-      break;
-    case FieldSource::kDeformation:
-      values = OverElements<false>(model, body, field, drive, x, team);
-      break;
-    case FieldSource::kStress:
-      values = OverElements<true>(model, body, field, drive, x, team);
-      break;
+// The fields of tuples of averages.
+std::vector<double> FromMeans(OutputField field, const std::vector<double>& means) {
+  const std::size_t components = InfoOf(field).components, of_mean = InfoOf(InfoOf(field).mean_of).components;
+  std::vector<double> values(means.size() / of_mean * components);
+  for (std::size_t i = 0; i * of_mean < means.size(); ++i) {
+    PutFromMean(field, &means[of_mean * i], &values[components * i]);
   }
+  return values;
+}
+
+// Forces on the mesh's nodes, indexed as the model's; those of mid-edge nodes are halved between the ends of the edge.
+NodalVector OnMeshNodes(const TetModel& model, const TetBody& body, const NodalVector& forces) {
+  NodalVector lumped = forces;
+  if (model.order() == ElementOrder::kLinear) return lumped;
+  std::vector<bool> done(model.nodes(), false);
+  for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
+    const auto nodes = model.NodesOf<QuadraticElement>(e);
+    for (std::size_t k = 0; k < kTetEdges.size(); ++k) {
+      const auto middle = static_cast<std::size_t>(nodes[4 + k]);
+      if (done[middle]) continue;
+      done[middle] = true;
+      for (const int end : kTetEdges[k]) lumped[nodes[static_cast<std::size_t>(end)]] += 0.5 * forces[middle];
+    }
+  }
+  return lumped;
+}
+
+// The forces on all nodes: of elements or of supports.
+NodalVector NodalForceOf(const TetModel& model, OutputField field, const TetState& state, const StateControls& controls,
+                         ThreadTeam& team) {
+  if (field == OutputField::kReactionForce) return ReactionForces(model, state, controls.now, controls.later, team);
+  ForceWorkspace workspace;
+  NodalVector forces;
+  ElasticForce(model, FibreDrive{controls.now.activations}, state.positions, team, workspace, forces);
+  return forces;
+}
+
+std::vector<double> AtNodes(const TetBody& body, const NodalVector& vectors) {
+  std::vector<double> values;
+  for (std::size_t n = body.node_begin; n < body.mesh_node_end; ++n) {
+    values.insert(values.end(), vectors[n].begin(), vectors[n].end());
+  }
+  return values;
+}
+
+// The element of a probe: its index in the model, and the barycentric coordinates.
+struct TetPlace {
+  std::size_t element = 0;
+  std::array<double, 4> L = {};
+};
+
+TetPlace PlaceIn(const TetModel& model, const Probe& probe) {
+  const TetBody& body = model.bodies()[probe.body];
+  const ProbePlace place = PlaceOf(probe, body.source->shape);
+  TetPlace result = {body.tet_begin, {}};
+  while (model.source_tetrahedron()[result.element] != place.element) ++result.element;
+  const Vec3& c = place.coordinates;
+  result.L = {1 - c.sum(), c[0], c[1], c[2]};
+  return result;
+}
+
+// The value of nodal values at a place.
+template <class Element>
+Vec3 ValueAt(const TetModel& model, const TetPlace& place, const NodalVector& values) {
+  const auto at = ValuesOf<Element>(model, place.element, values);
+  const auto& L = place.L;
+  Vec3 sum = Vec3::Zero();
+  for (int c = 0; c < 4; ++c) sum += (Element::kNodes == 4 ? L[c] : L[c] * (2 * L[c] - 1)) * at[c];
+  if constexpr (Element::kNodes > 4) {
+    for (std::size_t k = 0; k < kTetEdges.size(); ++k) sum += 4 * L[kTetEdges[k][0]] * L[kTetEdges[k][1]] * at[4 + k];
+  }
+  return sum;
+}
+
+template <class Element>
+Mat3 EdgesAt(const TetModel& model, const TetPlace& place, const NodalVector& values) {
+  const auto at = ValuesOf<Element>(model, place.element, values);
+  if constexpr (Element::kNodes == 4) {
+    return EdgeMatrix(at);
+  } else {
+    return EdgeMatrix(CornersAt(at, place.L));
+  }
+}
+
+template <FieldSource kFrom>
+std::vector<double> AtPlace(const FieldInputs& inputs, const TetPlace& place, OutputField field) {
+  const TetModel& model = inputs.model;
+  std::vector<double> values(InfoOf(field).components);
+  const std::size_t e = place.element;
+  const auto group = std::find_if(model.groups().begin(), model.groups().end(),
+                                  [e](const TetGroup& g) { return e >= g.tet_begin && e < g.tet_end; });
+  model.VisitElement([&]<class Element>(Element) {
+    const Mat3 F =
+        EdgesAt<Element>(model, place, inputs.x) * EdgesAt<Element>(model, place, model.rest_positions()).inverse();
+    std::visit(
+        [&](const auto& laws) {
+          PutField(field, PointOf<Element, kFrom>(inputs, laws[model.law_of()[e]], e, F, place.L), values.data());
+        },
+        group->laws);
+  });
   if (InfoOf(field).is_direction) NormalizeDirections(values);
   return values;
+}
+
+}  // namespace
+
+std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body_index, OutputField field,
+                                  const TetState& state, const StateControls& controls, ThreadTeam& team) {
+  const FieldSource from = InfoOf(field).from;
+  const TetBody& body = model.bodies()[body_index];
+  if (from == FieldSource::kMotion) return AtNodes(body, state.velocities);
+  if (from == FieldSource::kNodalForce) {
+    return AtNodes(body, OnMeshNodes(model, body, NodalForceOf(model, field, state, controls, team)));
+  }
+  const FieldInputs inputs(model, from, state.positions, controls.now, team);
+  return WithSource(from, [&]<FieldSource kFrom>() {
+    return FromMeans(field, OverElements<kFrom>(inputs, body_index, InfoOf(field).mean_of, team));
+  });
+}
+
+std::vector<double> FieldValuesAt(const TetModel& model, const Probe& probe, OutputField field, const TetState& state,
+                                  const Controls& now, ThreadTeam& team) {
+  const FieldSource from = InfoOf(field).from;
+  const TetPlace place = PlaceIn(model, probe);
+  if (from == FieldSource::kMotion) {
+    const Vec3 v =
+        model.VisitElement([&]<class Element>(Element) { return ValueAt<Element>(model, place, state.velocities); });
+    return {v.begin(), v.end()};
+  }
+  const FieldInputs inputs(model, from, state.positions, now, team);
+  return WithSource(from, [&]<FieldSource kFrom>() { return AtPlace<kFrom>(inputs, place, field); });
+}
+
+Vec3 DisplacementAt(const TetModel& model, const Probe& probe, const TetState& state) {
+  const TetPlace place = PlaceIn(model, probe);
+  return model.VisitElement([&]<class Element>(Element) -> Vec3 {
+    return ValueAt<Element>(model, place, state.positions) - ValueAt<Element>(model, place, model.rest_positions());
+  });
 }
 
 }  // namespace fascicle

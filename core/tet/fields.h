@@ -3,16 +3,32 @@
 
 #include <vector>
 
+#include "core/scene/controls.h"
+#include "core/scene/output_fields.h"
 #include "core/tet/forces.h"
 #include "core/tet/state.h"
 
+// Fields of a state, as in scene.proto Field: component fastest (tensors xx yy zz xy yz xz). Stresses include the
+// elastic and active parts, not the viscous one. Fibres count as isometric.
 namespace fascicle {
 
-// Values of a field at the mesh nodes (velocity) or elements (all others: averaged over quadrature points) of one body,
-// component fastest (stresses xx yy zz xy yz xz), as in scene.proto Field. Stresses include the elastic and active
-// parts, not the viscous one.
-std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body, OutputField field, const FibreDrive& drive,
-                                  const TetState& state, ThreadTeam& team);
+// The controls that act on a state, and those after another step as long as the last one.
+struct StateControls {
+  const Controls& now;
+  const Controls& later;
+};
+
+// Values at the mesh nodes or the elements of one body. Those of elements are averages over quadrature points, or
+// follow from such averages (OutputFieldInfo::mean_of).
+std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body, OutputField field, const TetState& state,
+                                  const StateControls& controls, ThreadTeam& team);
+
+// Values at a probe, which may be inside of an element; not of nodal forces, which exist at nodes only.
+std::vector<double> FieldValuesAt(const TetModel& model, const Probe& probe, OutputField field, const TetState& state,
+                                  const Controls& now, ThreadTeam& team);
+
+// Displacement of a probe [m].
+Vec3 DisplacementAt(const TetModel& model, const Probe& probe, const TetState& state);
 
 }  // namespace fascicle
 

@@ -89,7 +89,12 @@ class TetSolver {
   ForceReport UpdateForce(const NodalVector* viscous_velocity, const FibreDrive& drive, TetState& next);
   // Computes the quantities that detect an unstable step; next.velocities are those of the half step.
   void MeasureMotion(const TetState& now, const TetState& next, StepReport& report) const;
-  void AddExternalWork(const TetState& now, TetState& next) const;
+
+  // Work during a step: work.cc. Adds that of loads, supports and activation.
+  void AddWork(const TetState& now, const StepControls& step, TetState& next);
+  void AddStaticWork(const TetState& now, const StepControls& step, double of_loads, TetState& next);
+  double DynamicWorkOfSupports(const TetState& now, const StepControls& step, const TetState& next);
+  NodalVector ElasticAndFloorForce(const FibreDrive& drive, const NodalVector& x);
 
   bool IsStableStepDue(const TetState& state, const Controls& now) const;
   void RefreshStableStep(TetState& state, const Controls& now);
@@ -106,6 +111,7 @@ class TetSolver {
   // Scratch memory: nothing here outlives a step.
   NodalVector external_now_, external_next_;
   NodalVector right_side_, inverse_diagonal_;
+  NodalVector force_before_, force_after_, mean_rate_, viscous_;  // for the work of supports
   ForceWorkspace forces_;
   CgWorkspace cg_;
   StableStepWorkspace stable_step_;

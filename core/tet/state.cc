@@ -18,7 +18,9 @@ void TetState::Save(ArchiveWriter& archive) const {
   archive.PutDouble("smallest_ratio", smallest_ratio);
   archive.PutDouble("peak_kinetic", peak_kinetic);
   archive.PutDouble("time_step", time_step);
+  archive.PutDouble("load_work", load_work);
   archive.PutDouble("external_work", external_work);
+  archive.PutDouble("activation_work", activation_work);
   archive.PutDouble("dissipated", dissipated);
   archive.PutDouble("stable.limit", stable.limit);
   archive.PutInt("stable.found_at", stable.found_at);
@@ -44,7 +46,9 @@ void TetState::Load(ArchiveReader& archive) {
   smallest_ratio = archive.GetDouble("smallest_ratio");
   peak_kinetic = archive.GetDouble("peak_kinetic");
   time_step = archive.GetDouble("time_step");
+  load_work = archive.GetDouble("load_work");
   external_work = archive.GetDouble("external_work");
+  activation_work = archive.GetDouble("activation_work");
   dissipated = archive.GetDouble("dissipated");
   stable.limit = archive.GetDouble("stable.limit");
   stable.found_at = archive.GetInt("stable.found_at");

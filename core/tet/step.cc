@@ -26,7 +26,7 @@ StepReport TetSolver::Attempt(const TetState& now, const Controls& controls_now,
   const StepReport report = IsImplicit()                              ? StepImplicit(now, step, made)
                             : method_.stepping == Stepping::kExplicit ? StepExplicit(now, step, made)
                                                                       : StepMixed(now, step, made);
-  AddExternalWork(now, made);
+  if (report.problem == StepProblem::kNone) AddWork(now, step, made);
   return report;
 }
 
@@ -188,15 +188,6 @@ void TetSolver::MeasureMotion(const TetState& now, const TetState& next, StepRep
     return free.dot((next.force[n] - now.force[n]).cwiseProduct(next.positions[n] - now.positions[n]));
   });
   report.stiffness_of_motion = -work / twice_kinetic;
-}
-
-void TetSolver::AddExternalWork(const TetState& now, TetState& next) const {
-  const StageTimer timer(profile_, "external work");
-  next.external_work = now.external_work;
-  if (!model_.has_gravity() && model_.loads().empty()) return;
-  next.external_work += 0.5 * SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
-                          return (external_now_[n] + external_next_[n]).dot(next.positions[n] - now.positions[n]);
-                        });
 }
 
 }  // namespace fascicle

@@ -48,4 +48,17 @@ std::vector<SymmetricTensor> StressAtCentres(const VoxelModel& model, const Voxe
   return stresses;
 }
 
+std::vector<double> EnergyDensityAtCentres(const VoxelModel& model, const VoxelField<double>& u) {
+  std::vector<double> energies(model.mesh().voxels());
+  ForStrains(model, u, [&](const VoxelRun& run, std::int32_t voxel, const SymmetricTensor& e) {
+    const BrickModuli<double>& moduli = model.stiffness().moduli[run.material];
+    const double trace = e[0] + e[1] + e[2];
+    double product = 0;
+    for (int c = 0; c < 6; ++c) product += (c < 3 ? 1 : 2) * e[c] * e[c];
+    energies[voxel] = static_cast<double>(model.stiffness().scale[voxel]) *
+                      (moduli.mu * product + 0.5 * moduli.lambda * trace * trace);
+  });
+  return energies;
+}
+
 }  // namespace fascicle

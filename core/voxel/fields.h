@@ -18,6 +18,9 @@ std::vector<SymmetricTensor> StrainAtCentres(const VoxelModel& model, const Voxe
 // Stress lambda tr(e) I + 2 mu e [Pa] for that strain, with each voxel's own stiffness, in the same frame.
 std::vector<SymmetricTensor> StressAtCentres(const VoxelModel& model, const VoxelField<double>& u);
 
+// Elastic energy mu e:e + lambda/2 tr(e)^2 for that strain, per volume of the voxel [J/m^3].
+std::vector<double> EnergyDensityAtCentres(const VoxelModel& model, const VoxelField<double>& u);
+
 }  // namespace fascicle
 
 #endif  // FASCICLE_CORE_VOXEL_FIELDS_H_

@@ -105,20 +105,25 @@ void VoxelSceneBody::AddSupports(const std::vector<GridIndex>& places) {
   }
 }
 
-std::vector<Vec3> VoxelSceneBody::SumOverSupports(const VoxelField<double>& reaction) const {
+std::vector<Reaction> VoxelSceneBody::SumOverSupports(const VoxelField<double>& reaction,
+                                                      const VoxelField<double>& displacement) const {
   std::vector<std::array<bool, 3>> counted(source_->nodes().size());
-  std::vector<Vec3> sums;
+  std::vector<Reaction> sums;
   for (std::size_t s = 0; s < supports_.size(); ++s) {
-    Vec3 sum = Vec3::Zero();
+    Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
     for (const std::int32_t node : source_->regions[source_->constraints[s].region].nodes) {
       std::array<bool, 3>& done = counted[static_cast<std::size_t>(node)];
+      Vec3 force = Vec3::Zero();
       for (std::size_t d = 0; d < 3; ++d) {
         if (!supports_[s].components[d] || done[d]) continue;
         done[d] = true;
-        sum[static_cast<Eigen::Index>(d)] += reaction(node, static_cast<int>(d));
+        force[static_cast<Eigen::Index>(d)] = reaction(node, static_cast<int>(d));
       }
+      sum += force;
+      const Vec3 x = source_->nodes()[static_cast<std::size_t>(node)] + ToWorld(displacement.At(node));
+      moment += x.cross(ToWorld(force));
     }
-    sums.push_back(ToWorld(sum));
+    sums.push_back({ToWorld(sum), moment});
   }
   return sums;
 }

@@ -7,6 +7,7 @@
 
 #include "core/base/problems.h"
 #include "core/scene/controls.h"
+#include "core/scene/support_moment.h"
 #include "core/voxel/model.h"
 
 namespace fascicle {
@@ -28,9 +29,10 @@ class VoxelSceneBody {
   // Prescribed displacements [m]; other components are left unchanged.
   void Prescribe(const BodyControls& controls, VoxelField<double>& displacement) const;
 
-  // The force of each support on the body [N], along the world axes, where `reaction` is the force on every node [N]. A
-  // component shared by two supports counts for the first.
-  std::vector<Vec3> SumOverSupports(const VoxelField<double>& reaction) const;
+  // What each support does to the body, along the world axes, where `reaction` is the force on every node [N] at its
+  // displacement [m]. A component shared by two supports counts for the first.
+  std::vector<Reaction> SumOverSupports(const VoxelField<double>& reaction,
+                                        const VoxelField<double>& displacement) const;
 
   // From the axes of the grid to those of the world.
   const Mat3& direction() const { return grid_.direction; }

@@ -47,7 +47,13 @@ void VoxelSceneState::Save(ArchiveWriter& archive) const {
   archive.PutDoubles("kinetic", kinetic);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     bodies[b].Save(archive);
-    archive.PutVectors(IndexName("reactions", b), reactions[b]);
+    std::vector<Vec3> forces, moments;
+    for (const Reaction& reaction : reactions[b]) {
+      forces.push_back(reaction.force);
+      moments.push_back(reaction.moment);
+    }
+    archive.PutVectors(IndexName("reactions", b), forces);
+    archive.PutVectors(IndexName("moments", b), moments);
   }
 }
 
@@ -60,7 +66,10 @@ void VoxelSceneState::Load(ArchiveReader& archive) {
   archive.GetDoubles("kinetic", std::span(kinetic));
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     bodies[b].Load(archive);
-    archive.GetVectors(IndexName("reactions", b), std::span(reactions[b]));
+    std::vector<Vec3> forces(reactions[b].size()), moments(reactions[b].size());
+    archive.GetVectors(IndexName("reactions", b), std::span(forces));
+    archive.GetVectors(IndexName("moments", b), std::span(moments));
+    for (std::size_t k = 0; k < forces.size(); ++k) reactions[b][k] = {forces[k], moments[k]};
   }
 }
 
@@ -98,7 +107,7 @@ VoxelSceneState VoxelSolver::InitialState() const {
     VoxelState body;
     body.displacement = body.previous = VoxelField<double>(nodes);
     state.bodies.push_back(std::move(body));
-    state.reactions.emplace_back(bodies_[b]->supports().size(), Vec3::Zero());
+    state.reactions.emplace_back(bodies_[b]->supports().size());
   }
   state.elastic.assign(bodies_.size(), 0.0);
   state.kinetic.assign(bodies_.size(), 0.0);
@@ -133,7 +142,7 @@ VoxelSolveReport VoxelSolver::SolveStatic(VoxelSceneState& state, const Controls
     StaticSolution solution =
         solver.Solve(force, prescribed, {.tolerance = scene_.voxel.tolerance}, &state.bodies[b].displacement);
     if (const StepProblem problem = ProblemOf(solution.iterations); problem != StepProblem::kNone) return {problem, b};
-    made.reactions[b] = body.SumOverSupports(solution.reaction);
+    made.reactions[b] = body.SumOverSupports(solution.reaction, solution.displacement);
     made.elastic[b] = solution.energy;
     made.iterations += solution.iterations.iterations;
     made.bodies[b].displacement = std::move(solution.displacement);
@@ -154,7 +163,8 @@ VoxelSolveReport VoxelSolver::StepDynamic(VoxelSceneState& state, const Controls
     made.elastic[b] = report.elastic;
     made.kinetic[b] = report.kinetic;
     made.iterations += report.iterations.iterations;
-    made.reactions[b] = body.SumOverSupports(dynamic_solvers_[b]->Reaction(force, state.bodies[b], made.bodies[b]));
+    made.reactions[b] = body.SumOverSupports(dynamic_solvers_[b]->Reaction(force, state.bodies[b], made.bodies[b]),
+                                             made.bodies[b].displacement);
   }
   state = std::move(made);
   return {};

@@ -21,10 +21,9 @@ struct VoxelSceneState {
   double time_step = 0;         // of the last step [s]
   std::int64_t iterations = 0;  // of conjugate gradients so far
   std::vector<VoxelState> bodies;
-  // For each body at `time`: elastic and kinetic energy [J], and the force of each support on it along the world axes
-  // [N].
+  // For each body at `time`: elastic and kinetic energy [J], and what each support does to it, along the world axes.
   std::vector<double> elastic, kinetic;
-  std::vector<std::vector<Vec3>> reactions;
+  std::vector<std::vector<Reaction>> reactions;
 
   void Save(ArchiveWriter& archive) const;
   void Load(ArchiveReader& archive);

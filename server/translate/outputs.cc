@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/scene/output_fields.h"
+#include "core/scene/probe_place.h"
 #include "proto/rules/enum_names.h"
 #include "server/translate/values.h"
 
@@ -42,7 +43,8 @@ std::vector<OutputField> TranslateFields(const v1::Scene& scene, Method method, 
       problems.Add(path, "is a field that this server does not compute", "omit it");
       continue;
     }
-    CheckOutputField(info->field, fields, method, AnyFibres(scene), path, problems);
+    CheckOutputField(info->field, fields, {method, AnyFibres(scene), !scene.output().line_of_action().empty()}, path,
+                     problems);
     fields.push_back(info->field);
   }
   return fields;
@@ -62,25 +64,22 @@ void CheckFrameSize(const Output& output, const std::vector<Body>& bodies, std::
                "at most " + std::to_string(max_bytes) + "; use fewer fields or coarser meshes");
 }
 
-// The node nearest to `point` [m]. A point farther away than the size of the body has a wrong unit or belongs to
-// another body.
-std::int32_t NearestNode(const std::vector<Vec3>& nodes, const Vec3& point, const std::string& path,
-                         Problems& problems) {
-  std::int32_t nearest = 0;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if ((nodes[i] - point).squaredNorm() < (nodes[static_cast<std::size_t>(nearest)] - point).squaredNorm()) {
-      nearest = static_cast<std::int32_t>(i);
-    }
-  }
-  const double distance = (nodes[static_cast<std::size_t>(nearest)] - point).norm();
-  if (!(distance <= Diagonal(nodes))) {
-    problems.Add(path, "is " + Text(distance) + " m away from the body, farther than the size of the body",
-                 "probe points are in the body's own unit");
-  }
-  return nearest;
+// A point farther away from the body than its size has a wrong unit or belongs to another body.
+void CheckDistance(double distance, const Body& body, const std::string& path, Problems& problems) {
+  if (distance <= Diagonal(body.nodes())) return;
+  problems.Add(path, "is " + Text(distance) + " m away from the body, farther than the size of the body",
+               "probe points are in the body's own unit");
 }
 
-std::vector<Probe> TranslateProbes(const v1::Scene& scene, const std::vector<Body>& bodies, const Names& body_names,
+// A remark if a probe is recorded at another place than asked for.
+void AddProbeNote(const LocatedProbe& located, const std::string& path, Body& body) {
+  if (!(located.outside > 1e-9 * Diagonal(body.nodes()))) return;
+  body.notes.push_back(path + ": is outside of the body's elements; the nearest " +
+                       (located.probe.inside ? "point of the surface" : "node") + ", " + Text(located.outside) +
+                       " m away, is recorded");
+}
+
+std::vector<Probe> TranslateProbes(const v1::Scene& scene, std::vector<Body>& bodies, const Names& body_names,
                                    Problems& problems) {
   Names names("probe");
   std::vector<Probe> probes;
@@ -88,18 +87,46 @@ std::vector<Probe> TranslateProbes(const v1::Scene& scene, const std::vector<Bod
     const v1::Probe& probe = scene.output().probes(i);
     const std::string path = IndexPath("output.probes", static_cast<std::size_t>(i));
     names.Add(probe.name(), JoinPath(path, "name"), problems);
-    const auto body = body_names.Find(probe.body(), JoinPath(path, "body"), problems);
-    if (!body || bodies[*body].nodes().empty() || !ObeysRules(probe)) continue;
-    const Vec3 point = ToVec3(probe.point()) * MetresIn(scene.bodies(static_cast<int>(*body)).unit());
-    probes.push_back({probe.name(), static_cast<std::int32_t>(*body),
-                      NearestNode(bodies[*body].nodes(), point, JoinPath(path, "point"), problems)});
+    const auto index = body_names.Find(probe.body(), JoinPath(path, "body"), problems);
+    if (!index || bodies[*index].nodes().empty() || !ObeysRules(probe)) continue;
+    Body& body = bodies[*index];
+    const Vec3 point = ToVec3(probe.point()) * MetresIn(scene.bodies(static_cast<int>(*index)).unit());
+    const LocatedProbe located = LocateProbe(probe.name(), static_cast<std::int32_t>(*index), body.shape, point);
+    CheckDistance(located.outside, body, JoinPath(path, "point"), problems);
+    AddProbeNote(located, JoinPath(path, "point"), body);
+    probes.push_back(located.probe);
   }
   return probes;
 }
 
+std::vector<SupportMoment> TranslateMoments(const v1::Scene& scene, const std::vector<Body>& bodies,
+                                            const Names& body_names, Problems& problems) {
+  std::vector<SupportMoment> moments;
+  for (int i = 0; i < scene.output().moments_size(); ++i) {
+    const v1::SupportMoment& wire = scene.output().moments(i);
+    const std::string path = IndexPath("output.moments", static_cast<std::size_t>(i));
+    SupportMoment moment;
+    if (!wire.axis().empty()) moment.axis = ToDirection(wire.axis(), JoinPath(path, "axis"), problems);
+    const auto body = body_names.Find(wire.body(), JoinPath(path, "body"), problems);
+    if (!body) continue;
+    Names regions("region");
+    Problems reported;  // malformed names are reported with the body
+    for (const Region& region : bodies[*body].regions) regions.Add(region.name, "", reported);
+    const auto region = regions.Find(wire.region(), JoinPath(path, "region"), problems);
+    if (!region) continue;
+    moment.body = static_cast<std::int32_t>(*body);
+    moment.region = static_cast<std::int32_t>(*region);
+    if (!wire.point().empty()) {
+      moment.point = ToVec3(wire.point()) * MetresIn(scene.bodies(static_cast<int>(*body)).unit());
+    }
+    moments.push_back(moment);
+  }
+  return moments;
+}
+
 }  // namespace
 
-Output TranslateOutput(const v1::Scene& scene, Method method, const std::vector<Body>& bodies, const Names& body_names,
+Output TranslateOutput(const v1::Scene& scene, Method method, std::vector<Body>& bodies, const Names& body_names,
                        std::int64_t max_frame_bytes, Problems& problems) {
   Output output;
   if (!scene.has_output()) {
@@ -110,6 +137,10 @@ Output TranslateOutput(const v1::Scene& scene, Method method, const std::vector<
   output.frame_interval = scene.output().frame_interval();
   output.fields = TranslateFields(scene, method, problems);
   output.probes = TranslateProbes(scene, bodies, body_names, problems);
+  output.moments = TranslateMoments(scene, bodies, body_names, problems);
+  if (!scene.output().line_of_action().empty()) {
+    output.line_of_action = ToDirection(scene.output().line_of_action(), "output.line_of_action", problems);
+  }
   if (scene.output().has_settle_speed()) output.settle_speed = scene.output().settle_speed();
   CheckFrameSize(output, bodies, max_frame_bytes, problems);
   return output;

@@ -16,6 +16,7 @@
 #include "server/translate/outputs.h"
 #include "server/translate/scene_checks.h"
 #include "server/translate/supports_and_loads.h"
+#include "server/translate/unused_fields.h"
 
 namespace fascicle::server {
 namespace {
@@ -87,6 +88,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     result->bodies.push_back(std::move(body.body));
   }
   result->output = TranslateOutput(filled, result->method, result->bodies, names, limits.max_frame_bytes, found);
+  AddUnusedFieldNotes(scene, result->bodies);
 
   if (result->method == Method::kEulerian && result->eulerian.cell_size > 0) {
     const StageTimer timer(tools.profile, "surfaces");

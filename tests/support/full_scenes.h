@@ -77,7 +77,9 @@ inline Scene FullScene(Method method, Shape shape) {
   scene.eulerian.room = Bounds{-Vec3::Ones(), Vec3::Ones()};
   scene.squeezes = {{Vec3::Zero(), Vec3::UnitX(), 1, 1, Curve::Constant(1)}};
   scene.duration = 1;
-  scene.output = {0.1, {OutputField::kVelocity}, {{"probe", 0, 0}}, 1e-3};
+  scene.output = {0.1, {OutputField::kVelocity}, {{"probe", 0, 0, ProbePlace{0, Vec3(0.2, 0.3, 0.1)}}}, 1e-3};
+  scene.output.moments = {{0, 0, Vec3(0, 0, 1), Vec3::UnitX()}};
+  scene.output.line_of_action = Vec3::UnitX();
   return scene;
 }
 

@@ -47,6 +47,11 @@ class TetStepper {
 
   double StableStepAt(const TetState& state) { return solver_.StableStepAt(state, source_.At(state.time)); }
   std::vector<Vec3> Reactions(const TetState& state) {
+    std::vector<Vec3> forces;
+    for (const Reaction& reaction : ReactionsWithMoments(state)) forces.push_back(reaction.force);
+    return forces;
+  }
+  std::vector<Reaction> ReactionsWithMoments(const TetState& state) {
     return fascicle::Reactions(*model_, state, source_.At(state.time), source_.At(state.time + state.time_step),
                                *team_);
   }

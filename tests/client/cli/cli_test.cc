@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <memory>
@@ -146,6 +147,58 @@ TEST_F(CliTest, RunLeavesTablesSeriesAndPictures) {
   }
   EXPECT_EQ(json::parse(ReadFile(folder_ / "out/summary.json")), summary);
   EXPECT_FALSE(fs::is_empty(folder_.path() / "data"));
+}
+
+// A strip of tendon under uniform stretch: each field is the same everywhere.
+TEST_F(CliTest, SampleReadsAnExportedFolder) {
+  ASSERT_EQ(Fascicle({"examples", "write", "tendon_pull", "--out", folder_.path().string()}).exit_code, 0);
+  const std::string out = folder_ / "out";
+  const Finished run =
+      Fascicle({"run", folder_ / "tendon_pull.json", "--out", out, "--json", "--set", "tet.stepping=quasi_static",
+                "--set", R"(output.fields=["volume_ratio", "principal_strains", "reaction_force"])"});
+  ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+  // What acts balances the energy.
+  const json series = json::parse(run.out)["series"];
+  const double elastic = series["energy/elastic"]["final"], work = series["energy/external_work"]["final"];
+  EXPECT_GT(elastic, 1e-4);
+  EXPECT_NEAR(work, elastic, 1e-6 * elastic);
+
+  const Finished line = Fascicle({"sample", out, "--line", "1,1,1:19,4,4:4", "--unit", "mm", "--json", "--plot",
+                                  folder_ / "line.png", "--out", folder_ / "line.csv"});
+  ASSERT_EQ(line.exit_code, 0) << line.err;
+  const json frame = json::parse(line.out);
+  EXPECT_EQ(frame["frame"], 20);
+  const json& strain = frame["fields"]["principal_strains/1"]["values"];
+  ASSERT_EQ(strain.size(), 4u);
+  for (const double value : strain) EXPECT_NEAR(value, std::log(1.02), 1e-6);
+  EXPECT_NEAR(frame["fields"]["displacement/x"]["values"][0], 1e-3 * 0.02, 1e-9);
+  EXPECT_EQ(frame["fields"]["reaction_force/x"]["unit"], "N");
+  EXPECT_GT(fs::file_size(folder_ / "line.png"), 2000u);
+  EXPECT_THAT(ReadFile(folder_ / "line.csv"), HasSubstr("frame,time [s],distance [m],x [m],y [m],z [m],"));
+
+  File("points.csv", "x,y,z\n10,2,2\n100,0,0\n");
+  const Finished points = Fascicle({"sample", out, "--points", folder_ / "points.csv", "--unit", "mm", "--frames",
+                                    "0,20", "--fields", "volume_ratio"});
+  ASSERT_EQ(points.exit_code, 0) << points.err;
+  EXPECT_EQ(std::count(points.out.begin(), points.out.end(), '\n'), 5);
+  EXPECT_THAT(points.out, HasSubstr("\n0,0,1,0.1,0,0,\n")) << "outside: an empty cell";
+
+  const Finished region = Fascicle({"sample", out, "--region", "right", "--json", "--frames", "all"});
+  ASSERT_EQ(region.exit_code, 0) << region.err;
+  const json last = Lines(region.out).back();
+  EXPECT_NEAR(last["area"], 25e-6, 1e-15);
+  EXPECT_NEAR(last["fields"]["principal_strains/1"]["mean"], std::log(1.02), 1e-6);
+
+  for (const std::vector<std::string>& wrong : {std::vector<std::string>{"sample", out},
+                                                {"sample", out, "--line", "0,0:1,1,1:3"},
+                                                {"sample", out, "--region", "x"},
+                                                {"sample", out, "--line", "1,0,0:2,0,0:3"},
+                                                {"sample", out, "--region", "left", "--fields", "colour"},
+                                                {"sample", folder_.path().string(), "--region", "left"}}) {
+    const Finished refused = Fascicle(wrong);
+    EXPECT_EQ(refused.exit_code, 2) << refused.err;
+    EXPECT_NE(refused.err, "");
+  }
 }
 
 TEST_F(CliTest, RunWithoutDataLeavesNothing) {
@@ -350,6 +403,11 @@ TEST_F(ServerTest, AJobsWholeLife) {
   const std::string csv = ReadFile(folder_ / "out/series.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
   EXPECT_EQ(Call({"export", job, "--out", folder_ / "out", "--from", "99"}).exit_code, 2);
+
+  const Finished sampled = Call({"sample", job, "--region", "floor", "--frames", "1,3", "--json"});
+  EXPECT_EQ(sampled.exit_code, 0) << sampled.err;
+  EXPECT_EQ(Lines(sampled.out).size(), 2u);
+  EXPECT_EQ(Call({"sample", job, "--region", "floor", "--frames", "99"}).exit_code, 2);
 
   const Finished rendered = Call({"render", job, "--out", folder_ / "a.png", "--frame", "2", "--size", "200x150",
                                   "--wireframe", "--colour", "von_mises_stress", "--view", "front"});

@@ -260,6 +260,13 @@ TEST(CheckSceneTest, Output) {
   EXPECT_EQ(ProblemOf(scene).path, "output.probes[1].point");
   scene.output.probes[1] = {"other", 3, 0};
   EXPECT_EQ(ProblemOf(scene).path, "output.probes[1].body");
+  scene = GoodScene();
+  scene.output.moments = {{0, kX0}, {0, kX1}};
+  EXPECT_EQ(ProblemOf(scene).path, "output.moments[1].region");
+  scene.output.moments = {{0, kX0}, {0, kX0}};
+  EXPECT_EQ(ProblemOf(scene).path, "output.moments[1].region");
+  scene.output.moments = {{3, kX0}};
+  EXPECT_EQ(ProblemOf(scene).path, "output.moments[0].body");
 }
 
 TEST(CheckSceneTest, FieldsThatNoBodyCanGive) {

@@ -161,7 +161,7 @@ std::vector<BodyFrame> Stepped(const Scene& scene, const std::function<void(Cont
     if (outcome.problem != StepProblem::kNone) break;
     now = next;
   }
-  return method->MeasureBodies(now);
+  return method->MeasureBodies(now, now);
 }
 
 struct Steered {

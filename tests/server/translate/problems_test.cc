@@ -228,13 +228,18 @@ TEST(Problems, ConstraintsAndMotions) {
 TEST(Problems, Output) {
   const Problems problems = WithScene(R"(duration: 1000 output { frame_interval: 1e-6
     fields: FIELD_VELOCITY fields: FIELD_VELOCITY fields: FIELD_UNSPECIFIED fields: FIELD_FIBRE_STRETCH
-    probes { name: "p" body: "box" point: [0, 0, 400] } probes { name: "p" body: "box" point: [0, 0, 4] } })");
+    fields: FIELD_PENNATION_ANGLE
+    probes { name: "p" body: "box" point: [0, 0, 400] } probes { name: "p" body: "box" point: [0, 0, 4] }
+    moments { body: "bax" region: "x" } moments { body: "box" region: "nowhere" axis: [0, 0, 0] } })");
   EXPECT_THAT(At(problems, "output.frame_interval"), HasSubstr("100,000"));
   EXPECT_THAT(At(problems, "output.fields[1]"), HasSubstr("twice"));
   EXPECT_THAT(At(problems, "output.fields[2]"), HasSubstr("missing"));
   EXPECT_THAT(At(problems, "output.fields[3]"), HasSubstr("no body has fibres"));
   EXPECT_THAT(At(problems, "output.probes[0].point"), HasSubstr("own unit"));
   EXPECT_THAT(At(problems, "output.probes[1].name"), HasSubstr("another probe"));
+  EXPECT_THAT(At(problems, "output.moments[0].body"), HasSubstr("did you mean 'box'"));
+  EXPECT_THAT(At(problems, "output.moments[1].region"), HasSubstr("no region 'nowhere'"));
+  EXPECT_THAT(At(problems, "output.moments[1].axis"), HasSubstr("zero vector"));
 }
 
 TEST(Problems, ChecksOfTheCoreAreRunOnTheBodiesThatAreWhole) {

@@ -47,6 +47,43 @@ TEST(TranslateScene, ConvertsLengthsOfABody) {
   EXPECT_EQ(box.tet().mesh.nodes[static_cast<std::size_t>(scene->output.probes[0].node)], Vec3(0.02, 0.03, 0.04));
 }
 
+TEST(TranslateScene, PlacesProbesAndMoments) {
+  v1::Scene wire = BoxScene();
+  google::protobuf::TextFormat::ParseFromString(R"(
+    probes { name: "inside" body: "box" point: [1.1, 1.2, 1.3] }
+    probes { name: "outside" body: "box" point: [1.1, 1.2, -0.5] }
+    moments { body: "box" region: "bottom" point: [1, 2, 3] axis: [0, 0, 2] }
+    line_of_action: [0, 3, 0])",
+                                                wire.mutable_output());
+  wire.mutable_output()->mutable_moments(0)->set_region(wire.bodies(0).constraints(0).region());
+  const auto scene = Translate(wire);
+  ASSERT_NE(scene, nullptr);
+  const Output& output = scene->output;
+  ASSERT_EQ(output.probes.size(), 2u);
+  EXPECT_TRUE(output.probes[0].inside.has_value());
+  EXPECT_FALSE(output.probes[1].inside.has_value());
+  EXPECT_THAT(scene->bodies[0].notes, ElementsAre(testing::HasSubstr("output.probes[1].point: is outside")));
+  ASSERT_EQ(output.moments.size(), 1u);
+  EXPECT_LT((output.moments[0].point.value() - Vec3(0.01, 0.02, 0.03)).norm(), 1e-17);
+  EXPECT_EQ(output.moments[0].axis, Vec3::UnitZ());
+  EXPECT_EQ(output.line_of_action, Vec3::UnitY());
+}
+
+// Each field without effect is a note; those with one are not.
+TEST(TranslateScene, FieldsWithoutEffectAreNotes) {
+  v1::Scene wire = BoxScene();
+  google::protobuf::TextFormat::ParseFromString("viscosity: 10 mass_proportional: 0",
+                                                wire.mutable_bodies(0)->mutable_damping());
+  google::protobuf::TextFormat::ParseFromString("stepping: STEPPING_QUASI_STATIC safety: 0.5 newton_tolerance: 1e-6",
+                                                wire.mutable_tet());
+  const auto scene = Translate(wire);
+  ASSERT_NE(scene, nullptr);
+  EXPECT_THAT(scene->bodies[0].notes, ElementsAre(testing::HasSubstr("tet.safety: has no effect"),
+                                                  testing::HasSubstr("bodies[0].damping.viscosity: has no effect")));
+  wire.mutable_tet()->set_stepping(v1::STEPPING_EXPLICIT);
+  EXPECT_THAT(Translate(wire)->bodies[0].notes, ElementsAre(testing::HasSubstr("tet.newton_tolerance: has no effect")));
+}
+
 TEST(TranslateScene, TakesDefaultsFromTheRules) {
   const auto scene = Translate(BoxScene());
   ASSERT_NE(scene, nullptr);

@@ -1,0 +1,382 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
+
+#include "client/cli/command.h"
+#include "client/cli/follow.h"
+#include "client/cli/input_file.h"
+#include "client/cli/outputs.h"
+#include "client/export/csv.h"
+#include "client/export/read_series.h"
+#include "client/export/sample.h"
+#include "client/lib/replace_file.h"
+
+namespace fascicle::client {
+namespace {
+
+constexpr const char* kSampleExamples =
+    R"(  fascicle sample 3f2a --line 0,0,0:0,0,0.12:50                    all fields along a line, at the last frame
+  fascicle sample 3f2a --line 0,0,0:0,0,120:50 --unit mm --fields 'principal_*' --out line.csv --plot line.png
+  fascicle sample 3f2a --points electrodes.csv --frames all --deformed
+  fascicle sample 3f2a --region insertion --frames all --out insertion.csv    mean, extremes and integral
+  fascicle sample out --region muscle/belly --json                 frames in a folder that `run --out` or `export` wrote
+
+Points are those of the bodies at rest; with --deformed they are points of space. Nodal fields are interpolated within
+the element that contains a point, fields of elements are that element's. Outside of all bodies cells are empty.
+A region is sampled over the elements inside of it, weighted by volume, or else over its faces, weighted by area.
+)";
+
+struct SampleOptions {
+  std::string source;
+  std::string line, points, region;
+  std::string frames = "last";
+  std::vector<std::string> fields;
+  std::string unit = "m";
+  bool deformed = false;
+  std::string out, plot;
+};
+
+double MetresIn(const std::string& unit) { return unit == "mm" ? 1e-3 : unit == "cm" ? 1e-2 : 1; }
+
+std::optional<double> NumberIn(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::vector<std::string> SplitAt(char separator, const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+// X,Y,Z and further columns, which are ignored.
+std::optional<Vec3> PointIn(const std::string& text) {
+  const std::vector<std::string> parts = SplitAt(',', text);
+  if (parts.size() < 3) return std::nullopt;
+  Vec3 point;
+  for (int d = 0; d < 3; ++d) {
+    const std::optional<double> value = NumberIn(parts[static_cast<std::size_t>(d)]);
+    if (!value) return std::nullopt;
+    point[d] = *value;
+  }
+  return point;
+}
+
+// Equidistant points from one end to the other [m].
+std::vector<Vec3> PointsOfLine(const SampleOptions& options) {
+  constexpr double kMostPoints = 100'000;
+  const std::vector<std::string> parts = SplitAt(':', options.line);
+  const std::optional<Vec3> from = parts.size() == 3 ? PointIn(parts[0]) : std::nullopt;
+  const std::optional<Vec3> to = parts.size() == 3 ? PointIn(parts[1]) : std::nullopt;
+  const std::optional<double> count = parts.size() == 3 ? NumberIn(parts[2]) : std::nullopt;
+  if (!from || !to || !count || !(*count >= 2) || !(*count <= kMostPoints) || *count != std::floor(*count)) {
+    throw CommandError::Invalid("--line: expects X,Y,Z:X,Y,Z:N, two points and 2 to 100000 places, such as " +
+                                std::string("0,0,0:0,0,0.12:50"));
+  }
+  std::vector<Vec3> points;
+  for (int i = 0; i < static_cast<int>(*count); ++i) {
+    points.emplace_back(MetresIn(options.unit) * (*from + i / (*count - 1) * (*to - *from)));
+  }
+  return points;
+}
+
+// The first three columns of a CSV file [m]; a first line that is not numbers is a header.
+std::vector<Vec3> PointsOfFile(const SampleOptions& options) {
+  Problems problems;
+  const std::optional<std::string> text = ReadInputFile(options.points, problems);
+  if (!text) throw CommandError::Invalid("--points: " + options.points + ": " + problems.kept().front().message);
+  std::vector<Vec3> points;
+  const std::vector<std::string> lines = SplitAt('\n', *text);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (lines[i].find_first_not_of(" \t\r") == std::string::npos) continue;
+    const std::optional<Vec3> point = PointIn(lines[i]);
+    if (!point && i == 0) continue;
+    if (!point) {
+      throw CommandError::Invalid("--points: " + options.points + ", line " + std::to_string(i + 1) +
+                                  ": expects three numbers x,y,z separated by commas");
+    }
+    points.emplace_back(MetresIn(options.unit) * *point);
+  }
+  if (points.empty()) throw CommandError::Invalid("--points: " + options.points + " has no points");
+  return points;
+}
+
+// `last`, `all`, or numbers separated by commas; `count` frames exist, numbered from 0.
+std::vector<std::int64_t> ChosenFrames(const std::string& text, std::int64_t count) {
+  std::vector<std::int64_t> frames;
+  if (text == "last") return {count - 1};
+  for (std::int64_t k = 0; text == "all" && k < count; ++k) frames.push_back(k);
+  if (text == "all") return frames;
+  for (const std::string& part : SplitAt(',', text)) {
+    const std::optional<double> number = NumberIn(part);
+    if (!number || *number != std::floor(*number) || *number < 0 || !(*number < static_cast<double>(count))) {
+      throw CommandError::Invalid("--frames: expects `last`, `all`, or numbers from 0 to " + std::to_string(count - 1) +
+                                  " separated by commas");
+    }
+    frames.push_back(static_cast<std::int64_t>(*number));
+  }
+  std::sort(frames.begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  return frames;
+}
+
+// Calls call(snapshot) for each chosen frame, in order.
+template <class Call>
+void ForSnapshots(const SampleOptions& options, const Context& context, const Call& call) {
+  if (std::filesystem::is_directory(options.source)) {
+    if (!HasSeries(options.source)) {
+      throw CommandError::Invalid(options.source + " has no frames.pvd; give a job, or a folder that `fascicle run " +
+                                  "--out` or `fascicle export` wrote");
+    }
+    const std::vector<ExportedFrame> frames = ReadSeriesIndex(options.source);
+    for (const std::int64_t k : ChosenFrames(options.frames, static_cast<std::int64_t>(frames.size()))) {
+      call(ReadSnapshot(frames[static_cast<std::size_t>(k)]));
+    }
+    return;
+  }
+  Client client = Connect(context);
+  const std::string name = JobName(options.source);
+  const v1::Job job = Take(client.GetJob(name));
+  if (job.frame_count() == 0) throw CommandError::Invalid(name + " has no frames yet");
+  const std::vector<std::int64_t> frames = ChosenFrames(options.frames, job.frame_count());
+  ReadStored(client, name, frames.front(), [&](const v1::Geometry& geometry, const v1::Frame& frame) {
+    if (!std::binary_search(frames.begin(), frames.end(), frame.index())) return true;
+    CheckDigest(frame);
+    call(SnapshotOf(geometry, frame));
+    return frame.index() < frames.back();
+  });
+}
+
+bool IsWanted(const SampleOptions& options, const std::string& name) {
+  return options.fields.empty() || std::any_of(options.fields.begin(), options.fields.end(), [&](const auto& glob) {
+           return MatchesGlob(glob, name) || MatchesGlob(glob + "/*", name);
+         });
+}
+
+std::string Heading(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : name + " [" + unit + "]";
+}
+
+void CheckFieldsFound(const SampleOptions& options, std::size_t found, const std::string& known) {
+  if (found > 0) return;
+  std::string wanted;
+  for (const std::string& glob : options.fields) wanted += " " + glob;
+  throw CommandError::Invalid("--fields: nothing matches" + wanted + "; fields of the frame:" + known +
+                              " (see the scene's output.fields)");
+}
+
+void WriteTable(const SampleOptions& options, const Context& context, const std::vector<CsvColumn>& columns,
+                const std::vector<PlotPanel>& panels) {
+  if (!options.out.empty()) ReplaceFile(options.out, CsvOf(columns));
+  if (!options.plot.empty()) WritePlot(panels, options.plot);
+  if (context.json) return;
+  if (options.out.empty() && options.plot.empty()) std::cout << CsvOf(columns);
+  if (!options.out.empty()) std::cout << "the table is in " << options.out << '\n';
+  if (!options.plot.empty()) std::cout << "the plot is in " << options.plot << '\n';
+}
+
+std::string TimeText(double time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g s", time);
+  return text;
+}
+
+Json PointJson(const Vec3& x) { return {x[0], x[1], x[2]}; }
+
+// A table of points: a row for each frame and point.
+struct PointTable {
+  std::vector<CsvColumn> columns;
+  std::vector<PlotPanel> panels;
+};
+
+void AddFrame(const Snapshot& snapshot, const std::vector<SampledColumn>& sampled, const std::vector<Vec3>& points,
+              const std::vector<double>& places, const std::string& place, PointTable& table) {
+  if (table.columns.empty()) {
+    for (const std::string& heading : {std::string("frame"), std::string("time [s]"), place, std::string("x [m]"),
+                                       std::string("y [m]"), std::string("z [m]")}) {
+      table.columns.push_back({heading, {}});
+    }
+    for (const SampledColumn& column : sampled) {
+      table.columns.push_back({Heading(column.name, column.unit), {}});
+      table.panels.push_back({"", place, Heading(column.name, column.unit == "1" ? "" : column.unit), {}});
+    }
+  }
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const double head[] = {
+        static_cast<double>(snapshot.frame), snapshot.time, places[p], points[p][0], points[p][1], points[p][2]};
+    for (std::size_t k = 0; k < std::size(head); ++k) table.columns[k].values.push_back(head[k]);
+    for (std::size_t k = 0; k < sampled.size(); ++k) table.columns[6 + k].values.push_back(sampled[k].values[p]);
+  }
+  for (std::size_t k = 0; k < sampled.size(); ++k) {
+    table.panels[k].lines.push_back({TimeText(snapshot.time), places, sampled[k].values});
+  }
+}
+
+std::string BoundsText(const Snapshot& snapshot, bool deformed) {
+  Vec3 low = Vec3::Constant(INFINITY), high = -low;
+  for (const BodySnapshot& body : snapshot.bodies) {
+    for (const Vec3& x : deformed ? body.positions : body.shape.positions) {
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+  }
+  char text[160];
+  std::snprintf(text, sizeof text, "[%.4g, %.4g, %.4g] to [%.4g, %.4g, %.4g] m", low[0], low[1], low[2], high[0],
+                high[1], high[2]);
+  return text;
+}
+
+void CheckInside(const SampleOptions& options, const Snapshot& snapshot, const std::vector<SampledColumn>& sampled) {
+  const bool has_inside = std::any_of(snapshot.bodies.begin(), snapshot.bodies.end(),
+                                      [](const BodySnapshot& body) { return body.shape.triangles.empty(); });
+  if (!has_inside) {
+    throw CommandError::Invalid(
+        "the bodies are surfaces, without elements inside; use --region, or probes in the scene");
+  }
+  for (const SampledColumn& column : sampled) {
+    if (std::any_of(column.values.begin(), column.values.end(), [](double v) { return std::isfinite(v); })) return;
+  }
+  throw CommandError::Invalid("no point is inside of a body; the bodies extend from " +
+                              BoundsText(snapshot, options.deformed) + "; see --unit");
+}
+
+int SamplePoints(const SampleOptions& options, const Context& context) {
+  const bool is_line = !options.line.empty();
+  const std::vector<Vec3> points = is_line ? PointsOfLine(options) : PointsOfFile(options);
+  std::vector<double> places;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    places.push_back(is_line ? (points[p] - points[0]).norm() : static_cast<double>(p));
+  }
+  PointTable table;
+  ForSnapshots(options, context, [&](const Snapshot& snapshot) {
+    std::vector<SampledColumn> sampled = SampleAtPoints(snapshot, points, options.deformed);
+    CheckInside(options, snapshot, sampled);
+    std::string known;
+    for (const SampledColumn& column : sampled) known += " " + column.name;
+    std::erase_if(sampled, [&](const SampledColumn& column) { return !IsWanted(options, column.name); });
+    CheckFieldsFound(options, sampled.size(), known);
+    AddFrame(snapshot, sampled, points, places, is_line ? "distance [m]" : "point", table);
+    if (!context.json) return;
+    Json json = {{"frame", snapshot.frame}, {"time", snapshot.time}};
+    for (const Vec3& point : points) json["points"].push_back(PointJson(point));
+    for (const SampledColumn& column : sampled) {
+      json["fields"][column.name] = {{"unit", column.unit}, {"values", column.values}};
+    }
+    PrintJson(json);
+  });
+  WriteTable(options, context, table.columns, table.panels);
+  return kDone;
+}
+
+std::optional<RegionSample> RegionIn(const Snapshot& snapshot, const SampleOptions& options) {
+  try {
+    return SampleRegion(snapshot, options.region, options.deformed);
+  } catch (const std::runtime_error& error) {
+    throw CommandError::Invalid(std::string("--region: ") + error.what());
+  }
+}
+
+int SampleOneRegion(const SampleOptions& options, const Context& context) {
+  std::vector<CsvColumn> columns;
+  std::vector<PlotPanel> panels;
+  ForSnapshots(options, context, [&](const Snapshot& snapshot) {
+    std::optional<RegionSample> sample = RegionIn(snapshot, options);
+    if (!sample) {
+      throw CommandError::Invalid("--region: `" + options.region +
+                                  "` has neither an element nor a face of the surface");
+    }
+    std::string known;
+    for (const RegionStatistics& field : sample->fields) known += " " + field.name;
+    std::erase_if(sample->fields, [&](const RegionStatistics& field) { return !IsWanted(options, field.name); });
+    CheckFieldsFound(options, sample->fields.size(), known);
+    const std::string size = sample->is_volume ? "m^3" : "m^2";
+    if (columns.empty()) {
+      columns = {{"frame", {}}, {"time [s]", {}}, {(sample->is_volume ? "volume [" : "area [") + size + "]", {}}};
+      for (const RegionStatistics& field : sample->fields) {
+        const std::string of_integral = field.unit.empty() ? "" : field.unit == "1" ? size : field.unit + " " + size;
+        columns.push_back({Heading(field.name + " mean", field.unit), {}});
+        columns.push_back({Heading(field.name + " min", field.unit), {}});
+        columns.push_back({Heading(field.name + " max", field.unit), {}});
+        columns.push_back({Heading(field.name + " integral", of_integral), {}});
+        panels.push_back({options.region,
+                          "time [s]",
+                          Heading(field.name, field.unit == "1" ? "" : field.unit),
+                          {{"mean", {}, {}}, {"min", {}, {}}, {"max", {}, {}}}});
+      }
+    }
+    std::vector<double> row = {static_cast<double>(snapshot.frame), snapshot.time, sample->size};
+    Json json = {{"frame", snapshot.frame},
+                 {"time", snapshot.time},
+                 {"region", options.region},
+                 {sample->is_volume ? "volume" : "area", sample->size}};
+    for (std::size_t k = 0; k < sample->fields.size(); ++k) {
+      const RegionStatistics& field = sample->fields[k];
+      const double values[] = {field.mean, field.smallest, field.largest};
+      row.insert(row.end(), {field.mean, field.smallest, field.largest, field.integral});
+      for (std::size_t i = 0; i < 3; ++i) {
+        panels[k].lines[i].x.push_back(snapshot.time);
+        panels[k].lines[i].y.push_back(values[i]);
+      }
+      json["fields"][field.name] = {{"unit", field.unit},
+                                    {"mean", field.mean},
+                                    {"min", field.smallest},
+                                    {"max", field.largest},
+                                    {"integral", field.integral}};
+    }
+    for (std::size_t k = 0; k < row.size(); ++k) columns[k].values.push_back(row[k]);
+    if (context.json) PrintJson(json);
+  });
+  WriteTable(options, context, columns, panels);
+  return kDone;
+}
+
+int Sample(const SampleOptions& options, const Context& context) {
+  const int ways = (options.line.empty() ? 0 : 1) + (options.points.empty() ? 0 : 1) + (options.region.empty() ? 0 : 1);
+  if (ways != 1) throw CommandError::Invalid("give one of --line, --points and --region");
+  return options.region.empty() ? SamplePoints(options, context) : SampleOneRegion(options, context);
+}
+
+}  // namespace
+
+void AddSample(CLI::App& app, Context& context) {
+  CLI::App* command =
+      AddCommand(app, "sample", "Values of fields along a line, at points or over a region", kSampleExamples);
+  const auto options = std::make_shared<SampleOptions>();
+  command->add_option("JOB|FOLDER", options->source, "The job, or a folder with exported frames")->required();
+  command->add_option("--line", options->line, "N places from one point to another")->type_name("X,Y,Z:X,Y,Z:N");
+  command->add_option("--points", options->points, "Points: the first three columns x,y,z of a table")
+      ->type_name("FILE.csv");
+  command->add_option("--region", options->region, "Mean, extremes and integral over a region")
+      ->type_name("[BODY/]NAME");
+  command->add_option("--frames", options->frames, "Frames: `last`, `all`, or indices separated by commas")
+      ->type_name("I,J,...");
+  command->add_option("--fields", options->fields, "Fields by name, with * and ?; all by default; may be repeated")
+      ->type_name("GLOB")
+      ->allow_extra_args(false);
+  command->add_option("--unit", options->unit, "Unit of the given points; m by default")
+      ->check(CLI::IsMember({"m", "cm", "mm"}));
+  command->add_flag("--deformed", options->deformed, "Points of space, and volumes and areas of the deformed body");
+  command->add_option("--out", options->out, "Write the table to a file")->type_name("FILE.csv");
+  command->add_option("--plot", options->plot, "Also draw a picture")->type_name("FILE.png");
+  command->callback(
+      [options, &context] { context.action = [options, &context] { return Sample(*options, context); }; });
+}
+
+}  // namespace fascicle::client

@@ -1,0 +1,140 @@
+#include "core/scene/probe_place.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/geometry/triangle_distance.h"
+#include "core/geometry/triangle_mesh.h"
+
+namespace fascicle {
+namespace {
+
+// Tolerance for points at nodes, relative to the size of the body, and at the sides of elements, relative to them.
+constexpr double kClose = 1e-9;
+
+using Weights = std::vector<std::pair<std::int32_t, double>>;
+
+// Shape functions of each type of element.
+Weights WeightsIn(const Tetrahedron& t, const Vec3& L) {
+  return {{t[0], 1 - L.sum()}, {t[1], L[0]}, {t[2], L[1]}, {t[3], L[2]}};
+}
+Weights WeightsIn(const Brick& brick, const Vec3& at) {
+  Weights weights;
+  for (int c = 0; c < 8; ++c) {
+    double weight = 1;
+    for (int d = 0; d < 3; ++d) weight *= (c >> d & 1) != 0 ? at[d] : 1 - at[d];
+    weights.emplace_back(brick[static_cast<std::size_t>(c)], weight);
+  }
+  return weights;
+}
+Weights WeightsIn(const Triangle& t, const Vec3& L) { return {{t[0], 1 - L[0] - L[1]}, {t[1], L[0]}, {t[2], L[1]}}; }
+
+const std::vector<Tetrahedron>& ElementsOf(const TetShape& shape) { return shape.mesh.tetrahedra; }
+const std::vector<Brick>& ElementsOf(const VoxelShape& shape) { return shape.mesh.bricks; }
+const std::vector<Triangle>& ElementsOf(const SurfaceShape& shape) { return shape.mesh.triangles; }
+
+// The coordinates of corner c of an element.
+Vec3 CornerOf(const Brick&, std::size_t c) {
+  return {static_cast<double>(c & 1), static_cast<double>(c >> 1 & 1), static_cast<double>(c >> 2)};
+}
+template <class Simplex>
+Vec3 CornerOf(const Simplex&, std::size_t c) {
+  return c == 0 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Unit(static_cast<Eigen::Index>(c) - 1));
+}
+
+std::optional<ProbePlace> ElementAt(const TetShape& shape, const Vec3& point) {
+  const std::vector<Vec3>& X = shape.mesh.nodes;
+  for (std::size_t e = 0; e < shape.mesh.tetrahedra.size(); ++e) {
+    const Tetrahedron& t = shape.mesh.tetrahedra[e];
+    Mat3 edges;
+    for (int c = 0; c < 3; ++c) edges.col(c) = X[t[c + 1]] - X[t[0]];
+    const Vec3 L = edges.inverse() * (point - X[t[0]]);
+    if (L.minCoeff() >= -kClose && L.sum() <= 1 + kClose) return ProbePlace{static_cast<std::int32_t>(e), L};
+  }
+  return std::nullopt;
+}
+
+std::optional<ProbePlace> ElementAt(const VoxelShape& shape, const Vec3& point) {
+  const VoxelGrid& grid = shape.mesh.grid;
+  for (std::size_t e = 0; e < shape.mesh.bricks.size(); ++e) {
+    const Vec3 away = grid.direction.transpose() * (point - shape.mesh.nodes[shape.mesh.bricks[e][0]]);
+    const Vec3 at = away.cwiseQuotient(grid.spacing);
+    if (at.minCoeff() >= -kClose && at.maxCoeff() <= 1 + kClose) return ProbePlace{static_cast<std::int32_t>(e), at};
+  }
+  return std::nullopt;
+}
+
+// The nearest triangle.
+std::optional<ProbePlace> ElementAt(const SurfaceShape& shape, const Vec3& point) {
+  const std::vector<Vec3>& X = shape.mesh.nodes;
+  double nearest = std::numeric_limits<double>::infinity();
+  std::optional<ProbePlace> place;
+  for (std::size_t e = 0; e < shape.mesh.triangles.size(); ++e) {
+    const Triangle& t = shape.mesh.triangles[e];
+    const double distance = SquaredDistance(point, X[t[0]], X[t[1]], X[t[2]]);
+    if (!(distance < nearest)) continue;
+    nearest = distance;
+    const Vec3 u = X[t[1]] - X[t[0]], v = X[t[2]] - X[t[0]], away = point - X[t[0]];
+    const Vec3 normal = u.cross(v);
+    double a = away.cross(v).dot(normal) / normal.squaredNorm(), b = u.cross(away).dot(normal) / normal.squaredNorm();
+    a = std::clamp(a, 0.0, 1.0);
+    b = std::clamp(b, 0.0, 1 - a);
+    place = ProbePlace{static_cast<std::int32_t>(e), Vec3(a, b, 0)};
+  }
+  return place;
+}
+
+std::int32_t NearestNode(const std::vector<Vec3>& nodes, const Vec3& point) {
+  std::size_t nearest = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if ((nodes[i] - point).squaredNorm() < (nodes[nearest] - point).squaredNorm()) nearest = i;
+  }
+  return static_cast<std::int32_t>(nearest);
+}
+
+}  // namespace
+
+LocatedProbe LocateProbe(std::string name, std::int32_t body, const Shape& shape, const Vec3& point) {
+  return std::visit(
+      [&](const auto& s) {
+        const std::vector<Vec3>& X = s.mesh.nodes;
+        LocatedProbe located = {{std::move(name), body, NearestNode(X, point), std::nullopt}};
+        located.outside = (X[static_cast<std::size_t>(located.probe.node)] - point).norm();
+        if (located.outside <= kClose * Diagonal(X)) return located;
+        located.probe.inside = ElementAt(s, point);
+        if (!located.probe.inside) return located;
+        Vec3 at = Vec3::Zero();
+        for (const auto& [node, weight] : WeightsAt(*located.probe.inside, shape)) at += weight * X[node];
+        located.outside = (at - point).norm();
+        return located;
+      },
+      shape);
+}
+
+ProbePlace PlaceOf(const Probe& probe, const Shape& shape) {
+  if (probe.inside) return *probe.inside;
+  return std::visit(
+      [&](const auto& s) {
+        const auto& elements = ElementsOf(s);
+        for (std::size_t e = 0; e < elements.size(); ++e) {
+          const auto corner = std::find(elements[e].begin(), elements[e].end(), probe.node) - elements[e].begin();
+          const auto c = static_cast<std::size_t>(corner);
+          if (c < elements[e].size()) return ProbePlace{static_cast<std::int32_t>(e), CornerOf(elements[e], c)};
+        }
+        return ProbePlace{};
+      },
+      shape);
+}
+
+std::vector<std::pair<std::int32_t, double>> WeightsAt(const ProbePlace& place, const Shape& shape) {
+  return std::visit(
+      [&](const auto& s) {
+        return WeightsIn(ElementsOf(s)[static_cast<std::size_t>(place.element)], place.coordinates);
+      },
+      shape);
+}
+
+}  // namespace fascicle

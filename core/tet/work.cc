@@ -1,0 +1,149 @@
+// Work during a step: of loads and gravity, of supports, and of activation.
+#include <algorithm>
+#include <cmath>
+
+#include "core/tet/floor_contact.h"
+#include "core/tet/solver.h"
+
+namespace fascicle {
+namespace {
+
+// A state is out of balance if its largest free force exceeds this part of the largest force.
+constexpr double kOutOfBalance = 1e-4;
+
+// Calls call(node, component) for every prescribed component.
+template <class Call>
+void ForPrescribed(const TetModel& model, const Call& call) {
+  for (const Support& support : model.supports()) {
+    for (std::size_t i = 0; i < support.nodes.size(); ++i) {
+      for (int c = 0; c < 3; ++c) {
+        if (support.owned[i][c]) call(static_cast<std::size_t>(support.nodes[i]), c);
+      }
+    }
+  }
+}
+
+bool SupportsMove(const TetModel& model, const NodalVector& from, const NodalVector& to) {
+  bool move = false;
+  ForPrescribed(model, [&](std::size_t n, int c) { move |= from[n][c] != to[n][c]; });
+  return move;
+}
+
+double Product(ThreadTeam& team, const NodalVector& a, const NodalVector& b) {
+  return SumOverNodes(team, a.size(), [&](std::size_t n) { return a[n].dot(b[n]); });
+}
+
+bool IsBalanced(const TetModel& model, const NodalVector& internal, const NodalVector& external) {
+  double residual = 0, largest = 0;
+  for (std::size_t n = 0; n < model.nodes(); ++n) {
+    const Vec3 free = model.mass()[n] * model.inverse_mass()[n];
+    residual = std::max(residual, free.cwiseProduct(internal[n] + external[n]).norm());
+    largest = std::max({largest, internal[n].norm(), external[n].norm()});
+  }
+  return residual <= kOutOfBalance * largest;
+}
+
+}  // namespace
+
+void TetSolver::AddWork(const TetState& now, const StepControls& step, TetState& next) {
+  const StageTimer timer(profile_, "external work");
+  next.load_work = now.load_work;
+  next.external_work = now.external_work;
+  next.activation_work = now.activation_work;
+  double of_loads = 0;
+  if (model_.has_gravity() || !model_.loads().empty()) {
+    of_loads = 0.5 * SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
+                 return (external_now_[n] + external_next_[n]).dot(next.positions[n] - now.positions[n]);
+               });
+    next.load_work += of_loads;
+  }
+  if (method_.stepping == Stepping::kQuasiStatic) {
+    AddStaticWork(now, step, of_loads, next);
+    return;
+  }
+  next.external_work += of_loads;
+  if (SupportsMove(model_, now.positions, next.positions)) next.external_work += DynamicWorkOfSupports(now, step, next);
+}
+
+// The force of supports is m a less all other forces: the change of kinetic energy of prescribed components, less the
+// work of the other forces on them by the trapezoidal rule.
+double TetSolver::DynamicWorkOfSupports(const TetState& now, const StepControls& step, const TetState& next) {
+  const NodalVector *from = &now.force, *to = &next.force;
+  if (IsImplicit()) {
+    force_before_ = ElasticAndFloorForce(FibreDrive{step.now.activations}, now.positions);
+    force_after_ = ElasticAndFloorForce(DriveOf(now, step), next.positions);
+    from = &force_before_;
+    to = &force_after_;
+  }
+  const bool add_viscous = method_.stepping != Stepping::kExplicit && model_.has_strain_damping();
+  if (add_viscous) {
+    mean_rate_.resize(model_.nodes());
+    for (std::size_t n = 0; n < mean_rate_.size(); ++n) {
+      mean_rate_[n] = (next.positions[n] - now.positions[n]) / step.dt;
+    }
+    ViscousForce(model_, next.positions, mean_rate_, team_, forces_, viscous_);
+  }
+  double work = 0;
+  ForPrescribed(model_, [&](std::size_t n, int c) {
+    const double moved = next.positions[n][c] - now.positions[n][c];
+    const double before = now.velocities[n][c], after = next.velocities[n][c];
+    double force = 0.5 * ((*from)[n][c] + external_now_[n][c] + (*to)[n][c] + external_next_[n][c]);
+    if (add_viscous) force += viscous_[n][c];
+    const double damping = model_.mass_damping()[n] * model_.mass()[n] * moved / step.dt;
+    work += 0.5 * model_.mass()[n] * (after * after - before * before) + (damping - force) * moved;
+  });
+  return work;
+}
+
+NodalVector TetSolver::ElasticAndFloorForce(const FibreDrive& drive, const NodalVector& x) {
+  NodalVector force;
+  ElasticForce(model_, drive, x, team_, forces_, force);
+  AddFloorForce(model_, x, force);
+  return force;
+}
+
+// Energy is a function of positions and activations, so the work along any path between two equilibria is its change.
+// Along the straight path, which Simpson's rule integrates to fourth order in the step, external forces and activation
+// together do that work. Their own parts by the trapezoidal rule differ from it in the third order, because states on
+// the path are not in equilibrium; this difference belongs to what drives the step.
+void TetSolver::AddStaticWork(const TetState& now, const StepControls& step, double of_loads, TetState& next) {
+  const NodalVector &x0 = now.positions, &x1 = next.positions;
+  NodalVector moved(model_.nodes()), middle(model_.nodes());
+  for (std::size_t n = 0; n < moved.size(); ++n) {
+    moved[n] = x1[n] - x0[n];
+    middle[n] = 0.5 * (x0[n] + x1[n]);
+  }
+  const std::vector<double>&a0 = step.now.activations, &a1 = step.next.activations;
+  std::vector<double> half(a0.size());
+  for (std::size_t k = 0; k < half.size(); ++k) half[k] = 0.5 * (a0[k] + a1[k]);
+  const NodalVector f0 = ElasticAndFloorForce(FibreDrive{a0}, x0), f1 = ElasticAndFloorForce(FibreDrive{a1}, x1);
+  const NodalVector between = ElasticAndFloorForce(FibreDrive{half}, middle);
+
+  // What external forces do, by the trapezoidal rule.
+  double boundary = of_loads;
+  ForPrescribed(model_, [&](std::size_t n, int c) {
+    boundary -= 0.5 * (f0[n][c] + external_now_[n][c] + f1[n][c] + external_next_[n][c]) * moved[n][c];
+  });
+  double along_path = -(Product(team_, f0, moved) + 4 * Product(team_, between, moved) + Product(team_, f1, moved)) / 6;
+  double activation = 0;
+  if (a0 != a1) {
+    // Energy is linear in activation.
+    const auto gain = [&](const NodalVector& x) {
+      double sum = 0;
+      for (std::size_t b = 0; b < model_.bodies().size(); ++b) {
+        sum += ElasticEnergy(model_, b, FibreDrive{a1}, x, team_) - ElasticEnergy(model_, b, FibreDrive{a0}, x, team_);
+      }
+      return sum;
+    };
+    activation = (gain(x0) + 4 * gain(middle) + gain(x1)) / 6;
+  }
+  // Where an element is inverted half way, only the trapezoidal rule is left.
+  const bool defined = std::isfinite(along_path) && std::isfinite(activation);
+  if (!defined) along_path = boundary;
+  if (!defined) activation = 0;
+  const bool by_activation = boundary == 0 || (activation != 0 && IsBalanced(model_, f0, external_now_));
+  next.external_work += by_activation ? boundary : along_path;
+  next.activation_work += by_activation ? activation + along_path - boundary : activation;
+}
+
+}  // namespace fascicle

@@ -1,0 +1,72 @@
+#include "server/translate/unused_fields.h"
+
+#include <initializer_list>
+#include <string>
+
+#include <google/protobuf/descriptor.h>
+
+#include "core/base/problems.h"
+
+namespace fascicle::server {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+bool IsGivenAndNotZero(const Message& message, const FieldDescriptor& field) {
+  const auto& reflection = *message.GetReflection();
+  if (!reflection.HasField(message, &field)) return false;
+  return field.cpp_type() != FieldDescriptor::CPPTYPE_DOUBLE || reflection.GetDouble(message, &field) != 0;
+}
+
+void AddNotes(const Message& message, const std::string& path, std::initializer_list<const char*> fields,
+              const std::string& why, std::vector<std::string>& notes) {
+  for (const char* name : fields) {
+    const FieldDescriptor* field = message.GetDescriptor()->FindFieldByName(name);
+    if (IsGivenAndNotZero(message, *field)) notes.push_back(JoinPath(path, name) + ": has no effect " + why);
+  }
+}
+
+void AddNotesOnMotion(const v1::Body& body, const std::string& path, const std::string& why,
+                      std::vector<std::string>& notes) {
+  AddNotes(body.damping(), JoinPath(path, "damping"), {"mass_proportional", "stiffness_proportional", "viscosity"}, why,
+           notes);
+  AddNotes(body.material().muscle(), JoinPath(path, "material.muscle"), {"max_velocity"}, why, notes);
+  for (int i = 0; i < body.region_materials_size(); ++i) {
+    const std::string part = JoinPath(path, IndexPath("region_materials", static_cast<std::size_t>(i)));
+    AddNotes(body.region_materials(i).material().muscle(), JoinPath(part, "material.muscle"), {"max_velocity"}, why,
+             notes);
+  }
+}
+
+void AddNotesOnMethod(const v1::Scene& scene, std::vector<std::string>& notes) {
+  const v1::Stepping stepping = scene.tet().stepping();
+  const bool is_explicit = stepping == v1::STEPPING_UNSPECIFIED || stepping == v1::STEPPING_EXPLICIT;
+  const bool is_mixed = stepping == v1::STEPPING_MIXED;
+  if (is_explicit || is_mixed) {
+    AddNotes(scene.tet(), "tet", {"newton_tolerance", "linear_solver"}, "without implicit or quasi-static stepping",
+             notes);
+  } else {
+    AddNotes(scene.tet(), "tet", {"safety"}, "in implicit and quasi-static stepping", notes);
+  }
+  if (!is_mixed) AddNotes(scene.tet(), "tet", {"solver_tolerance"}, "without mixed stepping", notes);
+  if (scene.voxel().stepping() != v1::VOXEL_STEPPING_DYNAMIC) {
+    AddNotes(scene.voxel(), "voxel", {"time_step", "start_loaded"}, "in static stepping", notes);
+  }
+}
+
+}  // namespace
+
+void AddUnusedFieldNotes(const v1::Scene& scene, std::vector<Body>& bodies) {
+  if (bodies.empty()) return;
+  AddNotesOnMethod(scene, bodies.front().notes);
+  const bool quasi_static = scene.tet().stepping() == v1::STEPPING_QUASI_STATIC;
+  const bool is_static = scene.has_voxel() && scene.voxel().stepping() != v1::VOXEL_STEPPING_DYNAMIC;
+  if (!quasi_static && !is_static) return;
+  const std::string why = quasi_static ? "in quasi-static stepping, which finds equilibria" : "in static stepping";
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    AddNotesOnMotion(scene.bodies(static_cast<int>(i)), IndexPath("bodies", i), why, bodies[i].notes);
+  }
+}
+
+}  // namespace fascicle::server
