@@ -1,5 +1,4 @@
 #include "client/export/read_series.h"
-#include "client/vtk/body_grid.h"
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -17,6 +16,7 @@
 #include <pugixml.hpp>
 #include <stdexcept>
 
+#include "client/vtk/body_grid.h"
 #include "core/base/component_names.h"
 
 namespace fascicle::client {

@@ -190,7 +190,7 @@ void OrientSolids(const std::vector<std::size_t>& first, TetMesh& mesh) {
 
 // Leaves out nodes without a tetrahedron, and triangles and single nodes on them.
 void DropUnused(RawMesh& raw, std::vector<std::array<std::int32_t, 6>>& middles, TetMesh& mesh) {
-  constexpr std::size_t kExamples = 5;
+  constexpr std::size_t kMostNamed = 5;
   std::vector<std::int32_t> number(mesh.nodes.size(), -1);
   const auto use = [&](const auto& cells) {
     for (const auto& cell : cells) {
@@ -208,7 +208,7 @@ void DropUnused(RawMesh& raw, std::vector<std::array<std::int32_t, 6>>& middles,
     if (number[n] == 0) {
       mesh.nodes[count] = mesh.nodes[n];
       number[n] = count++;
-    } else if (told++ < kExamples) {
+    } else if (told++ < kMostNamed) {
       const std::int64_t name =
           raw.node_numbers.empty() ? raw.first_node + static_cast<std::int64_t>(n) : raw.node_numbers[n];
       examples += (told > 1 ? ", " : "") + std::to_string(name);
@@ -243,7 +243,7 @@ void DropUnused(RawMesh& raw, std::vector<std::array<std::int32_t, 6>>& middles,
   mesh.node_tags.resize(kept);
   raw.notes.push_back((unused == 1 ? "1 node belongs to no tetrahedron and is left out: "
                                    : std::to_string(unused) + " nodes belong to no tetrahedron and are left out: ") +
-                      examples + (unused > kExamples ? ", ..." : "") +
+                      examples + (unused > kMostNamed ? ", ..." : "") +
                       (triangles > 0 ? "; so are " + std::to_string(triangles) + " triangles on them" : ""));
 }
 

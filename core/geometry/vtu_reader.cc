@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::int64_t kMaxCount = std::int64_t{1} << 40;
 
-std::optional<NumberType> TypeNamed(std::string_view name) {
+std::optional<NumberType> VtuTypeNamed(std::string_view name) {
   if (name == "Int8") return NumberType::kInt8;
   if (name == "UInt8") return NumberType::kUInt8;
   if (name == "Int16") return NumberType::kInt16;
@@ -218,7 +218,7 @@ class VtuReader {
     if (!array) return Fail("the array " + Quoted(name) + " is missing", "is the file complete?");
     const std::string_view type_name = array.attribute("type").value();
     const std::string_view format = array.attribute("format").as_string("ascii");
-    const std::optional<NumberType> named = TypeNamed(type_name);
+    const std::optional<NumberType> named = VtuTypeNamed(type_name);
     if (!named) return Fail("the array " + Quoted(name) + " has the type " + Quoted(type_name));
     type = *named;
     ascii = format == "ascii";

@@ -13,7 +13,7 @@ constexpr int kMaxIterations = 100;
 // Where inertia keeps the eigenvalues above this fraction of the largest (about 3), coarse levels cost more than they
 // save.
 constexpr double kLeastForCg = 1e-3;
-constexpr int kMaxCgIterations = 1000;
+constexpr int kMaxSaddleIterations = 1000;
 
 // Interpolation from the corners of quadratic elements to all of their nodes, along straight edges; nothing for linear
 // elements.
@@ -166,7 +166,7 @@ IterativeSaddleSolver::Result IterativeSaddleSolver::Solve(const SaddleMatrix& m
 IterativeSaddleSolver::Result IterativeSaddleSolver::SolveByCg(const SaddleMatrix& matrix, const NodalVector& force,
                                                                double tolerance, ThreadTeam& team, NodalVector& dx) {
   const MixedPrecisionCg::Result result =
-      cg_.Solve(matrix.pattern, matrix.A, force, tolerance, kMaxCgIterations, team, dx);
+      cg_.Solve(matrix.pattern, matrix.A, force, tolerance, kMaxSaddleIterations, team, dx);
   return {result.converged, result.is_positive, result.iterations};
 }
 

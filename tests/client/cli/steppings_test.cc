@@ -10,7 +10,7 @@ namespace fascicle::testing {
 namespace {
 
 // A spindle that contracts and vibrates, with damping: `frames` frames of 2 ms.
-std::string SceneText(const std::string& stepping, const std::string& element, int frames) {
+std::string SteppingSceneText(const std::string& stepping, const std::string& element, int frames) {
   return R"({"bodies": [{"name": "muscle", "unit": "cm",
     "mesh": {"fusiform": {"length": 6, "belly_radius": 1, "end_radius": 0.6, "divisions_across": 2, "divisions_along": 6}},
     "material": {"muscle": {"bulk_modulus": 1e5}},
@@ -31,7 +31,7 @@ class SteppingsTest : public ::testing::TestWithParam<std::tuple<std::string, st
  protected:
   static std::string Scene(int frames) {
     const auto& [stepping, element] = GetParam();
-    return SceneText(stepping, element, frames);
+    return SteppingSceneText(stepping, element, frames);
   }
 
   DigestJob job_;

@@ -11,8 +11,7 @@
 namespace fascicle {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
+constexpr double kDegreeOfShapes = std::numbers::pi / 180;
 
 MeshReport ExpectGood(const TetMesh& mesh) {
   Problems problems;
@@ -71,7 +70,7 @@ TEST(BoxTest, FillsItsBounds) {
 }
 
 // The angles of round shapes do not get worse with refinement.
-constexpr double kSmallestAngle = 16 * kDegree;
+constexpr double kSmallestAngle = 16 * kDegreeOfShapes;
 
 class RoundShapes : public ::testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Divisions, RoundShapes, ::testing::Values(2, 4, 6, 12));
@@ -82,7 +81,7 @@ TEST_P(RoundShapes, Cylinder) {
   const int n = GetParam();
   const TetMesh mesh = MakeFusiform({0.2, 0.01, 0.01, n, 10});
   const MeshReport report = ExpectGood(mesh);
-  EXPECT_NEAR(report.volume, 2 * n * std::sin(kPi / (2 * n)) * 1e-4 * 0.2, 1e-18);
+  EXPECT_NEAR(report.volume, 2 * n * std::sin(std::numbers::pi / (2 * n)) * 1e-4 * 0.2, 1e-18);
   EXPECT_EQ(EulerCharacteristic(mesh), 2);
 }
 
@@ -93,7 +92,7 @@ TEST_P(RoundShapes, Fusiform) {
   const TetMesh mesh = MakeFusiform({0.1, 0.014, 0.006, n, 4 * n});
   const MeshReport report = ExpectGood(mesh);
   const double end = 0.006, more = 0.008;
-  const double volume = kPi * 0.1 * (end * end + end * more + 0.375 * more * more);
+  const double volume = std::numbers::pi * 0.1 * (end * end + end * more + 0.375 * more * more);
   EXPECT_LT(report.volume, volume);
   EXPECT_NEAR(report.volume / volume, 1, 0.45 / (n * n));
   EXPECT_GT(report.smallest_dihedral_angle, kSmallestAngle);
@@ -108,7 +107,7 @@ TEST_P(RoundShapes, Torus) {
   const int n = GetParam();
   const TetMesh mesh = MakeTorus({1, 0.3, 6 * n, n});
   const MeshReport report = ExpectGood(mesh);
-  EXPECT_NEAR(report.volume / (2 * kPi * kPi * 0.09), 1, 0.6 / (n * n));
+  EXPECT_NEAR(report.volume / (2 * std::numbers::pi * std::numbers::pi * 0.09), 1, 0.6 / (n * n));
   EXPECT_GT(report.smallest_dihedral_angle, kSmallestAngle);
   EXPECT_NEAR(report.highest.z(), 0.3, 1e-15);
   EXPECT_NEAR(report.highest.x(), 1.3, 1e-15);
@@ -119,8 +118,8 @@ TEST_P(RoundShapes, Sphere) {
   const int n = GetParam();
   const TetMesh mesh = MakeSphere(2, n);
   const MeshReport report = ExpectGood(mesh);
-  EXPECT_NEAR(report.volume / (4 * kPi / 3 * 8), 1, 1.1 / (n * n));
-  EXPECT_GT(report.smallest_dihedral_angle, 29 * kDegree);
+  EXPECT_NEAR(report.volume / (4 * std::numbers::pi / 3 * 8), 1, 1.1 / (n * n));
+  EXPECT_GT(report.smallest_dihedral_angle, 29 * kDegreeOfShapes);
   for (const Triangle& triangle : BoundaryTriangles(mesh)) {
     for (const std::int32_t node : triangle) EXPECT_NEAR(mesh.nodes[node].norm(), 2, 1e-15);
   }

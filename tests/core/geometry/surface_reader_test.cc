@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::optional<TriangleMesh> Read(const std::string& name, const std::string& bytes) {
+std::optional<TriangleMesh> ReadText(const std::string& name, const std::string& bytes) {
   Problems problems;
   std::optional<TriangleMesh> surface = ReadSurface(name, bytes, problems);
   EXPECT_TRUE(problems.empty()) << name << ": " << problems.ToString();
@@ -46,7 +46,7 @@ void ExpectSound(const std::string& name, const std::string& bytes) {
 class EverySurface : public ::testing::TestWithParam<SurfaceSample> {};
 
 TEST_P(EverySurface, IsRead) {
-  const auto surface = Read(GetParam().name, GetParam().bytes);
+  const auto surface = ReadText(GetParam().name, GetParam().bytes);
   ASSERT_TRUE(surface);
   EXPECT_EQ(surface->nodes, CornerSurface().nodes);
   EXPECT_EQ(surface->triangles, CornerSurface().triangles);
@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, EverySurface, ::testing::ValuesIn(SurfaceSampl
 });
 
 TEST(SurfaceReaderTest, PolygonsBecomeTriangles) {
-  const auto surface = Read("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  const auto surface = ReadText("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
   ASSERT_TRUE(surface);
   EXPECT_EQ(surface->triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
 }
@@ -106,7 +106,7 @@ TEST(SurfaceReaderTest, PolygonsOfAnyShape) {
       sides += "f " + std::to_string(1 + at) + " " + std::to_string(1 + next) + " " + std::to_string(8 + next) + " " +
                std::to_string(8 + at) + "\n";
     }
-    const auto surface = Read("prism.obj", prism + lower + "\n" + upper + "\n" + sides);
+    const auto surface = ReadText("prism.obj", prism + lower + "\n" + upper + "\n" + sides);
     ASSERT_TRUE(surface);
     EXPECT_EQ(surface->triangles.size(), 2u * 5 + 7 * 2);
     EXPECT_DOUBLE_EQ(EnclosedVolume(*surface), 3);
@@ -197,7 +197,7 @@ TEST(SurfaceReaderTest, SaysWhatIsWrongAndWhere) {
 TEST(SurfaceReaderTest, RealVtp) {
   const auto path = testing::DataFolder() / "opensim_arm26/Geometry/arm_r_humerus.vtp";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there; set FASCICLE_DATA";
-  const auto surface = Read(path, testing::ReadFile(path));
+  const auto surface = ReadText(path, testing::ReadFile(path));
   ASSERT_TRUE(surface);
   EXPECT_NEAR(Diagonal(surface->nodes), 0.36, 0.04);  // an upper arm [m]
 }

@@ -39,8 +39,8 @@ VoxelField<double> Turned(const VoxelMesh& mesh, const Mat3& Q) {
 
 const Mat3 kQuarterAndMore = Eigen::AngleAxisd(2.3, Vec3(1, 2, -0.5).normalized()).toRotationMatrix();
 
-struct Sponge {
-  explicit Sponge(Dilatation dilatation, const GridIndex& size = {9, 6, 7})
+struct RotatedSponge {
+  explicit RotatedSponge(Dilatation dilatation, const GridIndex& size = {9, 6, 7})
       : grid(SpongeGrid(size, {0.9e-3, 1.1e-3, 1.6e-3})),
         model(grid, {kRotatedMuscle, {1e6, 0.3}}, dilatation, VoxelRotation::kLarge),
         bricks(model.K()),
@@ -64,7 +64,7 @@ struct Sponge {
 
 TEST(RotatedBricks, RigidMotionGivesNoForceAndNoStress) {
   for (const Dilatation dilatation : {Dilatation::kFull, Dilatation::kMean}) {
-    Sponge s(dilatation);
+    RotatedSponge s(dilatation);
     VoxelField<double> u = Turned(s.model.mesh(), kQuarterAndMore);
     for (std::int32_t n = 0; n < u.nodes(); ++n) u.Add(n, Vec3(1e-3, -2e-3, 3e-3));
     const double energy = s.Energy(u);
@@ -81,7 +81,7 @@ TEST(RotatedBricks, RigidMotionGivesNoForceAndNoStress) {
 }
 
 TEST(RotatedBricks, AreLinearBricksWhereNothingTurns) {
-  Sponge s(Dilatation::kFull);
+  RotatedSponge s(Dilatation::kFull);
   const VoxelField<double> u = Times(1e-9 * 1e-3, RandomField<double>(s.f.nodes()));
   s.Energy(u);
   VoxelField<double> linear(u.nodes());
@@ -92,7 +92,7 @@ TEST(RotatedBricks, AreLinearBricksWhereNothingTurns) {
 
 TEST(RotatedBricks, ForcesAreTheDerivativeOfTheEnergy) {
   for (const Dilatation dilatation : {Dilatation::kFull, Dilatation::kMean}) {
-    Sponge s(dilatation);
+    RotatedSponge s(dilatation);
     const VoxelField<double> u = s.Deformed(0.2), w = RandomField<double>(u.nodes());
     constexpr double kStep = 1e-8;
     VoxelField<double> beside(u.nodes());
@@ -109,7 +109,7 @@ TEST(RotatedBricks, ForcesAreTheDerivativeOfTheEnergy) {
 
 TEST(RotatedBricks, TangentIsTheDerivativeOfTheForces) {
   for (const Dilatation dilatation : {Dilatation::kFull, Dilatation::kMean}) {
-    Sponge s(dilatation);
+    RotatedSponge s(dilatation);
     const VoxelField<double> u = s.Deformed(0.2);
     VoxelField<double> w(u.nodes()), product(u.nodes()), other(u.nodes()), beside(u.nodes()), first(u.nodes());
     for (std::size_t k = 0; k < u.size(); ++k) w.data()[k] = HashedUnit(k + 77);
@@ -137,7 +137,7 @@ TEST(RotatedBricks, TangentIsTheDerivativeOfTheForces) {
 }
 
 TEST(RotatedBricks, ForcesHaveNeitherResultantNorTorque) {
-  Sponge s(Dilatation::kFull);
+  RotatedSponge s(Dilatation::kFull);
   const VoxelField<double> u = s.Deformed(0.3);
   s.Energy(u);
   Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
@@ -154,7 +154,7 @@ TEST(RotatedBricks, ForcesHaveNeitherResultantNorTorque) {
 }
 
 TEST(RotatedBricks, HaveTheSameBitsForAnyThreadsAndInstructionSet) {
-  const Sponge s(Dilatation::kFull, {45, 40, 50});
+  const RotatedSponge s(Dilatation::kFull, {45, 40, 50});
   const VoxelMesh& mesh = s.model.mesh();
   ASSERT_GT(mesh.slabs().size(), 2u);
   const VoxelField<double> u = s.Deformed(0.3), w = RandomField<double>(u.nodes());
