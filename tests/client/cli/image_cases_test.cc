@@ -56,13 +56,13 @@ TEST_F(ImageCasesTest, AreMeshedAtTheirPlaceAndSize) {
       const double volume = right["volume"];
       EXPECT_EQ(report["unit"], "mm") << name;
       EXPECT_NEAR(report["voxel_volume"].get<double>() / volume, 1, 1e-4) << name;
-      EXPECT_NEAR(report["volume"].get<double>() / volume, 1, 0.02) << name;
+      EXPECT_NEAR(report["volume"].get<double>() / volume, 1, 0.01) << name;
       double off = 0;
       if (right.contains("lps")) {
         const auto lps = right["lps"].get<std::vector<double>>();
         off = (Centre() - Vec3(lps[0], lps[1], lps[2])).norm();
         // The surface is smooth, and its tetrahedra are coarse.
-        EXPECT_LT(off, 0.15) << name;
+        EXPECT_LT(off, 0.05) << name;
       }
       std::printf("%-40s %8.3f mm^3 of %8.3f, centre off by %.3f mm\n", name.c_str(), report["volume"].get<double>(),
                   volume, off);
