@@ -95,6 +95,7 @@ class TetSolver {
   void AddStaticWork(const TetState& now, const StepControls& step, double of_loads, TetState& next);
   double DynamicWorkOfSupports(const TetState& now, const StepControls& step, const TetState& next);
   NodalVector ElasticAndFloorForce(const FibreDrive& drive, const NodalVector& x);
+  double ElasticEnergyAt(const FibreDrive& drive, const NodalVector& x);
 
   bool IsStableStepDue(const TetState& state, const Controls& now) const;
   void RefreshStableStep(TetState& state, const Controls& now);

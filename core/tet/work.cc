@@ -1,6 +1,7 @@
 // Work during a step: of loads and gravity, of supports, and of activation.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/tet/floor_contact.h"
 #include "core/tet/solver.h"
@@ -10,6 +11,14 @@ namespace {
 
 // A state is out of balance if its largest free force exceeds this part of the largest force.
 constexpr double kOutOfBalance = 1e-4;
+
+// Places from 0 to 1 and weights of the rule with five points, exact for polynomials of degree 7.
+struct QuadraturePoint {
+  double place, weight;
+};
+constexpr double kInner = 0.32732683535398857190;  // sqrt(3/7) / 2
+constexpr QuadraturePoint kLobatto[] = {
+    {0, 1. / 20}, {0.5 - kInner, 49. / 180}, {0.5, 16. / 45}, {0.5 + kInner, 49. / 180}, {1, 1. / 20}};
 
 // Calls call(node, component) for every prescribed component.
 template <class Call>
@@ -103,47 +112,44 @@ NodalVector TetSolver::ElasticAndFloorForce(const FibreDrive& drive, const Nodal
 }
 
 // Energy is a function of positions and activations, so the work along any path between two equilibria is its change.
-// Along the straight path, which Simpson's rule integrates to fourth order in the step, external forces and activation
-// together do that work. Their own parts by the trapezoidal rule differ from it in the third order, because states on
-// the path are not in equilibrium; this difference belongs to what drives the step.
+// Along the straight path, which Lobatto's rule integrates, external forces and activation together do that work. Their
+// own parts by the trapezoidal rule differ from it in the third order of the step, because states on the path are not
+// in equilibrium; this difference belongs to what drives the step.
 void TetSolver::AddStaticWork(const TetState& now, const StepControls& step, double of_loads, TetState& next) {
-  const NodalVector &x0 = now.positions, &x1 = next.positions;
-  NodalVector moved(model_.nodes()), middle(model_.nodes());
-  for (std::size_t n = 0; n < moved.size(); ++n) {
-    moved[n] = x1[n] - x0[n];
-    middle[n] = 0.5 * (x0[n] + x1[n]);
-  }
   const std::vector<double>&a0 = step.now.activations, &a1 = step.next.activations;
-  std::vector<double> half(a0.size());
-  for (std::size_t k = 0; k < half.size(); ++k) half[k] = 0.5 * (a0[k] + a1[k]);
-  const NodalVector f0 = ElasticAndFloorForce(FibreDrive{a0}, x0), f1 = ElasticAndFloorForce(FibreDrive{a1}, x1);
-  const NodalVector between = ElasticAndFloorForce(FibreDrive{half}, middle);
-
+  NodalVector moved(model_.nodes()), x(model_.nodes()), at_start, at_end;
+  for (std::size_t n = 0; n < moved.size(); ++n) moved[n] = next.positions[n] - now.positions[n];
+  std::vector<double> a(a0.size());
+  double along_path = 0, activation = 0;
+  for (const auto& [place, weight] : kLobatto) {
+    for (std::size_t n = 0; n < x.size(); ++n) x[n] = now.positions[n] + place * moved[n];
+    for (std::size_t k = 0; k < a.size(); ++k) a[k] = a0[k] + place * (a1[k] - a0[k]);
+    NodalVector force = ElasticAndFloorForce(FibreDrive{a}, x);
+    along_path -= weight * Product(team_, force, moved);
+    // Energy is linear in activation.
+    if (a0 != a1) activation += weight * (ElasticEnergyAt(FibreDrive{a1}, x) - ElasticEnergyAt(FibreDrive{a0}, x));
+    if (place == 0) at_start = force;
+    if (place == 1) at_end = std::move(force);
+  }
   // What external forces do, by the trapezoidal rule.
   double boundary = of_loads;
   ForPrescribed(model_, [&](std::size_t n, int c) {
-    boundary -= 0.5 * (f0[n][c] + external_now_[n][c] + f1[n][c] + external_next_[n][c]) * moved[n][c];
+    const double sum = at_start[n][c] + external_now_[n][c] + at_end[n][c] + external_next_[n][c];
+    boundary -= 0.5 * sum * moved[n][c];
   });
-  double along_path = -(Product(team_, f0, moved) + 4 * Product(team_, between, moved) + Product(team_, f1, moved)) / 6;
-  double activation = 0;
-  if (a0 != a1) {
-    // Energy is linear in activation.
-    const auto gain = [&](const NodalVector& x) {
-      double sum = 0;
-      for (std::size_t b = 0; b < model_.bodies().size(); ++b) {
-        sum += ElasticEnergy(model_, b, FibreDrive{a1}, x, team_) - ElasticEnergy(model_, b, FibreDrive{a0}, x, team_);
-      }
-      return sum;
-    };
-    activation = (gain(x0) + 4 * gain(middle) + gain(x1)) / 6;
-  }
-  // Where an element is inverted half way, only the trapezoidal rule is left.
+  // Where an element is inverted on the way, only the trapezoidal rule is left.
   const bool defined = std::isfinite(along_path) && std::isfinite(activation);
   if (!defined) along_path = boundary;
   if (!defined) activation = 0;
-  const bool by_activation = boundary == 0 || (activation != 0 && IsBalanced(model_, f0, external_now_));
+  const bool by_activation = boundary == 0 || (activation != 0 && IsBalanced(model_, at_start, external_now_));
   next.external_work += by_activation ? boundary : along_path;
   next.activation_work += by_activation ? activation + along_path - boundary : activation;
+}
+
+double TetSolver::ElasticEnergyAt(const FibreDrive& drive, const NodalVector& x) {
+  double sum = 0;
+  for (std::size_t b = 0; b < model_.bodies().size(); ++b) sum += ElasticEnergy(model_, b, drive, x, team_);
+  return sum;
 }
 
 }  // namespace fascicle

@@ -147,7 +147,7 @@ TEST(IncludeDirection, LibrariesStayInTheirRooms) {
        std::regex("^(proto/rules|server/translate|server/rpc|server|client/.*)$")},
       {"SQLite", std::regex("^sqlite3\\.h$"), std::regex("^server/store$")},
       {"ITK", std::regex("^(itk[A-Z]|vnl/)"), std::regex("^core/imaging$")},
-      {"VTK", std::regex("^vtk[A-Z]"), std::regex("^client/(exodus|export|image|render)$")},
+      {"VTK", std::regex("^vtk[A-Z]"), std::regex("^client/(exodus|export|image|render|vtk)$")},
       {"CLI11", std::regex("^CLI/"), std::regex("^(client/cli|server)$")},
       {"JSON", std::regex("^nlohmann/"), std::regex("^client/(lib|cli|export)$")},
   };
