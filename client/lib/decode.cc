@@ -191,12 +191,7 @@ void CheckDigest(const v1::Frame& frame) {
       of_body.fields.push_back({field.name(), BytesOf(field.values())});
     }
   }
-  const std::size_t series = frame.has_digest_series() ? static_cast<std::size_t>(frame.digest_series())
-                                                       : static_cast<std::size_t>(frame.series_size());
-  if (series > static_cast<std::size_t>(frame.series_size())) {
-    throw std::runtime_error("the server sent a frame whose digest covers more series than there are");
-  }
-  bytes.series = BytesOf(frame.series()).first(series * sizeof(double));
+  bytes.series = BytesOf(frame.series());
   bytes.poses = BytesOf(frame.poses());
   for (const v1::LineFrame& line : frame.lines())
     bytes.lines.push_back({BytesOf(line.points()), BytesOf(line.values())});

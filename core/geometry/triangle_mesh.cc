@@ -119,9 +119,10 @@ std::optional<TriangleMesh> ReadSurface(std::string_view name, std::string_view 
   } else if (extension == ".vtp") {
     raw = ReadVtp(WithoutByteOrderMark(bytes), stop, problems);
   } else {
-    problems.Add("", "the file extension " + Quoted(extension) + " is not that of a surface that can be read",
-                 IsVolumeMesh(extension) ? "`fascicle mesh FILE --convert --out FILE.msh` converts volume meshes"
-                                         : "known are " + KnownSurfaceExtensions());
+    problems.Add(
+        "", "the file extension " + Quoted(extension) + " is not that of a surface that can be read",
+        "known are " + KnownSurfaceExtensions() +
+            (IsVolumeMesh(extension) ? "; `fascicle mesh FILE --convert --out FILE.msh` converts volume meshes" : ""));
   }
   if (problems.count() > before) return std::nullopt;
   if (notes != nullptr) notes->insert(notes->end(), raw.notes.begin(), raw.notes.end());

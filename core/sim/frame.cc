@@ -32,7 +32,7 @@ Digest DigestOf(const Frame& frame) {
     of_body.positions = BytesOf(body.positions);
     for (const FieldValues& field : body.fields) of_body.fields.push_back({field.name, BytesOf(field.values)});
   }
-  bytes.series = std::as_bytes(std::span(frame.series).first(frame.digest_series.value_or(frame.series.size())));
+  bytes.series = BytesOf(frame.series);
   bytes.poses = BytesOf(frame.poses);
   for (const LineFrame& line : frame.lines) bytes.lines.push_back({BytesOf(line.points), BytesOf(line.values)});
   return DigestOf(bytes);

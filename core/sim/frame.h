@@ -2,7 +2,6 @@
 #define FASCICLE_CORE_SIM_FRAME_H_
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,8 +43,6 @@ struct Frame {
   std::vector<Pose> poses;       // of the rigid bodies that move
   std::vector<LineFrame> lines;  // one for each of FrameLayout::lines
   std::vector<double> series;    // one value for each of FrameLayout::series
-  // Number of leading series that the digest covers; absent: all.
-  std::optional<std::size_t> digest_series = std::nullopt;
   Digest digest = {};
 };
 
@@ -77,7 +74,6 @@ struct FrameLayout {
   std::vector<RigidBodyInfo> rigid_bodies;
   std::vector<LineInfo> lines;
   std::vector<SeriesInfo> series;
-  std::size_t digest_series = 0;  // see Frame
 };
 
 // See core/base/frame_digest.h.

@@ -38,8 +38,8 @@ class MethodRun {
  public:
   virtual ~MethodRun() = default;
 
-  // The series that the frame's digest covers, and those that follow them. A new series belongs to the latter, so that
-  // it changes no digest.
+  // The series of a frame: states, reactions and energies; then what is derived from them (moments, work, probes inside
+  // of elements).
   virtual std::vector<SeriesInfo> Series() const = 0;
   virtual std::vector<SeriesInfo> LaterSeries() const = 0;
 

@@ -9,8 +9,7 @@
 #include "core/scene/support_moment.h"
 #include "core/sim/frame.h"
 
-// Series common to all methods: those of supports, loads and probes. A frame's digest covers the series of the first
-// part; those of the second part, which came later, follow it.
+// Series common to all methods: those of supports, loads and probes, in two parts.
 namespace fascicle {
 
 // First part. For a body: the reaction at each region, x, y and z, then the force of each muscle (SternPull).

@@ -72,7 +72,6 @@ struct Simulation::Impl {
         source(*scene),
         method(MakeMethodRun(*scene, team, p)),
         layout{FloorBodies(*scene), {}, method->Series()} {
-    layout.digest_series = layout.series.size();
     const std::vector<SeriesInfo> later = method->LaterSeries();
     layout.series.insert(layout.series.end(), later.begin(), later.end());
     const double intervals = scene->duration / scene->output.frame_interval;
@@ -123,7 +122,6 @@ struct Simulation::Impl {
       const StageTimer series_timer(profile, "series");
       const std::vector<Reaction> reactions = method->Reactions(now, next);
       frame.series = method->MeasureSeries(now, reactions, iterations_at_frame);
-      frame.digest_series = layout.digest_series;
       const std::vector<double> later = method->MeasureLaterSeries(now, reactions);
       frame.series.insert(frame.series.end(), later.begin(), later.end());
     }

@@ -122,7 +122,6 @@ v1::Frame EncodeFrame(const Frame& frame) {
     }
   }
   encoded.mutable_series()->Assign(frame.series.begin(), frame.series.end());
-  if (frame.digest_series) encoded.set_digest_series(static_cast<std::int32_t>(*frame.digest_series));
   encoded.set_poses(Bytes(frame.poses));
   for (const LineFrame& line : frame.lines) {
     v1::LineFrame& target = *encoded.add_lines();

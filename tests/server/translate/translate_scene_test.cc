@@ -53,7 +53,7 @@ TEST(TranslateScene, PlacesProbesAndMoments) {
     probes { name: "inside" body: "box" point: [1.1, 1.2, 1.3] }
     probes { name: "outside" body: "box" point: [1.1, 1.2, -0.5] }
     moments { body: "box" region: "bottom" point: [1, 2, 3] axis: [0, 0, 2] }
-    line_of_action: [0, 3, 0])",
+    line_of_action: [0, 3, 0] frame_interval: 0.1)",
                                                 wire.mutable_output());
   wire.mutable_output()->mutable_moments(0)->set_region(wire.bodies(0).constraints(0).region());
   const auto scene = Translate(wire);
@@ -107,6 +107,7 @@ TEST(TranslateScene, KnowsAllOutputFields) {
     ASSERT_TRUE(google::protobuf::TextFormat::MergeFromString("fibres { constant { direction: [1, 0, 0] } }",
                                                               wire.mutable_bodies(0)));
     wire.mutable_output()->add_fields(static_cast<v1::Field>(fields.value(i)->number()));
+    for (const double component : {0, 0, 1}) wire.mutable_output()->add_line_of_action(component);
     const auto scene = Translate(wire);
     ASSERT_NE(scene, nullptr) << fields.value(i)->name();
     EXPECT_EQ(InfoOf(scene->output.fields[0]).name, NameOf(*fields.value(i)));
