@@ -49,7 +49,7 @@ TEST(MomentsTest, OfACantileverBalancesItsLoad) {
     const Vec3 p(0.01, -0.02, 0.03), axis = Vec3(1, 2, 2) / 3;
     scene.output.moments = {{0, kX0, p, axis}};
     const RunResult about = RunScene(scene);
-    EXPECT_EQ(about.frames.back().digest, plain.frames.back().digest);
+    EXPECT_EQ(about.frames.back().bodies[0].positions, plain.frames.back().bodies[0].positions);
     const std::vector<Vec3>& X = scene.bodies[0].nodes();
     const auto tip = static_cast<std::size_t>(scene.bodies[0].regions.back().nodes.at(0));
     ASSERT_EQ(X[tip], Vec3(0.04, 0.01, 0.01));
