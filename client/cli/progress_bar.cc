@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/base/letters.h"
+
 namespace fascicle::client {
 namespace {
 
@@ -29,9 +31,7 @@ std::string Format(const char* format, double value) {
 std::string StateName(v1::Job::State state) {
   std::string name = v1::Job::State_Name(state);
   if (name.starts_with("STATE_")) name.erase(0, 6);
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return name;
+  return Lower(name);
 }
 
 std::string DurationText(double seconds) {

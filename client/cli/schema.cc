@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <iostream>
 #include <memory>
 #include <set>
@@ -12,6 +11,7 @@
 #include <google/protobuf/descriptor.h>
 
 #include "client/cli/command.h"
+#include "core/base/letters.h"
 #include "fascicle/v1/scene.pb.h"
 #include "proto/rules/enum_names.h"
 #include "proto/rules/field_rules.h"
@@ -51,11 +51,6 @@ void Collect(const Descriptor& message, Types& types) {
   for (int i = 0; i < message.field_count(); ++i) {
     if (const Descriptor* type = message.field(i)->message_type()) Collect(*type, types);
   }
-}
-
-std::string Lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
 }
 
 std::string Names(const EnumDescriptor& type) {

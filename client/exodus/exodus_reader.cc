@@ -16,13 +16,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
 #include <map>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "core/base/letters.h"
 #include "core/base/stop.h"
 #include "core/geometry/mesh_readers.h"
 #include "core/geometry/text_scanner.h"
@@ -162,9 +162,7 @@ void ReadGroup(const Group& group, vtkExodusIIReader& reader, Collector& collect
 }  // namespace
 
 bool IsExodusName(const std::string& name) {
-  std::string extension = std::filesystem::path(name).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = LowerExtension(name);
   constexpr std::array<std::string_view, 6> kExtensions = {".e", ".exo", ".ex2", ".exii", ".g", ".gen"};
   return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }

@@ -1,10 +1,10 @@
 // <Module> and <Control> [FEBio User Manual, 3.2 and 3.3].
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <string_view>
 
 #include "client/import/sections.h"
+#include "core/base/letters.h"
 #include "core/geometry/text_scanner.h"
 
 namespace fascicle::client {
@@ -34,7 +34,7 @@ void ReadControl(pugi::xml_node section, XmlSource& source, Model& model) {
     // Version 3 may have the type as an attribute.
     std::string text = source.Text(analysis);
     if (text.empty()) text = analysis.attribute("type").value();
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    text = Lower(text);
     control.dynamic = text == "dynamic" || text == "1";
     if (!control.dynamic && text != "static" && text != "0") {
       source.Fail(analysis, "the analysis " + Quoted(text) + " is not supported", "static and dynamic are supported");

@@ -1,24 +1,25 @@
 // <LoadData>: load curves [FEBio Feature Manual, loadcurve].
 #include <algorithm>
-#include <cctype>
 #include <string_view>
 
 #include "client/import/sections.h"
+#include "core/base/letters.h"
 #include "core/geometry/text_scanner.h"
 
 namespace fascicle::client {
 namespace {
 
-std::string Lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
+// A word of any case, with spaces for underscores.
+std::string Plain(std::string_view word) {
+  std::string plain = Lower(word);
+  std::replace(plain.begin(), plain.end(), '_', ' ');
+  return plain;
 }
 
 // An option that is an element or, in some files, an attribute.
 std::string Option(pugi::xml_node node, const char* name, XmlSource& source) {
-  if (const pugi::xml_node child = node.child(name)) return Lower(source.Text(child));
-  return Lower(node.attribute(name).value());
+  if (const pugi::xml_node child = node.child(name)) return Plain(source.Text(child));
+  return Plain(node.attribute(name).value());
 }
 
 void ReadInterpolation(pugi::xml_node node, XmlSource& source, LoadCurve& curve) {

@@ -1,7 +1,6 @@
 #include "client/lib/scene_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -14,6 +13,7 @@
 #include "client/lib/scene_json.h"
 #include "client/lib/scene_settings.h"
 #include "core/base/digest.h"
+#include "core/base/letters.h"
 #include "proto/rules/field_rules.h"
 #include "proto/rules/find_messages.h"
 
@@ -74,19 +74,12 @@ std::optional<std::string> ReadFile(const fs::path& path) {
   return bytes;
 }
 
-bool HasExtension(const std::string& path, std::string_view extension) {
-  std::string own = fs::path(path).extension().string();
-  std::transform(own.begin(), own.end(), own.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return own == extension;
-}
-
 // A TetGen mesh has two files; the second is found beside the first.
 void NameElementFiles(v1::Scene& scene) {
   for (v1::Body& body : *scene.mutable_bodies()) {
     if (!body.has_mesh() || !body.mesh().has_file() || body.mesh().has_elements()) continue;
     const std::string& path = body.mesh().file().path();
-    if (!HasExtension(path, ".node")) continue;
+    if (LowerExtension(path) != ".node") continue;
     const bool upper_case = fs::path(path).extension() == ".NODE";
     body.mutable_mesh()->mutable_elements()->set_path(
         fs::path(path).replace_extension(upper_case ? ".ELE" : ".ele").string());

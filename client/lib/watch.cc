@@ -13,7 +13,7 @@
 namespace fascicle::client {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Steady = std::chrono::steady_clock;
 using Response = v1::StreamFramesResponse;
 using Outcome = MessageStream<Response>::Outcome;
 
@@ -35,17 +35,17 @@ class Patience {
   // Returns true for the first loss since the last success.
   bool Lost() {
     if (lost_since_) return false;
-    lost_since_ = Clock::now();
+    lost_since_ = Steady::now();
     return true;
   }
 
-  bool exhausted() const { return lost_since_ && Clock::now() - *lost_since_ >= patience_; }
+  bool exhausted() const { return lost_since_ && Steady::now() - *lost_since_ >= patience_; }
 
   void Wait(const grpc::Status& status, const std::stop_token& stop) { backoff_.Wait(RetryDelayOf(status), stop); }
 
  private:
   const std::chrono::seconds patience_;
-  std::optional<Clock::time_point> lost_since_;
+  std::optional<Steady::time_point> lost_since_;
   Backoff backoff_;
 };
 
@@ -66,12 +66,12 @@ class Watcher {
   Result<v1::Job> Run() {
     if (grpc::Status status = connection_.Connect(); !status.ok()) return ErrorOf(status, connection_.address());
     while (true) {
-      const Clock::time_point begin = Clock::now();
+      const Steady::time_point begin = Steady::now();
       const grpc::Status status = ReadStream();
       if (job_) return std::move(*job_);
       if (stop_.stop_requested()) return kStoppedError;
       if (!IsLostStream(status)) return ErrorOf(status, connection_.address());
-      if (Clock::now() - begin > kHealthy) patience_.Succeeded();  // it was healthy for a while: this is a new loss
+      if (Steady::now() - begin > kHealthy) patience_.Succeeded();  // it was healthy for a while: this is a new loss
       if (patience_.Lost() && events_.reconnecting) {
         events_.reconnecting(status.error_message().empty() ? "the stream was interrupted" : status.error_message());
       }
@@ -180,7 +180,7 @@ Result<v1::Geometry> FetchGeometry(Connection& connection, const std::string& na
   request.set_name(name);
   Patience patience(WatchOptions().patience);
   while (true) {
-    const Clock::time_point begin = Clock::now();
+    const Steady::time_point begin = Steady::now();
     Stream stream([&](grpc::ClientContext* call, grpc::ClientReadReactor<v1::GetGeometryResponse>* reactor) {
       PrepareCall(*call);
       connection.frames().async()->GetGeometry(call, &request, reactor);
@@ -201,7 +201,7 @@ Result<v1::Geometry> FetchGeometry(Connection& connection, const std::string& na
     const grpc::Status status =
         outcome == Stream::Outcome::kEnd ? stream.status() : Damaged("the geometry was damaged in transit");
     if (!IsLostStream(status)) return ErrorOf(status, connection.address());
-    if (Clock::now() - begin > kLongestSilence) patience.Succeeded();
+    if (Steady::now() - begin > kLongestSilence) patience.Succeeded();
     patience.Lost();
     if (patience.exhausted()) return ErrorOf(status, connection.address());
     patience.Wait(status, stop);

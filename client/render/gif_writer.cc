@@ -16,7 +16,7 @@
 namespace fascicle::client {
 namespace {
 
-constexpr int kColours = 256;
+constexpr int kPaletteColours = 256;
 
 void Check(int result) {
   if (result != GIF_OK) throw std::runtime_error("the GIF could not be made");
@@ -56,11 +56,11 @@ void GifWriter::Close() {
 void GifWriter::Add(vtkImageData& picture) {
   vtkNew<vtkImageQuantizeRGBToIndex> quantize;
   quantize->SetInputData(&picture);
-  quantize->SetNumberOfColors(kColours);
+  quantize->SetNumberOfColors(kPaletteColours);
   quantize->Update();
   vtkLookupTable& table = *quantize->GetLookupTable();
-  std::array<GifColorType, kColours> colours = {};
-  for (vtkIdType i = 0; i < std::min<vtkIdType>(kColours, table.GetNumberOfTableValues()); ++i) {
+  std::array<GifColorType, kPaletteColours> colours = {};
+  for (vtkIdType i = 0; i < std::min<vtkIdType>(kPaletteColours, table.GetNumberOfTableValues()); ++i) {
     const double* rgba = table.GetTableValue(i);
     const auto byte = [](double part) {
       return static_cast<GifByteType>(std::lround(255 * std::clamp(part, 0.0, 1.0)));
@@ -71,7 +71,7 @@ void GifWriter::Add(vtkImageData& picture) {
   std::array<GifByteType, 4> block = {};
   EGifGCBToExtension(&control, block.data());
   Check(EGifPutExtension(file_, GRAPHICS_EXT_FUNC_CODE, 4, block.data()));
-  ColorMapObject* map = GifMakeMapObject(kColours, colours.data());
+  ColorMapObject* map = GifMakeMapObject(kPaletteColours, colours.data());
   if (map == nullptr) throw std::runtime_error("the GIF could not be made");
   const int described = EGifPutImageDesc(file_, 0, 0, size_.width, size_.height, false, map);
   GifFreeMapObject(map);

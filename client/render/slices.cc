@@ -77,9 +77,9 @@ std::vector<Panel> ChoosePanels(const SlicesInput& input) {
 }
 
 std::pair<float, float> GreyRange(std::span<const float> values) {
-  constexpr std::size_t kSamples = 1'000'000;
+  constexpr std::size_t kMostSamples = 1'000'000;
   std::vector<float> samples;
-  const std::size_t step = values.size() / kSamples + 1;
+  const std::size_t step = values.size() / kMostSamples + 1;
   for (std::size_t v = 0; v < values.size(); v += step) samples.push_back(values[v]);
   const auto percentile = [&](double part) {
     const auto at = samples.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(samples.size() - 1));

@@ -58,7 +58,7 @@ std::vector<std::string_view> Fields(std::string_view line) {
 }
 
 // C3D4, C3D10MH, C3D8R, AC3D6, S4R, STRI3, M3D3, R3D4: the number after the family is that of the nodes.
-AbaqusType TypeNamed(const std::string& name) {
+AbaqusType AbaqusTypeNamed(const std::string& name) {
   constexpr std::string_view kSolids[] = {"C3D", "AC3D", "DC3D"};
   constexpr std::string_view kSurfaces[] = {"STRI", "SFM3D", "M3D", "R3D", "DS", "S"};
   const auto family = [&](const auto& families) -> std::size_t {
@@ -194,7 +194,7 @@ class AbaqusReader {
     } else if (keyword_.name == "NODE") {
       set_ = SetNamed(keyword_.Parameter("NSET"), node_sets_);
     } else if (keyword_.name == "ELEMENT") {
-      type_ = TypeNamed(Upper(keyword_.Parameter("TYPE")));
+      type_ = AbaqusTypeNamed(Upper(keyword_.Parameter("TYPE")));
       set_ = SetNamed(keyword_.Parameter("ELSET"), element_sets_);
     } else if (keyword_.name == "NSET") {
       set_ = Required(SetNamed(keyword_.Parameter("NSET"), node_sets_), "NSET");

@@ -49,7 +49,7 @@ std::vector<Sample> MakeSamples(const BsplineSolid& solid) {
   return samples;
 }
 
-double Diagonal(const BsplineSolid& solid) {
+double SolidDiagonal(const BsplineSolid& solid) {
   Eigen::AlignedBox3d box;
   for (const Vec3& q : solid.controls()) box.extend(q);
   return box.diagonal().norm();
@@ -146,7 +146,7 @@ class Descent {
 }  // namespace
 
 struct BsplineLocator::Impl {
-  explicit Impl(BsplineSolid the_solid) : solid(std::move(the_solid)), diagonal(Diagonal(solid)) {
+  explicit Impl(BsplineSolid the_solid) : solid(std::move(the_solid)), diagonal(SolidDiagonal(solid)) {
     const std::vector<Sample> samples = MakeSamples(solid);
     tree.init(samples.begin(), samples.end());
   }

@@ -8,14 +8,13 @@
 #include <utility>
 
 #include "core/base/stop.h"
+#include "core/geometry/gmsh_types.h"
 #include "core/geometry/mesh_readers.h"
 #include "core/geometry/text_scanner.h"
 
 namespace fascicle {
 namespace {
 
-// Gmsh's element types.
-constexpr std::int64_t kTriangle3 = 2, kTetrahedron4 = 4, kTriangle6 = 9, kTetrahedron10 = 11, kPoint = 15;
 bool IsHigherTetrahedron(std::int64_t type) { return type >= 29 && type <= 31; }
 // Other solids of order three and more.
 bool IsHigherSolid(std::int64_t type) { return (type >= 90 && type <= 98) || (type >= 106 && type <= 125); }
@@ -107,12 +106,12 @@ void AddSolid(TextScanner& in, const GmshSolid& type, const PhysicalTags& tags, 
 void AddElement(TextScanner& in, std::int64_t type, const PhysicalTags& tags, RawMesh& raw) {
   const auto solid =
       std::find_if(std::begin(kGmshSolids), std::end(kGmshSolids), [&](const GmshSolid& s) { return s.type == type; });
-  if (type == kTetrahedron4 || type == kTetrahedron10) {
-    AddTetrahedron(in, type == kTetrahedron10, tags, raw);
-  } else if (type == kTriangle3 || type == kTriangle6) {
+  if (type == gmsh::kTetrahedron4 || type == gmsh::kTetrahedron10) {
+    AddTetrahedron(in, type == gmsh::kTetrahedron10, tags, raw);
+  } else if (type == gmsh::kTriangle3 || type == gmsh::kTriangle6) {
     AddForEachTag(ReadNodeNumbers<3>(in), tags, raw.triangles, raw.triangle_tags);
-    for (int middle = 0; type == kTriangle6 && middle < 3; ++middle) in.Int("a node number");
-  } else if (type == kPoint) {
+    for (int middle = 0; type == gmsh::kTriangle6 && middle < 3; ++middle) in.Int("a node number");
+  } else if (type == gmsh::kPoint) {
     AddForEachTag(ReadNodeNumbers<1>(in), tags, raw.points, raw.point_tags);
   } else if (std::find(std::begin(kGmshQuads), std::end(kGmshQuads), type) != std::end(kGmshQuads)) {
     AddForEachTag(ReadNodeNumbers<4>(in), tags, raw.quads, raw.quad_tags);

@@ -1,13 +1,13 @@
 #include "core/geometry/mesh_io.h"
 
 #include <algorithm>
-#include <cctype>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <span>
 #include <utility>
 
+#include "core/base/letters.h"
 #include "core/base/stop.h"
 #include "core/geometry/mesh_readers.h"
 #include "core/geometry/text_scanner.h"
@@ -16,13 +16,6 @@ namespace fascicle {
 namespace {
 
 constexpr std::int64_t kMaxIndex = std::numeric_limits<std::int32_t>::max();
-
-std::string Extension(std::string_view name) {
-  const std::size_t dot = name.rfind('.');
-  std::string extension(dot == std::string_view::npos ? std::string_view() : name.substr(dot));
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 // Orders the nodes by number. False when a number occurs twice.
 bool SortNodes(RawMesh& raw, const std::stop_token& stop, Problems& problems) {
@@ -380,7 +373,7 @@ std::string KnownMeshExtensions() { return ".msh, .vtu, .vtk, .mesh, .node, .inp
 std::optional<TetMesh> ReadMesh(const MeshFile& file, Problems& problems, const std::stop_token& stop,
                                 MeshRemarks* remarks) {
   const std::string_view text = WithoutByteOrderMark(file.bytes);
-  const std::string extension = Extension(file.name);
+  const std::string extension = LowerExtension(file.name);
   const std::size_t before = problems.count();
   RawMesh raw;
   if (extension == ".msh") {

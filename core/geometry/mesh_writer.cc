@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/base/stop.h"
+#include "core/geometry/gmsh_types.h"
 
 namespace fascicle {
 namespace {
@@ -25,9 +26,6 @@ void AppendLine(std::string& text, Numbers... numbers) {
   ((Append(numbers, text), text += ' '), ...);
   text.back() = '\n';
 }
-
-// Gmsh's element types.
-constexpr int kTriangle3 = 2, kTetrahedron4 = 4, kTetrahedron10 = 11, kPoint = 15;
 
 // The nodes of all edges when some are curved, numbered after the nodes of the mesh.
 class MidEdgeNodes {
@@ -73,11 +71,11 @@ void AppendTetrahedron(std::size_t number, const Tetrahedron& t, std::int32_t ta
                        std::string& text) {
   const auto& [a, b, c, d] = t;
   if (middles.positions().empty()) {
-    AppendLine(text, number, kTetrahedron4, 2, tag, tag, a + 1, b + 1, c + 1, d + 1);
+    AppendLine(text, number, gmsh::kTetrahedron4, 2, tag, tag, a + 1, b + 1, c + 1, d + 1);
     return;
   }
   const auto middle = [&](std::int32_t i, std::int32_t j) { return middles.Between(i, j) + 1; };
-  AppendLine(text, number, kTetrahedron10, 2, tag, tag, a + 1, b + 1, c + 1, d + 1, middle(a, b), middle(b, c),
+  AppendLine(text, number, gmsh::kTetrahedron10, 2, tag, tag, a + 1, b + 1, c + 1, d + 1, middle(a, b), middle(b, c),
              middle(a, c), middle(a, d), middle(c, d), middle(b, d));
 }
 
@@ -107,12 +105,12 @@ std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names, con
   // Number, type, number of tags, the tags (physical, elementary), nodes.
   number = 0;
   for (std::size_t i = 0; i < mesh.tagged_nodes.size(); ++i) {
-    AppendLine(text, ++number, kPoint, 2, mesh.node_tags[i], mesh.node_tags[i], mesh.tagged_nodes[i] + 1);
+    AppendLine(text, ++number, gmsh::kPoint, 2, mesh.node_tags[i], mesh.node_tags[i], mesh.tagged_nodes[i] + 1);
   }
   for (std::size_t i = 0; i < mesh.tagged_triangles.size(); ++i) {
     const std::int32_t tag = mesh.triangle_tags[i];
     const auto& [a, b, c] = mesh.tagged_triangles[i];
-    AppendLine(text, ++number, kTriangle3, 2, tag, tag, a + 1, b + 1, c + 1);
+    AppendLine(text, ++number, gmsh::kTriangle3, 2, tag, tag, a + 1, b + 1, c + 1);
   }
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     ThrowIfStopped(stop);

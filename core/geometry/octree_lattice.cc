@@ -14,12 +14,12 @@ namespace fascicle {
 namespace {
 
 // Positions must fit a key of 63 bits.
-constexpr int kDeepest = 19;
+constexpr int kDeepestLevel = 19;
 
 using Position = std::array<std::int32_t, 3>;
 
 // A cube of the octree. Positions are multiples of half the finest leaf's width, so that centres are integers, too.
-struct Cell {
+struct OctreeCell {
   Position lowest;
   std::int32_t width;
   std::int32_t children = -1;  // the first of eight, in the order of bits x, y, z
@@ -43,7 +43,7 @@ class Octree {
     const double wanted = (highest - lowest).maxCoeff() + 4 * width;
     std::int32_t size = 2;
     while (size / 2 * width < wanted) size *= 2;
-    FASCICLE_CHECK(size <= (1 << kDeepest), "the lattice is too fine");
+    FASCICLE_CHECK(size <= (1 << kDeepestLevel), "the lattice is too fine");
     lattice_.half = width / 2;
     lattice_.origin = 0.5 * (lowest + highest) - Vec3::Constant(0.25 * size * width);
     cells_.push_back({{0, 0, 0}, size});
@@ -64,7 +64,7 @@ class Octree {
   Vec3 PointAt(const Position& p) const { return lattice_.origin + lattice_.half * Vec3(p[0], p[1], p[2]); }
 
   void Split(std::size_t index) {
-    const Cell cell = cells_[index];
+    const OctreeCell cell = cells_[index];
     cells_[index].children = static_cast<std::int32_t>(cells_.size());
     const std::int32_t half = cell.width / 2;
     for (int child = 0; child < 8; ++child) {
@@ -76,7 +76,7 @@ class Octree {
 
   enum class Decision : char { kKeep, kSplit, kOutside };
 
-  Decision Decide(const Cell& cell) const {
+  Decision Decide(const OctreeCell& cell) const {
     const Vec3 centre = PointAt(cell.Centre());
     const double cell_width = cell.width * lattice_.half, radius = std::numbers::sqrt3 / 2 * cell_width;
     const double distance = tree_.Distance(centre);
@@ -101,11 +101,11 @@ class Octree {
   }
 
   // The cell of the given width at `lowest`, or the leaf that contains it; null outside of the root.
-  const Cell* Find(const Position& lowest, std::int32_t width) const {
+  const OctreeCell* Find(const Position& lowest, std::int32_t width) const {
     for (const std::int32_t x : lowest) {
       if (x < 0 || x >= cells_[0].width) return nullptr;
     }
-    const Cell* cell = &cells_[0];
+    const OctreeCell* cell = &cells_[0];
     while (cell->width > width && !cell->is_leaf()) {
       const std::int32_t half = cell->width / 2;
       int child = 0;
@@ -130,7 +130,7 @@ class Octree {
           if (moved == 0 || moved == 3) continue;
           Position at = cells_[i].lowest;
           for (int axis = 0; axis < 3; ++axis) at[axis] += step[axis] * cells_[i].width;
-          const Cell* neighbour = Find(at, cells_[i].width);
+          const OctreeCell* neighbour = Find(at, cells_[i].width);
           if (neighbour == nullptr || neighbour->outside || neighbour->width <= 2 * cells_[i].width) continue;
           Split(static_cast<std::size_t>(neighbour - cells_.data()));
           changed = true;
@@ -149,12 +149,12 @@ class Octree {
     keys_.push_back({KeyOf(a), KeyOf(b), KeyOf(volume > 0 ? c : d), KeyOf(volume > 0 ? d : c)});
   }
 
-  void AddTetrahedra(const Cell& cell) {
+  void AddTetrahedra(const OctreeCell& cell) {
     for (int axis = 0; axis < 3; ++axis) {
       for (const int direction : {-1, 1}) {
         Position beyond = cell.lowest;
         beyond[axis] += direction * cell.width;
-        const Cell* neighbour = Find(beyond, cell.width);
+        const OctreeCell* neighbour = Find(beyond, cell.width);
         if (neighbour == nullptr || neighbour->outside) continue;
         if (neighbour->width > cell.width) {
           AddBesideLarger(cell, *neighbour, axis, direction);
@@ -168,7 +168,7 @@ class Octree {
   }
 
   // The corners of a side, in cyclic order.
-  static std::array<Position, 4> Ring(const Cell& cell, int axis, int direction) {
+  static std::array<Position, 4> Ring(const OctreeCell& cell, int axis, int direction) {
     std::array<Position, 4> ring;
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     for (int i = 0; i < 4; ++i) {
@@ -186,7 +186,7 @@ class Octree {
 
   // Adds, around each edge of the common side, one tetrahedron with both centres, or two where smaller cells split the
   // edge.
-  void AddBesideEqual(const Cell& cell, const Cell& neighbour, int axis) {
+  void AddBesideEqual(const OctreeCell& cell, const OctreeCell& neighbour, int axis) {
     const std::array<Position, 4> ring = Ring(cell, axis, 1);
     // Directions to the cells beyond the edge from corner i to i + 1.
     const int across[4] = {(axis + 2) % 3, (axis + 1) % 3, (axis + 2) % 3, (axis + 1) % 3};
@@ -194,10 +194,10 @@ class Octree {
     for (int i = 0; i < 4; ++i) {
       const Position &a = ring[i], &b = ring[(i + 1) % 4];
       bool halved = false;
-      for (const Cell* side : {&cell, &neighbour}) {
+      for (const OctreeCell* side : {&cell, &neighbour}) {
         Position beyond = side->lowest;
         beyond[across[i]] += sign[i] * cell.width;
-        const Cell* other = Find(beyond, cell.width);
+        const OctreeCell* other = Find(beyond, cell.width);
         halved = halved || (other != nullptr && !other->is_leaf());
       }
       if (halved) {
@@ -211,7 +211,7 @@ class Octree {
   }
 
   // Adds half a pyramid on each side of the diagonal that ends at the midpoint of the larger cell's side.
-  void AddBesideLarger(const Cell& cell, const Cell& larger, int axis, int direction) {
+  void AddBesideLarger(const OctreeCell& cell, const OctreeCell& larger, int axis, int direction) {
     const std::array<Position, 4> ring = Ring(cell, axis, direction);
     Position middle = larger.Centre();
     middle[axis] = ring[0][axis];
@@ -222,7 +222,7 @@ class Octree {
     }
   }
 
-  void AddBesideSmaller(const Cell& cell, int axis, int direction) {
+  void AddBesideSmaller(const OctreeCell& cell, int axis, int direction) {
     const std::array<Position, 4> ring = Ring(cell, axis, direction);
     const Position middle = Middle(ring[0], ring[2]);
     for (int i = 0; i < 4; ++i) {
@@ -255,7 +255,7 @@ class Octree {
   const TriangleTree& tree_;
   const double width_, grading_;
   ThreadTeam& team_;
-  std::vector<Cell> cells_;
+  std::vector<OctreeCell> cells_;
   std::vector<std::array<std::int64_t, 4>> keys_;  // of tetrahedra, by their nodes' positions
   Lattice lattice_;
 };

@@ -11,7 +11,7 @@
 namespace fascicle {
 namespace {
 
-std::optional<NumberType> TypeNamed(std::string_view name) {
+std::optional<NumberType> PlyTypeNamed(std::string_view name) {
   if (name == "char" || name == "int8") return NumberType::kInt8;
   if (name == "uchar" || name == "uint8") return NumberType::kUInt8;
   if (name == "short" || name == "int16") return NumberType::kInt16;
@@ -54,7 +54,7 @@ class PlyReader {
 
  private:
   NumberType Type(std::string_view name) {
-    const std::optional<NumberType> type = TypeNamed(name);
+    const std::optional<NumberType> type = PlyTypeNamed(name);
     if (!type) in_.Fail("a property has the type " + Quoted(name));
     return type.value_or(NumberType::kInt8);
   }

@@ -14,7 +14,7 @@
 namespace fascicle {
 namespace {
 
-constexpr double kRoundOff = 1e-9;  // relative to the diagonal; for angles in [rad]
+constexpr double kRegionRoundOff = 1e-9;  // relative to the diagonal; for angles in [rad]
 
 // Access to one kind of mesh: its elements and the faces of its boundary.
 struct Tetrahedra {
@@ -109,20 +109,20 @@ struct Select {
   }
 
   void operator()(const PlaneSelector& selector) const {
-    const double tolerance = kRoundOff * Diagonal(cells.mesh.nodes);
+    const double tolerance = kRegionRoundOff * Diagonal(cells.mesh.nodes);
     const Vec3 normal = selector.normal.normalized();
     SelectNodes([&](const Vec3& x) { return (x - selector.point).dot(normal) >= -tolerance; });
   }
 
   void operator()(const BoxSelector& selector) const {
-    const double tolerance = kRoundOff * Diagonal(cells.mesh.nodes);
+    const double tolerance = kRegionRoundOff * Diagonal(cells.mesh.nodes);
     SelectNodes([&](const Vec3& x) {
       return ((x - selector.min).array() >= -tolerance).all() && ((selector.max - x).array() >= -tolerance).all();
     });
   }
 
   void operator()(const SphereSelector& selector) const {
-    const double tolerance = kRoundOff * Diagonal(cells.mesh.nodes);
+    const double tolerance = kRegionRoundOff * Diagonal(cells.mesh.nodes);
     SelectNodes([&](const Vec3& x) { return (x - selector.center).norm() <= selector.radius + tolerance; });
   }
 
@@ -132,7 +132,7 @@ struct Select {
       const Vec3 normal = (cells.mesh.nodes[face[1]] - origin).cross(cells.mesh.nodes[face[2]] - origin);
       // atan2 stays accurate near 0 and pi, where the arc cosine loses half of the digits.
       const double angle = std::atan2(normal.cross(selector.direction).norm(), normal.dot(selector.direction));
-      if (normal.isZero(0) || angle > selector.max_angle + kRoundOff) continue;
+      if (normal.isZero(0) || angle > selector.max_angle + kRegionRoundOff) continue;
       Cells::AddFace(face, region);
       AddNodes(face, region);
     }
@@ -206,7 +206,7 @@ struct Select {
     const std::vector<Vec3>& nodes = cells.mesh.nodes;
     const std::vector<Triangle> triangles = Cells::Triangles(Cells::FacesOf(region));
     const TriangleDistance distance(nodes, triangles);
-    const double reach = depth + kRoundOff * Diagonal(nodes);
+    const double reach = depth + kRegionRoundOff * Diagonal(nodes);
     for (std::size_t t = 0; t < cells.elements().size(); ++t) {
       if (distance.IsWithin(CentroidOf(nodes, cells.elements()[t]), reach))
         region.elements.push_back(static_cast<std::int32_t>(t));

@@ -2,11 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <limits>
 #include <utility>
 
+#include "core/base/letters.h"
 #include "core/geometry/bounds.h"
 #include "core/geometry/ear_clipping.h"
 #include "core/geometry/surface_readers.h"
@@ -15,15 +15,7 @@
 namespace fascicle {
 namespace {
 
-constexpr std::size_t kMaxIndex = std::numeric_limits<std::int32_t>::max();
-
-std::string Extension(std::string_view name) {
-  const std::size_t dot = name.rfind('.');
-  std::string extension(dot == std::string_view::npos ? "" : name.substr(dot));
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
+constexpr std::size_t kMaxCorners = std::numeric_limits<std::int32_t>::max();
 
 bool IsVolumeMesh(std::string_view extension) {
   constexpr std::string_view kExtensions[] = {".msh", ".vtu", ".vtk", ".mesh", ".node", ".inp", ".feb", ".e", ".exo"};
@@ -57,7 +49,7 @@ std::optional<TriangleMesh> Finish(RawSurface raw, const std::stop_token& stop, 
     problems.Add("", std::to_string(infinite) + " nodes have coordinates that are not finite numbers",
                  "write the surface again");
   }
-  if (raw.nodes.size() > kMaxIndex || corners > kMaxIndex) {
+  if (raw.nodes.size() > kMaxCorners || corners > kMaxCorners) {
     problems.Add("", "the surface has more than 2^31 nodes or triangles", "use a coarser surface");
   }
   if (most > kMostCorners) {
@@ -107,7 +99,7 @@ std::string KnownSurfaceExtensions() { return ".stl, .obj, .ply, .vtp"; }
 
 std::optional<TriangleMesh> ReadSurface(std::string_view name, std::string_view bytes, Problems& problems,
                                         const std::stop_token& stop, std::vector<std::string>* notes) {
-  const std::string extension = Extension(name);
+  const std::string extension = LowerExtension(name);
   const std::size_t before = problems.count();
   RawSurface raw;
   if (extension == ".stl") {

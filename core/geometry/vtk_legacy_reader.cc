@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/letters.h"
 #include "core/geometry/byte_array.h"
 #include "core/geometry/mesh_readers.h"
 #include "core/geometry/text_scanner.h"
@@ -15,13 +16,7 @@ namespace {
 
 constexpr std::size_t kMaxComponents = 1000;
 
-std::string Lower(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
-}
-
-std::optional<NumberType> TypeNamed(std::string_view token) {
+std::optional<NumberType> LegacyTypeNamed(std::string_view token) {
   const std::string name = Lower(token);
   if (name == "char" || name == "signed_char") return NumberType::kInt8;
   if (name == "unsigned_char") return NumberType::kUInt8;
@@ -194,7 +189,7 @@ class LegacyReader {
 
   void ReadArray(std::string_view name, std::string_view type_name, std::int64_t components, std::size_t tuples) {
     if (in_.failed()) return;
-    const std::optional<NumberType> type = TypeNamed(type_name);
+    const std::optional<NumberType> type = LegacyTypeNamed(type_name);
     if (!type) {
       return in_.Fail("the array " + Quoted(name) + " has the type " + Quoted(type_name), "leave the array out");
     }
@@ -220,7 +215,7 @@ class LegacyReader {
 
   std::optional<NumberType> Type() {
     const std::string_view name = in_.Token();
-    const std::optional<NumberType> type = TypeNamed(name);
+    const std::optional<NumberType> type = LegacyTypeNamed(name);
     if (!type && !in_.failed()) in_.Fail("unknown type of numbers " + Quoted(name));
     return type;
   }

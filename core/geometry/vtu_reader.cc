@@ -35,15 +35,15 @@ std::optional<NumberType> VtuTypeNamed(std::string_view name) {
 }
 
 // The file without its appended section (which is not valid XML when raw), and the section's data.
-struct Parts {
+struct VtuParts {
   std::string xml;
   std::string_view appended;  // without the leading underscore
   bool base64 = false;
   bool complete = true;
 };
 
-Parts Split(std::string_view bytes) {
-  Parts parts;
+VtuParts Split(std::string_view bytes) {
+  VtuParts parts;
   const std::size_t tag = bytes.find("<AppendedData");
   if (tag == std::string_view::npos) {
     parts.xml = bytes;
@@ -268,7 +268,7 @@ class VtuReader {
   Problems& problems_;
   const std::stop_token& stop_;
   std::size_t size_;
-  Parts parts_;
+  VtuParts parts_;
   std::optional<VtuDecoder> decoder_;
   bool big_endian_ = false;
   RawMesh raw_;

@@ -15,7 +15,7 @@
 namespace fascicle {
 namespace {
 
-constexpr int kBins = 4096;
+constexpr int kThresholdBins = 4096;
 
 std::string Text(const GridIndex& at) {
   return "(" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) + ")";
@@ -164,7 +164,7 @@ class StageRun {
     if (choice.method == ClassMethod::kGivenThresholds) {
       result_.thresholds = choice.thresholds;
     } else {
-      const Histogram histogram = MakeHistogram(values(), kBins);
+      const Histogram histogram = MakeHistogram(values(), kThresholdBins);
       if (histogram.filled() < static_cast<std::size_t>(choice.classes)) {
         return Refuse("classification.classes",
                       "the image has " + std::to_string(histogram.filled()) + " different values, too few for " +

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 
+#include "core/base/letters.h"
 #include "core/imaging/volume_files.h"
 #include "core/imaging/volume_layout.h"
 

@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "core/base/letters.h"
+
 namespace fascicle {
 namespace {
 
@@ -76,12 +78,6 @@ std::optional<VolumeFormat> FormatOf(std::string_view name) {
   if (ends(".dcm")) return VolumeFormat::kDicom;
   if (ends(".raw")) return VolumeFormat::kRaw;
   return std::nullopt;
-}
-
-std::string Lower(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
 }
 
 bool IsDetachedHeader(std::string_view name) {

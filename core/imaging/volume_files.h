@@ -22,8 +22,6 @@ std::optional<VolumeFormat> FormatOf(std::string_view name);
 // Whether the extension is that of a separate header: .mhd, .nhdr or .hdr.
 bool IsDetachedHeader(std::string_view name);
 
-std::string Lower(std::string_view text);
-
 // Size of a file; nothing, with a problem, if it can't be read.
 std::optional<std::uint64_t> SizeOf(const std::filesystem::path& path, Problems& problems);
 // Its first bytes, at most so many.

@@ -2,9 +2,9 @@
 
 #include <unistd.h>
 
-#include <cctype>
 #include <system_error>
 
+#include "core/base/letters.h"
 #include "core/imaging/itk_image_writer.h"
 
 namespace fascicle {
@@ -18,8 +18,7 @@ void WriteVolume(const VolumeImage& image, VoxelType type, const std::filesystem
     return;
   }
   // ITK chooses the format by the extension, in lower case.
-  std::string beside_name = "." + std::to_string(getpid()) + "." + name;
-  for (char& c : beside_name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string beside_name = Lower("." + std::to_string(getpid()) + "." + name);
   const std::filesystem::path beside = path.parent_path() / beside_name;
   std::error_code error;
   const bool written = WriteByItk(image, type, *format, beside);

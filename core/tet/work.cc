@@ -13,11 +13,11 @@ namespace {
 constexpr double kOutOfBalance = 1e-4;
 
 // Places from 0 to 1 and weights of the rule with five points, exact for polynomials of degree 7.
-struct QuadraturePoint {
+struct LobattoPoint {
   double place, weight;
 };
 constexpr double kInner = 0.32732683535398857190;  // sqrt(3/7) / 2
-constexpr QuadraturePoint kLobatto[] = {
+constexpr LobattoPoint kLobatto[] = {
     {0, 1. / 20}, {0.5 - kInner, 49. / 180}, {0.5, 16. / 45}, {0.5 + kInner, 49. / 180}, {1, 1. / 20}};
 
 // Calls call(node, component) for every prescribed component.

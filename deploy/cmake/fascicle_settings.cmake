@@ -23,7 +23,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(fascicle_settings INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow
                          -Wno-stringop-overread -Wno-restrict)
 endif()
-# The presets compile files of a target together, a few at a time (CMAKE_UNITY_BUILD): most of the time goes into headers
+# The presets compile files of a target together, up to 40 at a time (CMAKE_UNITY_BUILD): most of the time goes into headers
 # and templates that the files share. So names must differ within a target, in anonymous namespaces, too.
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # A source is not the main file then, and the warning takes it for a header.

@@ -46,14 +46,14 @@ constexpr const char* kModel = R"(*Heading
 *End Step
 )";
 
-struct Result {
+struct AbaqusResult {
   std::optional<TetMesh> mesh;
   MeshRemarks remarks;
   std::string problems;
 };
 
-Result Read(const std::string& bytes, bool split = false) {
-  Result result;
+AbaqusResult ReadAbaqus(const std::string& bytes, bool split = false) {
+  AbaqusResult result;
   Problems problems;
   result.mesh = ReadMesh({.name = "m.inp", .bytes = bytes, .split_solids = split}, problems, {}, &result.remarks);
   EXPECT_EQ(result.mesh.has_value(), problems.empty());
@@ -61,7 +61,7 @@ Result Read(const std::string& bytes, bool split = false) {
   return result;
 }
 
-std::int32_t TagOf(const Result& result, const std::string& name, int dimension) {
+std::int32_t TagOf(const AbaqusResult& result, const std::string& name, int dimension) {
   for (const TagName& tag : result.remarks.names) {
     if (tag.name == name && tag.dimension == dimension) return tag.tag;
   }
@@ -70,7 +70,7 @@ std::int32_t TagOf(const Result& result, const std::string& name, int dimension)
 }
 
 TEST(AbaqusReaderTest, SetsBecomeTags) {
-  const Result result = Read(kModel);
+  const AbaqusResult result = ReadAbaqus(kModel);
   ASSERT_TRUE(result.mesh) << result.problems;
   const TetMesh& mesh = *result.mesh;
   EXPECT_EQ(mesh.nodes, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}));
@@ -113,8 +113,8 @@ TEST(AbaqusReaderTest, SidesOfHexahedraWedgesAndPyramids) {
     std::string text = "*NODE\n" + sample.nodes + "*ELEMENT, TYPE=" + sample.type + ", ELSET=e\n1," + sample.element +
                        "\n*SURFACE, NAME=all\n";
     for (int s = 1; s <= sample.sides; ++s) text += "1, S" + std::to_string(s) + "\n";
-    EXPECT_THAT(Read(text).problems, HasSubstr("--split-hexahedra"));
-    const Result result = Read(text, true);
+    EXPECT_THAT(ReadAbaqus(text).problems, HasSubstr("--split-hexahedra"));
+    const AbaqusResult result = ReadAbaqus(text, true);
     ASSERT_TRUE(result.mesh) << result.problems;
     EXPECT_DOUBLE_EQ(TotalVolume(*result.mesh), sample.volume) << sample.type;
     EXPECT_DOUBLE_EQ(EnclosedVolume({result.mesh->nodes, result.mesh->tagged_triangles}), sample.volume) << sample.type;
@@ -133,7 +133,7 @@ TEST(AbaqusReaderTest, TenNodes) {
   const std::string text =
       "*NODE\n1,0,0,0\n2,2,0,0\n3,0,2,0\n4,0,0,2\n5,1,0,0\n6,1,1,0.25\n7,0,1,0\n8,0,0,1\n9,1,0,1\n10,0,1,1\n"
       "*ELEMENT, TYPE=C3D10M\n1,1,2,3,4,5,6,7,8,9,10\n";
-  const Result result = Read(text);
+  const AbaqusResult result = ReadAbaqus(text);
   ASSERT_TRUE(result.mesh) << result.problems;
   ASSERT_EQ(result.mesh->curved_edges.size(), 1u);
   EXPECT_EQ(result.mesh->curved_edges[0].ends, (std::array<std::int32_t, 2>{1, 2}));
@@ -145,9 +145,9 @@ TEST(AbaqusReaderTest, WhatIsWrongIsSaidWithItsLine) {
   const auto refusal = [&](const std::string& from, const std::string& to) {
     std::string changed = text;
     changed.replace(changed.find(from), from.size(), to);
-    return Read(changed).problems;
+    return ReadAbaqus(changed).problems;
   };
-  EXPECT_THAT(Read("").problems, HasSubstr("no keywords"));
+  EXPECT_THAT(ReadAbaqus("").problems, HasSubstr("no keywords"));
   EXPECT_THAT(refusal("2, 1.0, 0, 0", "2, one, 0, 0"), HasSubstr("line 6: expected a coordinate but found `one`"));
   EXPECT_THAT(refusal("2, 1.0, 0, 0", "2, 1.0"), HasSubstr("line 6: a node has a number and three coordinates"));
   EXPECT_THAT(refusal("     3, 4\n", ""), HasSubstr("has 4 nodes, not 2"));
@@ -169,7 +169,7 @@ TEST(AbaqusReaderTest, AnyDamageIsSafe) {
     for (const char byte : {'9', '*', ',', '\n', '\0', '\xff', '='}) {
       std::string damaged = text;
       damaged[at] = byte;
-      const Result result = Read(damaged, true);
+      const AbaqusResult result = ReadAbaqus(damaged, true);
       if (!result.mesh) continue;
       for (const auto& [t, tag] : result.mesh->further_tags) {
         ASSERT_LT(static_cast<std::size_t>(t), result.mesh->tetrahedra.size());
@@ -178,7 +178,7 @@ TEST(AbaqusReaderTest, AnyDamageIsSafe) {
         ASSERT_LT(static_cast<std::size_t>(n), result.mesh->nodes.size());
       }
     }
-    Read(text.substr(0, at), true);
+    ReadAbaqus(text.substr(0, at), true);
   }
 }
 

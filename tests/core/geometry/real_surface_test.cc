@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kDegreeOfSurfaces = std::numbers::pi / 180;
 
 fs::path LegFolder() { return testing::DataFolder() / "vh_muscle_surfaces"; }
 
@@ -47,7 +47,7 @@ void ExpectGood(const MeshingResult& result) {
   const MeshReport report = CheckMesh(mesh, problems);
   EXPECT_TRUE(problems.empty()) << problems.ToString();
   EXPECT_EQ(report.components, 1);
-  EXPECT_GE(report.smallest_dihedral_angle, 10 * kDegree);
+  EXPECT_GE(report.smallest_dihedral_angle, 10 * kDegreeOfSurfaces);
   EXPECT_NEAR(result.report.VolumeError(), 0, 5e-3);
 }
 

@@ -9,7 +9,7 @@
 namespace fascicle {
 namespace {
 
-TetMesh Corner() {
+TetMesh CornerMesh() {
   TetMesh mesh;
   mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
   mesh.tetrahedra = {{0, 1, 2, 3}};
@@ -17,14 +17,14 @@ TetMesh Corner() {
 }
 
 TEST(TetMeshTest, SignedVolumeFollowsOrientation) {
-  TetMesh mesh = Corner();
+  TetMesh mesh = CornerMesh();
   EXPECT_DOUBLE_EQ(SignedVolume(mesh, 0), 1.0);
   std::swap(mesh.tetrahedra[0][0], mesh.tetrahedra[0][1]);
   EXPECT_DOUBLE_EQ(SignedVolume(mesh, 0), -1.0);
 }
 
 TEST(TetMeshTest, BoundaryOfOneIsItsFourSides) {
-  const TetMesh mesh = Corner();
+  const TetMesh mesh = CornerMesh();
   const std::vector<Triangle> boundary = BoundaryTriangles(mesh);
   ASSERT_EQ(boundary.size(), 4u);
   const Vec3 middle = (mesh.nodes[0] + mesh.nodes[1] + mesh.nodes[2] + mesh.nodes[3]) / 4;

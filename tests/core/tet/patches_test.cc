@@ -15,13 +15,13 @@ namespace {
 
 using namespace fascicle::testing;
 
-const Vec3 kSize(0.03, 0.02, 0.02);
+const Vec3 kPatchSize(0.03, 0.02, 0.02);
 
 std::string NameOf(ElementOrder element) { return element == ElementOrder::kLinear ? "linear" : "quadratic"; }
 
 // A box whose interior nodes are displaced.
 TetMesh IrregularBox(const std::array<int, 3>& divisions) {
-  TetMesh mesh = MakeBox(Vec3::Zero(), kSize, divisions);
+  TetMesh mesh = MakeBox(Vec3::Zero(), kPatchSize, divisions);
   std::vector<bool> inside(mesh.nodes.size(), true);
   for (const Triangle& t : BoundaryTriangles(mesh)) {
     for (const std::int32_t n : t) inside[n] = false;
@@ -68,7 +68,7 @@ TEST_P(PatchesTest, LinearDisplacementIsInEquilibrium) {
   for (const double theta : box.workspace.ratio) EXPECT_NEAR(theta, F.determinant(), 1e-13);
   int inner = 0;
   for (std::size_t n = 0; n < X.size(); ++n) {
-    if ((X[n].array() < 1e-9).any() || (X[n].array() > kSize.array() - 1e-9).any()) continue;
+    if ((X[n].array() < 1e-9).any() || (X[n].array() > kPatchSize.array() - 1e-9).any()) continue;
     ++inner;
     EXPECT_LT(force[n].norm(), 1e-12 * LargestNorm(force)) << "node " << n;
   }
