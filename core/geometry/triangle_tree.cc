@@ -54,13 +54,15 @@ double SolidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 // Six times the signed volume of the tetrahedron; its sign tells on which side of the plane through a, b and c the
 // point d is.
-double Side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return (b - a).cross(c - a).dot(d - a); }
+double SideOfPlane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return (b - a).cross(c - a).dot(d - a);
+}
 
 bool SegmentCuts(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double from = Side(a, b, c, p), to = Side(a, b, c, q);
+  const double from = SideOfPlane(a, b, c, p), to = SideOfPlane(a, b, c, q);
   if ((from > 0) == (to > 0) || from == 0 || to == 0) return false;
-  const bool s = Side(p, q, a, b) > 0;
-  return (Side(p, q, b, c) > 0) == s && (Side(p, q, c, a) > 0) == s;
+  const bool s = SideOfPlane(p, q, a, b) > 0;
+  return (SideOfPlane(p, q, b, c) > 0) == s && (SideOfPlane(p, q, c, a) > 0) == s;
 }
 
 // Whether an edge of `s` that has no node in common with `t` intersects `t`.
