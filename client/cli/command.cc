@@ -11,7 +11,7 @@
 namespace fascicle::client {
 namespace {
 
-const char* NameOf(Error::Kind kind) {
+const char* KindName(Error::Kind kind) {
   switch (kind) {
     case Error::Kind::kInvalid:
       return "invalid";
@@ -67,7 +67,7 @@ int ExitCodeOf(Error::Kind kind) {
 
 void PrintError(const Error& error, bool json) {
   if (json) {
-    Json object = {{"error", NameOf(error.kind)}, {"message", error.message}};
+    Json object = {{"error", KindName(error.kind)}, {"message", error.message}};
     if (!error.reason.empty()) object["reason"] = error.reason;
     if (!error.problems.empty()) {
       object["problems"] = ProblemsJson(error.problems);

@@ -17,6 +17,7 @@
 #include "client/cli/mesh_picture.h"
 #include "client/cli/mesh_regions.h"
 #include "client/cli/stage_progress.h"
+#include "client/cli/units.h"
 #include "client/image/label_surface.h"
 #include "client/lib/replace_file.h"
 #include "core/base/stop.h"
@@ -64,8 +65,6 @@ struct MeshOptions {
   double smoothing = 1;
   int threads = 1;
 };
-
-double MetresIn(const std::string& unit) { return unit == "mm" ? 1e-3 : unit == "cm" ? 1e-2 : 1; }
 
 double Degrees(double radians) { return radians * 180 / std::numbers::pi; }
 

@@ -18,6 +18,7 @@
 #include "client/cli/follow.h"
 #include "client/cli/input_file.h"
 #include "client/cli/outputs.h"
+#include "client/cli/units.h"
 #include "client/export/csv.h"
 #include "client/export/read_series.h"
 #include "client/export/sample.h"
@@ -47,8 +48,6 @@ struct SampleOptions {
   bool deformed = false;
   std::string out, plot;
 };
-
-double MetresIn(const std::string& unit) { return unit == "mm" ? 1e-3 : unit == "cm" ? 1e-2 : 1; }
 
 std::optional<double> NumberIn(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);

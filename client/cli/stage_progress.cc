@@ -9,8 +9,8 @@
 namespace fascicle::client {
 namespace {
 
-constexpr std::chrono::seconds kBetweenLines{5};
-constexpr int kBarWidth = 20;
+constexpr std::chrono::seconds kBetweenStageLines{5};
+constexpr int kStageBarWidth = 20;
 
 }  // namespace
 
@@ -23,12 +23,12 @@ StageProgress::~StageProgress() {
 
 void StageProgress::Show(double fraction, const std::string& stage) {
   const auto now = std::chrono::steady_clock::now();
-  if (!on_terminal_ && now - last_line_ < kBetweenLines) return;
+  if (!on_terminal_ && now - last_line_ < kBetweenStageLines) return;
   last_line_ = now;
   std::string text = stage;
   if (on_terminal_) {
     text += " [";
-    for (int i = 0; i < kBarWidth; ++i) text += (i + 0.5) / kBarWidth <= fraction ? "█" : "░";
+    for (int i = 0; i < kStageBarWidth; ++i) text += (i + 0.5) / kStageBarWidth <= fraction ? "█" : "░";
     text += "]";
   }
   text += " " + std::to_string(static_cast<int>(100 * fraction)) + " %";

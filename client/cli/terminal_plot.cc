@@ -86,7 +86,7 @@ class BrailleCanvas {
   std::vector<int> colours_;
 };
 
-std::string Number(double value) {
+std::string TickText(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", std::abs(value) < 1e-300 ? 0.0 : value);
   return text;
@@ -125,12 +125,12 @@ std::string TerminalPlot(const PlotPanel& panel, int width, int height, bool col
   for (int row = 0; row < height; ++row) {
     const bool labelled = row == 0 || row == height - 1 || row == height / 2;
     const double value = y.high - (y.high - y.low) * row / (height - 1);
-    text += PadLeft(labelled ? Number(value) : "", kLabelWidth) + (labelled ? " ┤" : " │") + canvas.Row(row, coloured) +
-            "\n";
+    text += PadLeft(labelled ? TickText(value) : "", kLabelWidth) + (labelled ? " ┤" : " │") +
+            canvas.Row(row, coloured) + "\n";
   }
   text += std::string(kLabelWidth + 1, ' ') + "└";
   for (int i = 0; i < width; ++i) text += "─";
-  const std::string left = Number(x.low), right = Number(x.high);
+  const std::string left = TickText(x.low), right = TickText(x.high);
   const std::size_t room = static_cast<std::size_t>(std::max(0, width - static_cast<int>(left.size() + right.size())));
   const std::size_t before = room > panel.x_label.size() ? (room - panel.x_label.size()) / 2 : 1;
   text += "\n" + std::string(kLabelWidth + 2, ' ') + left + std::string(before, ' ') + panel.x_label +
