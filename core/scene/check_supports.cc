@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "core/scene/checks.h"
+#include "core/scene/free_motions.h"
 #include "core/scene/nodal_forces.h"
 
 namespace fascicle::scene_checks {
@@ -69,6 +71,22 @@ bool HasFloorAcross(const Scene& scene, int axis) {
                      [axis](const Floor& floor) { return std::abs(floor.normal[axis]) > 0.01; });
 }
 
+// An equilibrium needs supports against every rigid motion; floors only push, so a scene with floors is not judged.
+void CheckFreeParts(const Scene& scene, std::size_t i, Problems& problems) {
+  if (scene.method != Method::kTet || !IsStatic(scene) || !scene.floors.empty()) return;
+  for (const FreePart& part : FindFreeParts(scene.bodies[i])) {
+    std::string who = "the body";
+    if (part.parts > 1) {
+      char place[128];
+      std::snprintf(place, sizeof place, " at [%.4g, %.4g, %.4g] m", part.place[0], part.place[1], part.place[2]);
+      who = "the part of " + std::to_string(part.tetrahedra) + " tetrahedra" + place;
+    }
+    problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
+                 "the supports leave " + who + " free: it " + part.motions,
+                 "the equilibrium is not unique: hold more nodes or axes, or use a stepping with inertia");
+  }
+}
+
 }  // namespace
 
 void CheckSupports(const Scene& scene, Problems& problems) {
@@ -78,6 +96,7 @@ void CheckSupports(const Scene& scene, Problems& problems) {
     std::vector<Vec3> resultants;
     for (const Load& load : body.loads) resultants.push_back(Resultant(body, load));
     const double mass = body.density * std::visit([](const auto& shape) { return VolumeOf(shape); }, body.shape);
+    if (std::all_of(held.begin(), held.end(), [](bool axis) { return axis; })) CheckFreeParts(scene, i, problems);
     for (int axis = 0; axis < 3; ++axis) {
       if (!held[axis] && IsStatic(scene)) {
         problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),

@@ -280,14 +280,16 @@ void NewtonSolver::PlacePrescribed(const NodalVector& target, NodalVector& x) co
   }
 }
 
-// Norm of the force on unknown components relative to that of all element forces.
+// Norm of the force on unknown components, as far as it exceeds its rounding error on each node, relative to that of
+// all element forces.
 double NewtonSolver::RelativeForce(NewtonResult& result) const {
   double squares = 0, largest = 0;
   for (std::size_t n = 0; n < force_.size(); ++n) {
     const Vec3 free = (model_.mass()[n] * model_.inverse_mass()[n]).cwiseProduct(force_[n]);
-    squares += free.squaredNorm();
-    if (free.norm() <= largest) continue;
-    largest = free.norm();
+    const double excess = std::max(0.0, free.norm() - system_.force_rounding()[n]);
+    squares += excess * excess;
+    if (excess <= largest) continue;
+    largest = excess;
     result.node = n;
   }
   result.residual = std::max(0.0, std::sqrt(squares) - now_.rounding) / now_.force_scale;

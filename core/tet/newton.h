@@ -8,7 +8,8 @@
 namespace fascicle {
 
 struct NewtonOptions {
-  double tolerance = 1e-8;  // for the force, relative to the norm of all element forces
+  // For the force beyond its rounding error on each node, relative to the norm of all element forces.
+  double tolerance = 1e-8;
   int max_iterations = 50;
   // A start in place of x, taken if it is valid and has a smaller force; may be null.
   const NodalVector* guess = nullptr;

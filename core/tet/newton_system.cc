@@ -17,30 +17,55 @@ constexpr std::size_t kMostFallbackUnknowns = 60000;
 // After this many failures of the iterative solver, the rest of the time step uses factorizations.
 constexpr int kMostFailures = 2;
 
-double ModulusOf(const TetModel& model, const TetGroup& group) {
-  return std::visit([](const auto& law) { return law.ShearModulus() + law.BulkModulus(); },
-                    model.bodies()[group.body].source->material);
+double ModulusOf(const Material& material) {
+  return std::visit([](const auto& law) { return law.ShearModulus() + law.BulkModulus(); }, material);
+}
+
+// The modulus of an element's material [Pa].
+double ModulusOf(const TetModel& model, const Body& body, std::size_t element) {
+  const Parts<Material>& parts = body.tet().materials;
+  if (parts.of.empty()) return ModulusOf(body.material);
+  const std::int32_t part = parts.of[static_cast<std::size_t>(model.source_tetrahedron()[element])];
+  return ModulusOf(part == 0 ? body.material : parts.more[static_cast<std::size_t>(part - 1)]);
+}
+
+// That of its law alone, without what patches carry [Pa].
+double ModulusOfLaw(const TetModel& model, const TetGroup& group, std::size_t element) {
+  return std::visit(
+      [&](const auto& laws) {
+        const auto& law = laws[static_cast<std::size_t>(model.law_of()[element])];
+        return law.ShearModulus() + law.BulkModulus();
+      },
+      group.laws);
+}
+
+// The least modulus of a body's materials [Pa].
+double LeastModulus(const Body& body) {
+  double least = ModulusOf(body.material);
+  for (const Material& material : body.tet().materials.more) least = std::min(least, ModulusOf(material));
+  return least;
 }
 
 // Rounding error of the elastic energy [J]: at every point a small difference of terms of the modulus' size.
 double EnergyRounding(const TetModel& model) {
   double sum = 0;
   for (const TetGroup& group : model.groups()) {
-    const double modulus = ModulusOf(model, group);
-    for (std::size_t point = group.tet_begin * model.points_per_element();
-         point < group.tet_end * model.points_per_element(); ++point) {
-      sum += modulus * model.rest_volume()[point];
+    for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
+      const double modulus = ModulusOf(model, *model.bodies()[group.body].source, e);
+      for (int q = 0; q < model.points_per_element(); ++q) {
+        sum += modulus * model.rest_volume()[static_cast<std::size_t>(model.points_per_element()) * e + q];
+      }
     }
   }
   return std::numeric_limits<double>::epsilon() * sum;
 }
 
-// Element forces at a strain of 1e-5, as a scale for bodies at rest, which have no forces.
+// Element forces at a strain of 1e-5 of the softest material, as a scale for bodies at rest, which have no forces.
 double ForceFloor(const TetModel& model) {
   constexpr double kSmallStrain = 1e-5;
   double squares = 0;
   for (const TetGroup& group : model.groups()) {
-    const double modulus = ModulusOf(model, group);
+    const double modulus = LeastModulus(*model.bodies()[group.body].source);
     for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
       const double force =
           kSmallStrain * modulus * std::pow(model.rest_volume()[e * model.points_per_element()], 2.0 / 3);
@@ -50,6 +75,29 @@ double ForceFloor(const TetModel& model) {
   return std::sqrt(squares);
 }
 
+// Rounding error of the elastic force on each node [N]. Strains are differences of positions, whose rounding error
+// grows with the distance from the origin; stresses are small differences of terms of the modulus' size.
+std::vector<double> ForceRounding(const TetModel& model) {
+  constexpr double kOperations = 4;  // errors of several operations, added at random
+  std::vector<double> squares(model.nodes());
+  model.VisitElement([&]<class Element>(Element) {
+    for (const TetGroup& group : model.groups()) {
+      for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
+        const double modulus = ModulusOfLaw(model, group, e);
+        const auto nodes = model.NodesOf<Element>(e);
+        double volume = 0, reach = 0;
+        for (int q = 0; q < Element::kPoints; ++q) volume += model.rest_volume()[Element::kPoints * e + q];
+        for (const std::int32_t n : nodes) reach = std::max(reach, model.rest_positions()[n].norm());
+        const double size = std::cbrt(volume);
+        const double error = kOperations * std::numeric_limits<double>::epsilon() * modulus * size * (size + reach);
+        for (const std::int32_t n : nodes) squares[n] += error * error;
+      }
+    }
+  });
+  for (double& square : squares) square = std::sqrt(square);
+  return squares;
+}
+
 }  // namespace
 
 NewtonSystem::NewtonSystem(const TetModel& model, Profile* profile, const std::stop_token& stop)
@@ -57,6 +105,7 @@ NewtonSystem::NewtonSystem(const TetModel& model, Profile* profile, const std::s
       profile_(profile),
       assembly_(model, stop),
       force_floor_(ForceFloor(model)),
+      force_rounding_(ForceRounding(model)),
       energy_rounding_(EnergyRounding(model)) {
   unknowns_ = model.patches().size();
   for (const auto& free : assembly_.matrix().free) unknowns_ += std::count(free.begin(), free.end(), true);

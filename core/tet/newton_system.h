@@ -37,6 +37,8 @@ class NewtonSystem {
   };
   Evaluation Evaluate(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
                       ThreadTeam& team, NodalVector& force);
+  // Rounding error of the elastic force on each node [N].
+  const std::vector<double>& force_rounding() const { return force_rounding_; }
   // theta of each patch at the x of the last Evaluate.
   const std::vector<double>& ratios() const { return forces_.ratio; }
 
@@ -77,7 +79,8 @@ class NewtonSystem {
   std::size_t unknowns_ = 0;
   bool prefers_iterative_ = false, is_iterative_ = false;
   ForceWorkspace forces_;
-  double force_floor_ = 0;      // [N]
+  double force_floor_ = 0;  // [N]
+  std::vector<double> force_rounding_;
   double energy_rounding_ = 0;  // [J]
   std::vector<double> acting_;  // W p for each patch [Pa]
   void Assemble(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
