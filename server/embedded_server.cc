@@ -109,8 +109,8 @@ std::unique_ptr<EmbeddedServer> EmbeddedServer::Start(const ServerOptions& optio
                              ": anyone who can reach this address could run jobs, and nothing is encrypted. "
                              "Allow it explicitly, or listen on 127.0.0.1");
   }
-  if (options.workers < 1 || options.default_threads < 1) {
-    throw std::runtime_error("workers and threads must be at least 1");
+  if (options.workers < 0 || options.default_threads < 1) {
+    throw std::runtime_error("workers must be at least 0, threads at least 1");
   }
   try {
     return std::make_unique<Server>(options);

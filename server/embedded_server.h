@@ -15,7 +15,7 @@ namespace fascicle::server {
 struct ServerOptions {
   std::string listen = "127.0.0.1:0";  // port 0 picks a free one
   std::string data_directory;          // empty: in memory
-  int workers = 2;
+  int workers = 2;                     // 0: jobs stay in the queue, for a server that only reads
   int default_threads = 1;
   bool allow_remote = false;  // whether addresses other than loopback are allowed
 

@@ -8,6 +8,7 @@
 #include <google/protobuf/util/json_util.h>
 
 #include "client/cli/command.h"
+#include "client/cli/job_source.h"
 #include "client/cli/profile_table.h"
 #include "client/cli/progress_bar.h"
 #include "client/cli/summary.h"
@@ -37,8 +38,8 @@ std::string SceneText(const v1::Scene& scene) {
 }
 
 int Show(const ShowOptions& options, const Context& context) {
-  Client client = Connect(context);
-  const v1::Job job = Take(client.GetJob(JobName(options.job)));
+  JobSource source = OpenJob(context, options.job);
+  const v1::Job job = Take(source.client.GetJob(source.job));
   if (options.scene) {
     if (context.json) {
       PrintJson(Json::parse(SceneText(job.scene())));
@@ -68,6 +69,7 @@ int Show(const ShowOptions& options, const Context& context) {
     std::printf("%-14s %s\n", "eta", DurationText(static_cast<double>(job.progress().eta().seconds())).c_str());
   }
   if (job.has_failure()) PrintFailure(job.failure());
+  PrintWarnings(job);
   return kDone;
 }
 

@@ -62,6 +62,18 @@ Json FailureJson(const v1::Failure& failure) {
   return json;
 }
 
+Json WarningsJson(const v1::Job& job) {
+  Json warnings = Json::array();
+  for (const v1::Warning& warning : job.warnings()) {
+    Json json = {{"reason", warning.reason()}, {"message", warning.message()}, {"time", warning.time()}};
+    if (!warning.body().empty()) json["body"] = warning.body();
+    if (warning.element_ids_size() > 0) json["element_ids"] = warning.element_ids();
+    if (!warning.advice().empty()) json["advice"] = warning.advice();
+    warnings.push_back(std::move(json));
+  }
+  return warnings;
+}
+
 std::vector<std::string> NamesOfRigidBodies(const v1::Geometry& geometry, bool moving) {
   std::vector<std::string> names;
   for (const v1::RigidBodyGeometry& body : geometry.rigid_bodies()) {
@@ -82,6 +94,25 @@ void PrintNames(const char* what, const std::vector<std::string>& names) {
   std::printf("%s ", what);
   for (const std::string& name : names) std::printf(" %s", name.c_str());
   std::printf("\n");
+}
+
+// Final, lowest and highest value of every series.
+void PrintSeries(const SeriesTable& table) {
+  if (table.frames().front() != 0) {
+    std::printf("values of frames %lld to %lld\n", static_cast<long long>(table.frames().front()),
+                static_cast<long long>(table.frames().back()));
+  }
+  int width = 6;
+  for (const SeriesTable::Column& column : table.columns()) {
+    if (!column.is_pose) width = std::max(width, static_cast<int>(column.name.size()));
+  }
+  std::printf("%-*s  %-6s %13s %13s %13s\n", width, "series", "unit", "final", "min", "max");
+  for (const SeriesTable::Column& column : table.columns()) {
+    if (column.is_pose) continue;
+    const Extremes e = ExtremesOf(column.values);
+    std::printf("%-*s  %-6s %13.6g %13.6g %13.6g\n", width, column.name.c_str(), column.unit.c_str(), e.final, e.lowest,
+                e.highest);
+  }
 }
 
 double WallSeconds(const v1::Job& job) {
@@ -109,6 +140,7 @@ Json JobJson(const v1::Job& job) {
   if (job.has_start_time()) json["started"] = TimeUtil::ToString(job.start_time());
   if (job.has_end_time()) json["ended"] = TimeUtil::ToString(job.end_time());
   if (job.has_failure()) json["failure"] = FailureJson(job.failure());
+  if (job.warnings_size() > 0) json["warnings"] = WarningsJson(job);
   return json;
 }
 
@@ -138,7 +170,17 @@ Json SummaryJson(const Followed& followed) {
   }
   for (const v1::LineGeometry& line : followed.geometry.lines()) json["lines"].push_back(line.name());
   if (job.has_failure()) json["failure"] = FailureJson(job.failure());
+  if (job.warnings_size() > 0) json["warnings"] = WarningsJson(job);
   return json;
+}
+
+void PrintWarnings(const v1::Job& job) {
+  for (const v1::Warning& warning : job.warnings()) {
+    std::printf("warning  %s", warning.reason().c_str());
+    if (!warning.body().empty()) std::printf(", %s", warning.body().c_str());
+    std::printf(", t = %.6g s: %s\n", warning.time(), warning.message().c_str());
+    if (!warning.advice().empty()) std::printf("  try: %s\n", warning.advice().c_str());
+  }
 }
 
 void PrintFailure(const v1::Failure& failure) {
@@ -172,22 +214,8 @@ void PrintSummary(const Followed& followed) {
   PrintNames("rigid bodies that move", NamesOfRigidBodies(followed.geometry, true));
   PrintNames("rigid bodies that stay", NamesOfRigidBodies(followed.geometry, false));
   PrintNames("lines", NamesOfLines(followed.geometry));
-  if (table.size() == 0) return;
-  if (table.frames().front() != 0) {
-    std::printf("values of frames %lld to %lld\n", static_cast<long long>(table.frames().front()),
-                static_cast<long long>(table.frames().back()));
-  }
-  int width = 6;
-  for (const SeriesTable::Column& column : table.columns()) {
-    if (!column.is_pose) width = std::max(width, static_cast<int>(column.name.size()));
-  }
-  std::printf("%-*s  %-6s %13s %13s %13s\n", width, "series", "unit", "final", "min", "max");
-  for (const SeriesTable::Column& column : table.columns()) {
-    if (column.is_pose) continue;
-    const Extremes e = ExtremesOf(column.values);
-    std::printf("%-*s  %-6s %13.6g %13.6g %13.6g\n", width, column.name.c_str(), column.unit.c_str(), e.final, e.lowest,
-                e.highest);
-  }
+  if (table.size() > 0) PrintSeries(table);
+  PrintWarnings(job);
 }
 
 int ExitCodeOf(const v1::Job& job) {

@@ -9,7 +9,7 @@ namespace fascicle::client {
 
 // The outcome of a job: state, frames, final, lowest and highest value of every series, notes on bodies.
 Json SummaryJson(const Followed& followed);
-// The same as a table on stdout; the failure, if any, with its advice.
+// The same as a table on stdout; the failure and warnings, if any, with their advice.
 void PrintSummary(const Followed& followed);
 
 // 0, 1 or 4 for the job's final state; 0 while it is running.
@@ -18,6 +18,7 @@ int ExitCodeOf(const v1::Job& job);
 // A job in the form in which `show`, `list`, `submit` and others print it.
 Json JobJson(const v1::Job& job);
 void PrintFailure(const v1::Failure& failure);
+void PrintWarnings(const v1::Job& job);
 
 }  // namespace fascicle::client
 

@@ -64,6 +64,9 @@ class EulerianRun : public MethodRun {
     }
     return frames;
   }
+  std::vector<double> ElementValues(std::size_t, OutputField, const Controls&, const Controls&) const override {
+    return {};
+  }
   std::vector<Reaction> Reactions(const Controls&, const Controls&) const override {
     std::vector<Reaction> reactions;
     for (const EulerianState& body : state_.bodies) {

@@ -28,6 +28,10 @@ struct StepOutcome {
   StepProblem problem = StepProblem::kNone;
   BadElements bad;           // where it failed
   bool try_shorter = false;  // whether it failed but ProposeStep has a shorter one
+  // The largest logarithmic strain |ln stretch| of an element during the step, if it was without inertia; else 0.
+  double largest_strain = 0;
+  std::size_t strained_body = 0;
+  std::int64_t strained_element = -1;
 };
 
 // The interface of a method for Simulation: its model of a scene, its solver, and the state of the run. Simulation
@@ -61,6 +65,9 @@ class MethodRun {
   // Positions and the requested fields of every body. now: the controls at the current time; later: those after another
   // step of the same length as the last one.
   virtual std::vector<BodyFrame> MeasureBodies(const Controls& now, const Controls& later) const = 0;
+  // A field of the elements of a body, its components one after another; empty if the method has no elements.
+  virtual std::vector<double> ElementValues(std::size_t body, OutputField field, const Controls& now,
+                                            const Controls& later) const = 0;
   // What each constraint does to its body, in the scene's order.
   virtual std::vector<Reaction> Reactions(const Controls& now, const Controls& later) const = 0;
   // One value for each of Series(). `reactions`: see above. `iterations_before`: of the clock at the previous frame.

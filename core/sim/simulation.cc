@@ -10,12 +10,13 @@
 #include "core/sim/fingerprint.h"
 #include "core/sim/floor_bodies.h"
 #include "core/sim/method_run.h"
+#include "core/sim/run_warnings.h"
 
 namespace fascicle {
 namespace {
 
 constexpr const char* kCheckpointKind = "fascicle checkpoint";
-constexpr std::uint32_t kCheckpointVersion = 4;
+constexpr std::uint32_t kCheckpointVersion = 5;
 
 struct ProblemText {
   const char* reason;
@@ -71,9 +72,8 @@ struct Simulation::Impl {
         team(threads, std::move(stop)),
         source(*scene),
         method(MakeMethodRun(*scene, team, p)),
-        layout{FloorBodies(*scene), {}, method->Series()} {
-    const std::vector<SeriesInfo> later = method->LaterSeries();
-    layout.series.insert(layout.series.end(), later.begin(), later.end());
+        layout{FloorBodies(*scene), {}, SeriesOf(*method)},
+        warnings(*scene, layout.series) {
     const double intervals = scene->duration / scene->output.frame_interval;
     // The tolerance prevents rounding from adding a frame to a whole number of intervals.
     last_frame = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(intervals * (1 - 1e-12))));
@@ -81,12 +81,20 @@ struct Simulation::Impl {
 
   ~Impl() { NoteCpu(); }
 
+  static std::vector<SeriesInfo> SeriesOf(const MethodRun& method) {
+    std::vector<SeriesInfo> series = method.Series();
+    const std::vector<SeriesInfo> later = method.LaterSeries();
+    series.insert(series.end(), later.begin(), later.end());
+    return series;
+  }
+
   void NoteCpu() {
     if (profile != nullptr) profile->NoteCpu(team.others_cpu_seconds());
   }
 
   void Start() {
     source = ControlSource(*scene);
+    warnings = RunWarnings(*scene, layout.series);
     source.Evaluate(0, now);
     method->Start(now);
     next_frame = 0;
@@ -129,6 +137,10 @@ struct Simulation::Impl {
       const StageTimer digest(profile, "digest");
       frame.digest = DigestOf(frame);
     }
+    {
+      const StageTimer warning_timer(profile, "warnings");
+      warnings.ObserveFrame(frame, *method, now, next);
+    }
     ++next_frame;
     iterations_at_frame = clock.iterations;
     settled = IsSettled();
@@ -144,6 +156,7 @@ struct Simulation::Impl {
     archive.PutInt("iterations_at_frame", iterations_at_frame);
     archive.PutInt("settled", settled ? 1 : 0);
     source.Save(archive);
+    warnings.Save(archive);
     method->Save(archive);
     return archive.Finish();
   }
@@ -155,6 +168,7 @@ struct Simulation::Impl {
     iterations_at_frame = archive.GetInt("iterations_at_frame");
     settled = archive.GetInt("settled") != 0;
     source.Load(archive);
+    warnings.Load(archive);
     method->Load(archive);
     if (!archive.AtEnd()) return false;
     source.Evaluate(method->clock().time, now);
@@ -173,7 +187,10 @@ struct Simulation::Impl {
         source.Evaluate(step.time, next);
       }
       StepOutcome outcome = method->Step(now, next, step.dt);
-      if (outcome.problem == StepProblem::kNone) std::swap(now, next);
+      if (outcome.problem == StepProblem::kNone) {
+        std::swap(now, next);
+        warnings.ObserveStep(outcome, step.time);
+      }
       if (!outcome.try_shorter) return outcome;
     }
   }
@@ -243,6 +260,7 @@ struct Simulation::Impl {
   ControlSource source;
   std::unique_ptr<MethodRun> method;
   FrameLayout layout;
+  RunWarnings warnings;
   Digest fingerprint = FingerprintOf(*scene);
   std::int64_t last_frame = 0;
 
@@ -276,6 +294,7 @@ Outcome Simulation::Run(FrameSink& sink, std::stop_token stop, std::chrono::mill
     outcome = impl_->Run(sink, checkpoint_interval);
   } catch (const Stopped&) {
   }
+  outcome.warnings = impl_->warnings.List();
   impl_->team.HeedStop({});
   return outcome;
 }

@@ -12,6 +12,7 @@
 #include "core/base/profile.h"
 #include "core/scene/scene.h"
 #include "core/sim/frame.h"
+#include "core/sim/warning.h"
 
 namespace fascicle {
 
@@ -43,6 +44,7 @@ struct Outcome {
   enum class Kind { kSucceeded, kFailed, kCancelled };
   Kind kind = Kind::kSucceeded;
   Failure failure;  // for kFailed
+  std::vector<Warning> warnings = {};
 };
 
 // Receives the results of a run. Called from the thread that runs the simulation.

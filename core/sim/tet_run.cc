@@ -4,6 +4,7 @@
 
 #include "core/sim/tet_measure.h"
 #include "core/tet/diagnostics.h"
+#include "core/tet/fields.h"
 #include "core/tet/solver.h"
 
 namespace fascicle {
@@ -23,13 +24,21 @@ class TetRun : public MethodRun {
   StepProposal ProposeStep(const Controls& now, double end) override { return solver_.ProposeStep(state_, now, end); }
   StepOutcome Step(const Controls& now, const Controls& next, double dt) override {
     StepReport report = solver_.Step(state_, now, next, dt);
-    return {report.problem, std::move(report.bad), report.try_shorter};
+    StepOutcome outcome = {report.problem, std::move(report.bad), report.try_shorter};
+    outcome.largest_strain = report.strain.value;
+    outcome.strained_body = report.strain.body;
+    outcome.strained_element = report.strain.element;
+    return outcome;
   }
 
   double LargestSpeed() const override { return fascicle::LargestSpeed(state_.velocities); }
 
   std::vector<BodyFrame> MeasureBodies(const Controls& now, const Controls& later) const override {
     return fascicle::MeasureBodies(model_, state_, {now, later}, team_);
+  }
+  std::vector<double> ElementValues(std::size_t body, OutputField field, const Controls& now,
+                                    const Controls& later) const override {
+    return FieldValuesOf(model_, body, field, state_, {now, later}, team_);
   }
   std::vector<Reaction> Reactions(const Controls& now, const Controls& later) const override {
     return fascicle::Reactions(model_, state_, now, later, team_);

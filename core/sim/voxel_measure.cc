@@ -194,6 +194,11 @@ std::vector<double> MeasureVoxelLaterSeries(const Scene& scene, const VoxelSolve
   return values;
 }
 
+std::vector<double> VoxelValuesOf(const VoxelSolver& solver, const VoxelSceneState& state, std::size_t body,
+                                  OutputField field) {
+  return FieldValuesOf(*solver.bodies()[body], state.bodies[body], state.time_step, field);
+}
+
 std::vector<BodyFrame> MeasureVoxelBodies(const Scene& scene, const VoxelSolver& solver, const VoxelSceneState& state) {
   std::vector<BodyFrame> frames(scene.bodies.size());
   for (std::size_t b = 0; b < frames.size(); ++b) {

@@ -23,6 +23,10 @@ std::vector<double> MeasureVoxelSeries(const Scene& scene, const VoxelSolver& so
 std::vector<double> MeasureVoxelLaterSeries(const Scene& scene, const VoxelSolver& solver, const VoxelSceneState& state,
                                             const std::vector<Reaction>& reactions);
 
+// A field of one body, along the world axes.
+std::vector<double> VoxelValuesOf(const VoxelSolver& solver, const VoxelSceneState& state, std::size_t body,
+                                  OutputField field);
+
 // Positions and the requested fields of every body, along the world axes.
 std::vector<BodyFrame> MeasureVoxelBodies(const Scene& scene, const VoxelSolver& solver, const VoxelSceneState& state);
 

@@ -38,6 +38,10 @@ class VoxelMethodRun : public MethodRun {
   std::vector<BodyFrame> MeasureBodies(const Controls&, const Controls&) const override {
     return MeasureVoxelBodies(scene_, solver_, state_);
   }
+  std::vector<double> ElementValues(std::size_t body, OutputField field, const Controls&,
+                                    const Controls&) const override {
+    return VoxelValuesOf(solver_, state_, body, field);
+  }
   std::vector<Reaction> Reactions(const Controls&, const Controls&) const override {
     std::vector<Reaction> reactions;
     for (const std::vector<Reaction>& of_body : state_.reactions) {

@@ -157,6 +157,7 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
     }
     PrescribeVelocities(model_, step.next, next.velocities);
   }
+  if (is_static) report.strain = LargestStepStrain(model_, now.positions, next.positions);
   next.force = now.force;
   next.stable = now.stable;
   next.smallest_ratio = SmallestRatio(next.positions);

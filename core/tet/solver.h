@@ -12,6 +12,7 @@
 #include "core/tet/newton.h"
 #include "core/tet/stable_step.h"
 #include "core/tet/state.h"
+#include "core/tet/step_strain.h"
 
 namespace fascicle {
 
@@ -25,7 +26,8 @@ struct StepReport {
   // Curvature of the energy along this step's motion times dt^2: a Rayleigh quotient of M^-1 K. The central difference
   // method is unstable if it stays above 4.
   double stiffness_of_motion = 0;
-  BadElements bad;  // where a step failed
+  BadElements bad;    // where a step failed
+  StepStrain strain;  // of quasi-static steps
 };
 
 // Steps a model in time by Lagrangian finite volumes [Teran 2003]. Not thread-safe. All functions may throw

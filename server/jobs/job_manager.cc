@@ -50,7 +50,7 @@ struct JobManager::Impl {
   Impl(Store& the_store, JobCodec the_codec, JobManagerOptions the_options)
       : store(the_store), codec(std::move(the_codec)), options(the_options), ids(NewestId(the_store)) {
     TakeUpUnfinished();
-    for (int i = 0; i < std::max(1, options.workers); ++i) workers.emplace_back([this] { Work(); });
+    for (int i = 0; i < options.workers; ++i) workers.emplace_back([this] { Work(); });
   }
 
   ~Impl() { Drain(); }

@@ -36,12 +36,13 @@ struct JobCodec {
   std::function<std::string(const Scene&, const FrameLayout&)> encode_geometry;
   std::function<std::string(const Frame&)> encode_frame;
   std::function<std::string(const Failure&)> encode_failure;
+  std::function<std::string(const std::vector<Warning>&)> encode_warnings;  // empty if there are none
   // The sum of this run and the earlier ones.
   std::function<std::string(const RunProfile&)> encode_profile;
 };
 
 struct JobManagerOptions {
-  int workers = 2;          // number of jobs that run at once
+  int workers = 2;          // number of jobs that run at once; 0: jobs stay in the queue
   int default_threads = 1;  // for jobs that ask for 0
   std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2);
 };

@@ -130,6 +130,14 @@ std::string Encode(const JobCodec& codec, const Failure& failure) {
   }
 }
 
+std::string Encode(const JobCodec& codec, const std::vector<Warning>& warnings) {
+  try {
+    return codec.encode_warnings(warnings);
+  } catch (...) {
+    return {};
+  }
+}
+
 std::string Encode(const JobCodec& codec, const RunProfile& profile) {
   try {
     return codec.encode_profile(profile);
@@ -142,6 +150,7 @@ std::string Encode(const JobCodec& codec, const RunProfile& profile) {
 ActiveJob::Change EndOf(const JobCodec& codec, const RunProfile& profile, const Outcome& outcome) {
   return [&](JobRecord& record) {
     record.profile = Encode(codec, profile);
+    record.warnings = Encode(codec, outcome.warnings);
     const bool is_cancelling = record.state == JobState::kCancelling;
     switch (outcome.kind) {
       case Outcome::Kind::kSucceeded:

@@ -142,6 +142,7 @@ grpc::Status JobServiceImpl::List(const v1::ListJobsRequest& request, v1::ListJo
     }
     v1::Job& job = *response.add_jobs() = ToMessage(view);
     job.clear_profile();  // as large as everything else
+    job.clear_warnings();
   }
   return grpc::Status::OK;
 }

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kControlApplicationId = 0x46534343;  // "FSCC"
 
-constexpr std::array<const char*, 2> kControlFormats = {
+constexpr std::array<const char*, 3> kControlFormats = {
     // Format 1. The specification has its own table: it may be large, and an update of the job must not rewrite it.
     R"(CREATE TABLE jobs (
          id TEXT PRIMARY KEY NOT NULL,
@@ -34,11 +34,13 @@ constexpr std::array<const char*, 2> kControlFormats = {
          spec BLOB NOT NULL
        ) STRICT;)",
     // Format 2.
-    "ALTER TABLE jobs ADD COLUMN profile BLOB NOT NULL DEFAULT x''"};
+    "ALTER TABLE jobs ADD COLUMN profile BLOB NOT NULL DEFAULT x''",
+    // Format 3.
+    "ALTER TABLE jobs ADD COLUMN warnings BLOB NOT NULL DEFAULT x''"};
 
 constexpr const char* kColumns =
     "id, request_id, request_digest, scene_name, threads, state, failure, attempt, generation, create_time_us, "
-    "start_time_us, end_time_us, fraction, time, step, frame_count, stored_bytes, profile";
+    "start_time_us, end_time_us, fraction, time, step, frame_count, stored_bytes, profile, warnings";
 
 // Reads a record from the columns above, in their order.
 JobRecord ReadRecord(const Rows& row) {
@@ -61,6 +63,7 @@ JobRecord ReadRecord(const Rows& row) {
   job.frame_count = row.Int(15);
   job.stored_bytes = row.Int(16);
   job.profile = row.String(17);
+  job.warnings = row.String(18);
   return job;
 }
 
@@ -90,12 +93,12 @@ ControlDatabase::ControlDatabase(const std::string& path)
     : database_(OpenFormatted(path, kControlApplicationId, kControlFormats)),
       find_request_(database_.Prepare("SELECT id FROM jobs WHERE request_id = ?")),
       insert_job_(database_.Prepare(std::string("INSERT INTO jobs (") + kColumns +
-                                    ") VALUES (?,nullif(?,''),?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")),
+                                    ") VALUES (?,nullif(?,''),?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")),
       insert_spec_(database_.Prepare("INSERT INTO specs (job_id, spec) VALUES (?, ?)")),
       update_job_(database_.Prepare(
           "UPDATE jobs SET state = ?2, failure = ?3, attempt = ?4, generation = ?5, start_time_us = ?6, "
           "end_time_us = ?7, fraction = ?8, time = ?9, step = ?10, frame_count = ?11, stored_bytes = ?12, profile = "
-          "?13 WHERE id = ?1")),
+          "?13, warnings = ?14 WHERE id = ?1")),
       delete_job_(database_.Prepare("DELETE FROM jobs WHERE id = ?")),
       writes_(database_),
       readers_([path] { return std::make_unique<Reader>(path); }) {}
@@ -114,7 +117,7 @@ bool ControlDatabase::CreateJob(const JobRecord& job, JobRecord* existing) {
     insert_job_.Run(job.id, job.request_id, Blob{job.request_digest}, job.scene_name, job.threads,
                     static_cast<int>(job.state), Blob{job.failure}, job.attempt, job.generation, job.create_time_us,
                     job.start_time_us, job.end_time_us, job.fraction, job.time, job.step, job.frame_count,
-                    job.stored_bytes, Blob{job.profile});
+                    job.stored_bytes, Blob{job.profile}, Blob{job.warnings});
     insert_spec_.Run(job.id, Blob{job.spec});
   });
   if (taken_by.empty()) return true;
@@ -129,7 +132,7 @@ std::optional<JobRecord> ControlDatabase::GetJob(std::string_view id) {
     Rows rows = reader.get.Query(id);
     if (!rows.Next()) return std::nullopt;
     JobRecord job = ReadRecord(rows);
-    job.spec = rows.String(18);
+    job.spec = rows.String(19);
     return job;
   });
 }
@@ -148,7 +151,7 @@ void ControlDatabase::UpdateJob(const JobRecord& job) {
   writes_.Run([&] {
     update_job_.Run(job.id, static_cast<int>(job.state), Blob{job.failure}, job.attempt, job.generation,
                     job.start_time_us, job.end_time_us, job.fraction, job.time, job.step, job.frame_count,
-                    job.stored_bytes, Blob{job.profile});
+                    job.stored_bytes, Blob{job.profile}, Blob{job.warnings});
   });
 }
 

@@ -46,8 +46,9 @@ struct JobRecord {
   std::string spec;  // serialized job specification, opaque here
   int threads = 1;
   JobState state = JobState::kQueued;
-  std::string failure;  // serialized failure, opaque here; empty: none
-  std::string profile;  // serialized profile, opaque here; empty: none
+  std::string failure;   // serialized failure, opaque here; empty: none
+  std::string profile;   // serialized profile, opaque here; empty: none
+  std::string warnings;  // serialized warnings, opaque here; empty: none
   std::int64_t attempt = 0;
   std::int64_t generation = 1;
   std::int64_t create_time_us = 0;  // since the Unix epoch
@@ -70,8 +71,8 @@ class JobStore {
   // Newest first, without `spec`: ids below `before_id` (empty: from the newest), states in `states` (empty: all).
   virtual std::vector<JobRecord> ListJobs(int limit, std::string_view before_id,
                                           const std::vector<JobState>& states) = 0;
-  // Writes state, failure, profile, attempt, generation, start and end time, progress and counts of a job. Does nothing
-  // if the job does not exist.
+  // Writes state, failure, profile, warnings, attempt, generation, start and end time, progress and counts of a job.
+  // Does nothing if the job does not exist.
   virtual void UpdateJob(const JobRecord& job) = 0;
   // Removes the job with its frames. False if it does not exist.
   virtual bool DeleteJob(std::string_view id) = 0;

@@ -132,6 +132,20 @@ v1::Frame EncodeFrame(const Frame& frame) {
   return encoded;
 }
 
+v1::Warnings EncodeWarnings(const std::vector<Warning>& warnings) {
+  v1::Warnings messages;
+  for (const Warning& warning : warnings) {
+    v1::Warning& message = *messages.add_warnings();
+    message.set_reason(warning.reason);
+    message.set_message(warning.message);
+    message.set_advice(warning.advice);
+    message.set_time(warning.time);
+    message.set_body(warning.body);
+    for (const std::int64_t element : warning.elements) message.add_element_ids(element);
+  }
+  return messages;
+}
+
 v1::Failure EncodeFailure(const Failure& failure) {
   v1::Failure encoded;
   encoded.set_reason(failure.reason);

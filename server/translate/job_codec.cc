@@ -37,6 +37,10 @@ JobCodec MakeJobCodec(ResultCache* results) {
                                 const FrameLayout& layout) { return Serialize(EncodeGeometry(scene, layout)); },
           .encode_frame = [](const Frame& frame) { return Serialize(EncodeFrame(frame)); },
           .encode_failure = [](const Failure& failure) { return Serialize(EncodeFailure(failure)); },
+          .encode_warnings =
+              [](const std::vector<Warning>& warnings) {
+                return warnings.empty() ? std::string() : Serialize(EncodeWarnings(warnings));
+              },
           .encode_profile = [](const RunProfile& profile) { return Serialize(EncodeProfile(profile)); }};
 }
 

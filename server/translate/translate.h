@@ -54,6 +54,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
 v1::Geometry EncodeGeometry(const Scene& scene, const FrameLayout& layout);
 v1::Frame EncodeFrame(const Frame& frame);
 v1::Failure EncodeFailure(const Failure& failure);
+v1::Warnings EncodeWarnings(const std::vector<Warning>& warnings);
 // The profile of the check of a scene, before the first run.
 v1::Profile EncodeProfileOfCheck(const Profile& profile);
 // The profile of a run, added to those of the check and of earlier runs.
