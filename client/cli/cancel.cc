@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "client/cli/command.h"
+#include "client/cli/job_source.h"
 #include "client/cli/progress_bar.h"
 #include "client/cli/summary.h"
 
@@ -17,7 +18,7 @@ constexpr const char* kCancelExamples =
 
 int Cancel(const std::string& name, const Context& context) {
   Client client = Connect(context);
-  const v1::Job job = Take(client.CancelJob(JobName(name)));
+  const v1::Job job = Take(client.CancelJob(FindJob(client, name)));
   if (context.json) {
     PrintJson(JobJson(job));
   } else {

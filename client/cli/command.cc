@@ -119,8 +119,6 @@ ScenePackage LoadSceneOrFail(const SceneArgument& scene) {
   return std::move(*package);
 }
 
-std::string JobName(const std::string& given) { return given.starts_with("jobs/") ? given : "jobs/" + given; }
-
 CLI::App* AddCommand(CLI::App& app, const std::string& name, const std::string& description,
                      const std::string& examples) {
   CLI::App* command = app.add_subcommand(name, description);

@@ -73,9 +73,6 @@ void AddSceneArgument(CLI::App& command, SceneArgument& scene);
 // Loads a scene and its files; CommandError with all problems.
 ScenePackage LoadSceneOrFail(const SceneArgument& scene);
 
-// "jobs/ID" for "ID" or "jobs/ID".
-std::string JobName(const std::string& given);
-
 // A sub-command whose options may be mixed with the global ones.
 CLI::App* AddCommand(CLI::App& app, const std::string& name, const std::string& description,
                      const std::string& examples);

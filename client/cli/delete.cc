@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "client/cli/command.h"
+#include "client/cli/job_source.h"
 
 namespace fascicle::client {
 namespace {
@@ -17,15 +18,24 @@ constexpr const char* kDeleteExamples =
 
 int Delete(const std::vector<std::string>& names, const Context& context) {
   Client client = Connect(context);
+  int exit_code = kDone;
+  // One that can't be deleted does not keep the others.
   for (const std::string& name : names) {
-    Check(client.DeleteJob(JobName(name)));
-    if (context.json) {
-      PrintJson({{"job", JobName(name)}, {"deleted", true}});
-    } else {
-      std::cout << "deleted " << JobName(name) << '\n';
+    try {
+      const std::string job = FindJob(client, name);
+      Check(client.DeleteJob(job));
+      if (context.json) {
+        PrintJson({{"job", job}, {"deleted", true}});
+      } else {
+        std::cout << "deleted " << job << '\n';
+      }
+    } catch (const CommandError& error) {
+      if (error.error().kind == Error::Kind::kNoServer) throw;
+      PrintError(error.error(), context.json);
+      exit_code = ExitCodeOf(error.error().kind);
     }
   }
-  return kDone;
+  return exit_code;
 }
 
 }  // namespace

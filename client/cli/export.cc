@@ -8,6 +8,7 @@
 
 #include "client/cli/command.h"
 #include "client/cli/follow.h"
+#include "client/cli/job_source.h"
 #include "client/export/csv.h"
 #include "client/export/vtk_series.h"
 #include "client/lib/decode.h"
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 constexpr const char* kExportExamples =
     R"(  fascicle export 3f2a --out results                  frames.pvd with its .vtu and .vtp files, and series.csv
   fascicle export 3f2a --out results --format csv     only the table
+  fascicle export out --out results                   the job of the run that wrote the folder out
   fascicle export 3f2a --out results --from 10 --to 20 --every 2
 )";
 
@@ -35,7 +37,7 @@ struct ExportOptions {
 
 int Export(const ExportOptions& options, const Context& context) {
   const std::set<std::string> formats(options.formats.begin(), options.formats.end());
-  Client client = Connect(context);
+  JobSource source = OpenJob(context, options.job);
   std::optional<VtkSeriesWriter> writer;
   std::optional<SeriesTable> table;
   const auto on_frame = [&](const v1::Geometry& geometry, const v1::Frame& frame) {
@@ -50,7 +52,7 @@ int Export(const ExportOptions& options, const Context& context) {
     }
     return true;
   };
-  const Followed followed = ReadStored(client, JobName(options.job), options.from, on_frame);
+  const Followed followed = ReadStored(source.client, source.job, options.from, on_frame);
   if (!table) {
     throw CommandError::Invalid("there is no such frame; the job has " + std::to_string(followed.job.frame_count()));
   }

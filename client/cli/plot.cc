@@ -11,14 +11,17 @@
 
 #include "client/cli/command.h"
 #include "client/cli/follow.h"
+#include "client/cli/job_source.h"
 #include "client/cli/outputs.h"
 #include "client/cli/terminal_plot.h"
+#include "core/base/letters.h"
 
 namespace fascicle::client {
 namespace {
 
 constexpr const char* kPlotExamples =
     R"(  fascicle plot 3f2a                                         every series that is not zero, in the terminal
+  fascicle plot out                                          those of the run that wrote the folder out
   fascicle plot 3f2a --series '*/reaction/*' --series 'energy/*'
   fascicle plot 3f2a --series '*volume_ratio' --out volume.png
   fascicle plot 3f2a 77c1 --series '*/reaction/end/z' --x probe/end/z --from 1 --out force_length.png
@@ -77,11 +80,12 @@ void Merge(const v1::Job& job, std::vector<PlotPanel> own, std::vector<PlotPanel
   }
 }
 
-std::vector<PlotPanel> PanelsOfJobs(Client& client, const PlotOptions& options) {
+std::vector<PlotPanel> PanelsOfJobs(const PlotOptions& options, const Context& context) {
   std::vector<PlotPanel> panels;
   for (const std::string& name : options.jobs) {
+    JobSource source = OpenJob(context, name);
     const Followed job =
-        ReadStored(client, JobName(name), 0, [](const v1::Geometry&, const v1::Frame&) { return true; });
+        ReadStored(source.client, source.job, 0, [](const v1::Geometry&, const v1::Frame&) { return true; });
     std::vector<PlotPanel> own = PanelsOf(job.table, options.series);
     SetAbscissa(job.table, options, own);
     if (options.jobs.size() == 1) return own;
@@ -91,8 +95,10 @@ std::vector<PlotPanel> PanelsOfJobs(Client& client, const PlotOptions& options) 
 }
 
 int Plot(const PlotOptions& options, const Context& context) {
-  Client client = Connect(context);
-  const std::vector<PlotPanel> panels = PanelsOfJobs(client, options);
+  if (!options.out.empty() && LowerExtension(options.out) != ".png") {
+    throw CommandError::Invalid("--out: plots are written as PNG: the name must end in .png");
+  }
+  const std::vector<PlotPanel> panels = PanelsOfJobs(options, context);
   if (panels.empty()) throw CommandError::Invalid("all series are zero; choose some with --series");
   if (!options.out.empty()) WritePlot(panels, options.out);
   if (context.json) {

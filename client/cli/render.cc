@@ -14,11 +14,13 @@
 
 #include "client/cli/command.h"
 #include "client/cli/follow.h"
+#include "client/cli/job_source.h"
 #include "client/cli/outputs.h"
 #include "client/cli/stage_progress.h"
 #include "client/lib/decode.h"
 #include "client/render/body_labels.h"
 #include "client/render/slices.h"
+#include "core/base/letters.h"
 #include "core/imaging/volume_reader.h"
 
 namespace fascicle::client {
@@ -26,6 +28,7 @@ namespace {
 
 constexpr const char* kRenderExamples =
     R"(  fascicle render 3f2a --out last.png                             the last frame, coloured by displacement
+  fascicle render out --out last.png                              that of the run that wrote the folder out
   fascicle render 3f2a --out f7.png --frame 7 --colour cauchy_stress/zz --wireframe
   fascicle render 3f2a --out fibres.png --fibres --view front --size 900x1200
   fascicle render 3f2a --out a.png --colour volume_ratio --range 0.98 1.02 --azimuth 30 --elevation 15
@@ -67,7 +70,7 @@ struct RenderOptions {
   std::optional<std::string> title;
 };
 
-bool IsGif(const RenderOptions& options) { return std::filesystem::path(options.out).extension() == ".gif"; }
+bool IsGif(const RenderOptions& options) { return LowerExtension(options.out) == ".gif"; }
 
 struct Angles {
   double azimuth, elevation;
@@ -195,19 +198,23 @@ int Render(const RenderOptions& options, const Context& context) {
     throw CommandError::Invalid("--style slices and --scan must be used together: the outline is drawn on the scan");
   }
   (void)ParseSize(options.size);
+  if (!IsGif(options) && LowerExtension(options.out) != ".png") {
+    throw CommandError::Invalid(
+        "--out: pictures are written as PNG, animations as GIF: the name must end in .png or .gif");
+  }
   if (options.turntable > 0 && !IsGif(options)) {
     throw CommandError::Invalid("--turntable: needs an animated GIF: --out must end in .gif");
   }
-  Client client = Connect(context);
-  const std::string name = JobName(options.job);
-  const v1::Job job = Take(client.GetJob(name));
+  JobSource source = OpenJob(context, options.job);
+  const std::string& name = source.job;
+  const v1::Job job = Take(source.client.GetJob(name));
   if (job.frame_count() == 0) throw CommandError::Invalid(name + " has no frames yet");
   const std::vector<std::int64_t> indices = FrameIndices(options, job);
   std::vector<v1::Frame> frames;
   v1::Geometry geometry;
   for (const std::int64_t index : indices) {
     const Followed followed =
-        ReadStored(client, name, index, [](const v1::Geometry&, const v1::Frame&) { return false; });
+        ReadStored(source.client, name, index, [](const v1::Geometry&, const v1::Frame&) { return false; });
     if (!followed.last_frame) throw std::runtime_error("the server did not send frame " + std::to_string(index));
     geometry = followed.geometry;
     frames.push_back(*followed.last_frame);

@@ -12,6 +12,7 @@
 #include "client/cli/digests.h"
 #include "client/cli/follow.h"
 #include "client/cli/interrupts.h"
+#include "client/cli/job_source.h"
 #include "client/cli/outputs.h"
 #include "client/cli/profile_table.h"
 #include "client/cli/summary.h"
@@ -27,6 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRunExamples = R"(  fascicle run scene.json                         simulate and print a summary
   fascicle run scene.json --out out               and keep series.csv, series.png, frames.pvd and last.png in out/
+  fascicle render out --out fibres.png --fibres   the same job again: plot, render, export, sample and show take out/
   fascicle run scene.json --threads 2 --data db   on two threads; the server's database stays in db/
   fascicle run scene.json --profile               and print the time spent in each stage
   fascicle run scene.json --set 'bodies[0].activation.values=[0, 0.5]'
@@ -74,18 +76,34 @@ void WriteResults(const Followed& followed, const fs::path& folder) {
               folder / "last.png");
 }
 
+// A results folder keeps the job of its last run only. One whose run was killed would go on first.
+void CancelAll(Client& client) {
+  for (const v1::Job& job : Take(client.ListJobs(1000, {}))) {
+    if (!IsFinal(job.state())) Take(client.CancelJob(job.name()));
+  }
+}
+void DeleteOthers(Client& client, const std::string& job) {
+  for (const v1::Job& other : Take(client.ListJobs(1000, {}))) {
+    if (other.name() != job) Check(client.DeleteJob(other.name()));
+  }
+}
+
 int Run(const RunOptions& options, const Context& context) {
   const ScenePackage package = LoadSceneOrFail(options.scene);
   // Created before the server, whose threads must not receive the signals.
   const StopOnInterrupt interrupts;
   std::unique_ptr<TemporaryFolder> temporary;
-  if (options.data.empty()) temporary = std::make_unique<TemporaryFolder>();
+  const bool keeps_one = options.data.empty() && !options.out.empty();
+  if (options.data.empty() && options.out.empty()) temporary = std::make_unique<TemporaryFolder>();
   server::ServerOptions server_options;
-  server_options.data_directory = temporary ? temporary->path().string() : options.data;
+  server_options.data_directory = temporary   ? temporary->path().string()
+                                  : keeps_one ? DataFolderIn(options.out).string()
+                                              : options.data;
   server_options.workers = 1;
   server_options.default_threads = options.threads;
   const auto server = server::EmbeddedServer::Start(server_options);
   Client client(server->address());
+  if (keeps_one) CancelAll(client);
   const v1::Job job = Take(client.Submit(package, options.threads, interrupts.token()));
   const std::stop_callback cancel(interrupts.token(), [&] { (void)client.CancelJob(job.name()); });
   std::optional<VtkSeriesWriter> frames;
@@ -96,6 +114,7 @@ int Run(const RunOptions& options, const Context& context) {
     frames->Add(frame);
   };
   const Followed followed = Follow(client, job.name(), 0, on_frame, {});
+  if (keeps_one) DeleteOthers(client, job.name());
   server->Stop();
   if (frames) frames->Finish();
   if (context.json) {
@@ -108,7 +127,10 @@ int Run(const RunOptions& options, const Context& context) {
   }
   if (!options.out.empty()) {
     WriteResults(followed, options.out);
-    if (!context.json) std::cout << "results written to " << options.out << "\n";
+    if (!context.json) {
+      std::cout << "results written to " << options.out << "; for more: fascicle plot " << options.out
+                << ", fascicle render " << options.out << " --out picture.png\n";
+    }
   }
   return ExitCodeOf(followed.job);
 }
@@ -119,7 +141,8 @@ void AddRun(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "run", "Simulate a scene on this machine, without a server", kRunExamples);
   const auto options = std::make_shared<RunOptions>();
   AddSceneArgument(*command, options->scene);
-  command->add_option("--out", options->out, "Folder for results: series.csv, frames.pvd, pictures, summary.json")
+  command
+      ->add_option("--out", options->out, "Folder for results: the job, series.csv, frames.pvd, pictures, summary.json")
       ->type_name("DIR");
   command->add_option("--data", options->data, "Keep the server's database in this folder")->type_name("DIR");
   command->add_option("--threads", options->threads, "Number of threads; results do not depend on it")

@@ -17,6 +17,7 @@
 #include "client/cli/command.h"
 #include "client/cli/follow.h"
 #include "client/cli/input_file.h"
+#include "client/cli/job_source.h"
 #include "client/cli/outputs.h"
 #include "client/cli/units.h"
 #include "client/export/csv.h"
@@ -139,7 +140,7 @@ std::vector<std::int64_t> ChosenFrames(const std::string& text, std::int64_t cou
 // Calls call(snapshot) for each chosen frame, in order.
 template <class Call>
 void ForSnapshots(const SampleOptions& options, const Context& context, const Call& call) {
-  if (std::filesystem::is_directory(options.source)) {
+  if (std::filesystem::is_directory(options.source) && !IsJobFolder(options.source)) {
     if (!HasSeries(options.source)) {
       throw CommandError::Invalid(options.source + " has no frames.pvd; give a job, or a folder that `fascicle run " +
                                   "--out` or `fascicle export` wrote");
@@ -150,12 +151,12 @@ void ForSnapshots(const SampleOptions& options, const Context& context, const Ca
     }
     return;
   }
-  Client client = Connect(context);
-  const std::string name = JobName(options.source);
-  const v1::Job job = Take(client.GetJob(name));
+  JobSource source = OpenJob(context, options.source);
+  const std::string& name = source.job;
+  const v1::Job job = Take(source.client.GetJob(name));
   if (job.frame_count() == 0) throw CommandError::Invalid(name + " has no frames yet");
   const std::vector<std::int64_t> frames = ChosenFrames(options.frames, job.frame_count());
-  ReadStored(client, name, frames.front(), [&](const v1::Geometry& geometry, const v1::Frame& frame) {
+  ReadStored(source.client, name, frames.front(), [&](const v1::Geometry& geometry, const v1::Frame& frame) {
     if (!std::binary_search(frames.begin(), frames.end(), frame.index())) return true;
     CheckDigest(frame);
     call(SnapshotOf(geometry, frame));

@@ -8,6 +8,7 @@
 #include "client/cli/digests.h"
 #include "client/cli/follow.h"
 #include "client/cli/interrupts.h"
+#include "client/cli/job_source.h"
 #include "client/cli/profile_table.h"
 #include "client/cli/summary.h"
 
@@ -37,7 +38,8 @@ int Watch(const WatchArguments& options, const Context& context) {
   if (options.digests) {
     on_frame = [&](const v1::Geometry&, const v1::Frame& frame) { PrintDigest(frame, context.json); };
   }
-  const Followed followed = Follow(client, JobName(options.job), options.from, on_frame, interrupted.get_token());
+  const Followed followed =
+      Follow(client, FindJob(client, options.job), options.from, on_frame, interrupted.get_token());
   if (context.json) {
     Json summary = SummaryJson(followed);
     if (options.profile) summary["profile"] = ProfileJson(followed.job);

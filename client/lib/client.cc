@@ -71,6 +71,8 @@ Client::Client(const std::string& address) : impl_(std::make_unique<Impl>(addres
 
 Client::~Client() = default;
 
+Client::Client(Client&&) noexcept = default;
+
 Result<v1::ServerInfo> Client::GetServerInfo() {
   return impl_->Ask<v1::ServerInfo>(kTimeout, [this](grpc::ClientContext& context, v1::ServerInfo& response) {
     return impl_->connection.server().GetServerInfo(&context, {}, &response);

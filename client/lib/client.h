@@ -78,6 +78,7 @@ class Client {
  public:
   explicit Client(const std::string& address);
   ~Client();
+  Client(Client&&) noexcept;
 
   Result<v1::ServerInfo> GetServerInfo();
   // Uploads the files that the server lacks and creates the job. A stop request ends it with kStopped, and also ends

@@ -201,6 +201,63 @@ TEST_F(CliTest, SampleReadsAnExportedFolder) {
   }
 }
 
+// Everything that takes a job takes the folder of `run --out`, too, and the data folder of a server.
+TEST_F(CliTest, AFolderStandsForItsJob) {
+  const std::string scene = File("scene.json", SceneText(4, 20)), out = folder_ / "out";
+  ASSERT_EQ(Fascicle({"run", scene, "--out", out}).exit_code, 0);
+  const Finished again = Fascicle({"run", scene, "--out", out});  // replaces the job of the first run
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.out, HasSubstr("fascicle plot " + out));
+  const json job = json::parse(Fascicle({"show", out, "--json"}, kNobody).out);
+  EXPECT_EQ(job["frames"], 5);
+  const std::string name = job["job"];
+  EXPECT_THAT(again.out, HasSubstr(name));
+  EXPECT_EQ(Fascicle({"render", out, "--out", File("a.png")}, kNobody).exit_code, 0);
+  EXPECT_GT(fs::file_size(File("a.png")), 1000u);
+  EXPECT_EQ(Fascicle({"plot", out + "/data", "--out", File("b.png")}, kNobody).exit_code, 0);
+  EXPECT_GT(fs::file_size(File("b.png")), 1000u);
+  EXPECT_EQ(Fascicle({"export", out + "/" + name, "--out", File("e"), "--format", "csv"}, kNobody).exit_code, 0);
+  EXPECT_EQ(ReadFile(folder_ / "e/series.csv"), ReadFile(out + "/series.csv"));
+  const std::string last = name.substr(name.size() - 6);
+  EXPECT_EQ(json::parse(Fascicle({"show", out + "/jobs/" + last, "--json"}, kNobody).out)["job"], name);
+  const Finished none = Fascicle({"plot", folder_ / "tmp"}, kNobody);
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("keeps no job"));
+  const Finished unknown = Fascicle({"show", out + "/jobs/zzz"}, kNobody);
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("no job's name begins or ends with zzz"));
+}
+
+TEST_F(CliTest, PicturesOfOtherFormatsAreRefused) {
+  const std::string scene = File("scene.json", SceneText(2, 5)), out = folder_ / "out";
+  ASSERT_EQ(Fascicle({"run", scene, "--out", out}).exit_code, 0);
+  for (const char* command : {"render", "plot"}) {
+    const Finished finished = Fascicle({command, out, "--out", File("a.mp4")});
+    EXPECT_EQ(finished.exit_code, 2) << command;
+    EXPECT_THAT(finished.err, HasSubstr("must end in .png")) << command;
+    EXPECT_FALSE(HasFile("a.mp4")) << command;
+  }
+}
+
+// A bar of rubber that one step compresses to half its height.
+TEST_F(CliTest, WarningsEndTheSummary) {
+  const std::string scene = File("squeezed.json", R"({"name": "squeezed", "bodies": [{"name": "bar", "unit": "mm",
+    "mesh": {"box": {"size": [10, 10, 10], "divisions": [2, 2, 2]}},
+    "material": {"mooney_rivlin": {"c1": 2e3, "c2": 1e3, "bulk_modulus": 1e6}},
+    "regions": [{"name": "low", "plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}},
+                {"name": "high", "plane": {"point": [0, 0, 10], "normal": [0, 0, 1]}}],
+    "constraints": [{"region": "low"}, {"region": "high",
+      "motion": {"translation": [{"axis": "z", "curve": {"times": [0, 1], "values": [0, -0.005]}}]}}]}],
+    "duration": 1, "output": {"frame_interval": 1}, "tet": {"stepping": "quasi_static"}})");
+  const Finished run = Fascicle({"run", scene, "--out", folder_ / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("warning  LARGE_STEP, bar, t = 1 s: a single step"), HasSubstr("  try: ")));
+  const json job = json::parse(Fascicle({"show", folder_ / "out", "--json"}).out);
+  ASSERT_GE(job["warnings"].size(), 1u);
+  EXPECT_EQ(job["warnings"].back()["reason"], "LARGE_STEP");
+  EXPECT_EQ(job["warnings"].back()["body"], "bar");
+}
+
 TEST_F(CliTest, RunWithoutDataLeavesNothing) {
   const Finished finished = Fascicle({"run", File("scene.json", SceneText(2, 5))});
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
