@@ -1,6 +1,6 @@
 // Rigid motions of a part about its centre c: x -> u + w x (x - c), as vectors of six components (u, w), with lengths
-// in units of the part's radius. Those that move no held component are the null space of the sum of outer products of
-// rows, one row for each held component.
+// in units of the part's radius. Those that move no prescribed component are the null space of the sum of outer
+// products of rows, one row for each prescribed component.
 #include "core/scene/free_motions.h"
 
 #include <Eigen/Eigenvalues>
@@ -19,8 +19,8 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Motions = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-// Held motions have eigenvalues above this, relative to the largest. A support whose extent is below its root, relative
-// to the part's, counts as a point or a line.
+// Constrained motions have eigenvalues above this, relative to the largest. A support whose extent is below its root,
+// relative to the part's, counts as a point or a line.
 constexpr double kNone = 1e-10;
 constexpr double kAligned = 1e-6;
 

@@ -19,7 +19,7 @@ struct FreePart {
 };
 
 // The parts (elements connected by nodes) of a body with a TetShape that have infinitesimal rigid motions under which
-// no held component of a node moves. Held components are those of its constraints, whatever their motion.
+// no prescribed component of a node moves. Prescribed are the components of its constraints, whatever their motion.
 std::vector<FreePart> FindFreeParts(const Body& body);
 
 }  // namespace fascicle
