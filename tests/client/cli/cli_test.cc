@@ -241,7 +241,7 @@ TEST_F(CliTest, PicturesOfOtherFormatsAreRefused) {
 
 // A bar of rubber that one step compresses to half its height.
 TEST_F(CliTest, WarningsEndTheSummary) {
-  const std::string scene = File("squeezed.json", R"({"name": "squeezed", "bodies": [{"name": "bar", "unit": "mm",
+  const std::string scene = File("compressed.json", R"({"name": "compressed", "bodies": [{"name": "bar", "unit": "mm",
     "mesh": {"box": {"size": [10, 10, 10], "divisions": [2, 2, 2]}},
     "material": {"mooney_rivlin": {"c1": 2e3, "c2": 1e3, "bulk_modulus": 1e6}},
     "regions": [{"name": "low", "plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}},
