@@ -28,7 +28,7 @@ struct StepOutcome {
   StepProblem problem = StepProblem::kNone;
   BadElements bad;           // where it failed
   bool try_shorter = false;  // whether it failed but ProposeStep has a shorter one
-  // The largest logarithmic strain |ln stretch| of an element during the step, if it was without inertia; else 0.
+  // The logarithmic strain |ln stretch| during the step that 1 % of a body exceeds, if it was without inertia; else 0.
   double largest_strain = 0;
   std::size_t strained_body = 0;
   std::int64_t strained_element = -1;

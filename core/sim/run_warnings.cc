@@ -192,10 +192,9 @@ std::optional<Warning> RunWarnings::EnergyWarning() const {
 std::optional<Warning> RunWarnings::StepWarning() const {
   if (!(step_.value > kLargestStepStrain)) return std::nullopt;
   Warning warning{"LARGE_STEP",
-                  Format("a single step changes lengths in %s by a factor of %.2f", ElementText(step_.element).c_str(),
-                         std::exp(step_.value)),
-                  "the equilibrium found may differ from that of a slower motion: repeat with a smaller time_step, or "
-                  "with --check",
+                  Format("a single step changes lengths by a factor of %.2f, as in %s", std::exp(step_.value),
+                         ElementText(step_.element).c_str()),
+                  "the equilibrium found may differ from that of a slower motion: repeat with a smaller time_step",
                   step_.time,
                   scene_->bodies[step_body_].name,
                   {}};

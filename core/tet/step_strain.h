@@ -5,14 +5,16 @@
 
 namespace fascicle {
 
-// The largest logarithmic strain |ln stretch| of an element between two positions of the nodes.
+// The logarithmic strain |ln stretch| between two positions of the nodes that 1 % of a body's volume exceeds, and the
+// element where it is reached. The few elements at the rim of a support do not count: their strain grows without bound
+// as the mesh is refined.
 struct StepStrain {
   double value = 0;
   std::size_t body = 0;
   std::int64_t element = -1;  // in the body's mesh; -1: none
 };
 
-// By the corners of each element, with valid positions `before`.
+// Of the body in which it is largest. By the corners of each element, with valid positions `before`.
 StepStrain LargestStepStrain(const TetModel& model, const NodalVector& before, const NodalVector& after);
 
 }  // namespace fascicle

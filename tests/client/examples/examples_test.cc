@@ -111,6 +111,20 @@ std::vector<double> SeriesOf(const std::filesystem::path& csv, const std::string
   return values;
 }
 
+// The README shows it.
+TEST_F(ExampleTest, FirstMuscle) {
+  const std::string readme = ReadFile(ProjectRoot() / "README.md");
+  const std::size_t begin = readme.find("```json") + 7;
+  json example = json::parse(ReadFile(ProjectRoot() / "client/examples/first_muscle.json"), nullptr, true, true);
+  example.erase("description");
+  EXPECT_EQ(json::parse(readme.substr(begin, readme.find("```", begin) - begin)), example);
+  const json summary = RunExample("first_muscle");
+  EXPECT_NEAR(Final(summary, "muscle/reaction/insertion/z"), 26.93, 0.01 * 26.93);
+  EXPECT_NEAR(Final(summary, "muscle/reaction/origin/z"), -Final(summary, "muscle/reaction/insertion/z"), 1e-4);
+  EXPECT_GT(Final(summary, "muscle/min_volume_ratio"), 0.9);
+  EXPECT_NEAR(Final(summary, "muscle/volume_ratio"), 1, 0.003);
+}
+
 TEST_F(ExampleTest, VoxelCantilever) {
   const json summary = RunExample("voxel_cantilever");
   // F L^3 / (3 E I) + F L / (5/6 G A), less about 1 % for the clamped end and 16 bricks across.
