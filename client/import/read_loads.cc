@@ -1,4 +1,4 @@
-// <Loads>: nodal forces, tractions, pressures, body forces [FEBio User Manual, 3.13].
+// <Loads>: nodal forces, tractions, pressures, body forces [FEBio User Manual, 3.13; 2.9, 3.10].
 #include <string_view>
 
 #include "client/import/sections.h"
@@ -31,18 +31,20 @@ class LoadReader {
     } else if (element == "body_load" && type == "body force") {
       ReadBodyForce(node);
     } else {
-      source_.Tell(Notice::Kind::kNotTaken, node, "loads of type " + Quoted(type) + " are not supported");
+      source_.Tell(Notice::Kind::kNotTaken, node, "loads of type " + Quoted(type) + " are not supported",
+                   "write it as nodal forces, a traction or a body force, or remove it");
     }
   }
 
  private:
+  // Version 2.5 has the direction as the attribute bc.
   void ReadNodalLoad(pugi::xml_node node) {
     source_.Take(node);
     NodalForces forces;
     forces.node = node;
     forces.set = source_.Required(node, "node_set");
     const pugi::xml_node dof = node.child("dof");
-    const std::string name = dof ? source_.Text(dof) : std::string();
+    const std::string name = dof ? source_.Text(dof) : std::string(node.attribute("bc").value());
     const std::size_t axis = std::string_view("xyz").find(name.size() == 1 ? name[0] : '?');
     if (axis == std::string_view::npos) {
       return source_.Fail(dof ? dof : node, Quoted(name) + " is not a direction", "<dof> must be x, y or z");
@@ -92,12 +94,12 @@ class LoadReader {
     if (!traction) return source_.Fail(node, "has no traction", "give <traction>x,y,z</traction>");
     std::optional<std::int64_t> ignored;
     const auto vector = DrivenVector(traction, ignored);
-    if (ignored) {
-      source_.Tell(Notice::Kind::kChanged, traction, "its lc is ignored, as in FEBio: that of <scale> applies");
-    }
+    if (ignored)
+      source_.Remark(Notice::Kind::kNote, traction, "its lc is ignored, as in FEBio: that of <scale> applies");
     if (!IsLinear(node) && vector) {
-      source_.Tell(Notice::Kind::kChanged, traction,
-                   "acts per rest area; FEBio's grows with the surface, unless <linear> is 1");
+      source_.Remark(Notice::Kind::kChanged, traction,
+                     "acts per rest area; FEBio's grows with the surface, unless <linear> is 1",
+                     "set <linear> to 1 if the total force should not grow");
     }
     if (!vector || load.surface.empty()) return;
     load.traction = scale.value * *vector;
@@ -125,9 +127,10 @@ class LoadReader {
       if (other && std::string_view(name) == "symmetric_stiffness") source_.TakeAll(other);
     }
     if (!IsLinear(node)) {
-      source_.Tell(Notice::Kind::kChanged, child,
-                   "keeps the direction and area of the rest surface; FEBio's follows the deformed surface, unless "
-                   "<linear> is 1");
+      source_.Remark(Notice::Kind::kChanged, child,
+                     "keeps the direction and area of the rest surface; FEBio's follows the deformed surface, unless "
+                     "<linear> is 1",
+                     "set <linear> to 1 if the pressure should not follow");
     }
     if (!load.surface.empty()) model_.surface_loads.push_back(std::move(load));
   }
@@ -136,13 +139,13 @@ class LoadReader {
   void AddBodyForce(const Vec3& force, std::optional<std::int64_t> controller, pugi::xml_node node) {
     if (force.isZero(0)) return;
     model_.body_forces.push_back({-force, controller, node});
-    source_.notices.push_back({Notice::Kind::kSetting, source_.LineOf(node), source_.Where(node),
-                               "acts against the vector that is given, as in FEBio's solver"});
+    source_.Remark(Notice::Kind::kNote, node, "acts against the vector that is given, as in FEBio's solver");
   }
 
   bool ActsEverywhere(pugi::xml_node node) {
     if (!node.attribute("elem_set")) return true;
-    source_.Tell(Notice::Kind::kNotTaken, node, "a body force on a part of the model; gravity acts on all of it");
+    source_.Tell(Notice::Kind::kNotTaken, node, "a body force on a part of the model; gravity acts on all of it",
+                 "remove elem_set, or the load");
     return false;
   }
 

@@ -25,11 +25,7 @@ class ElementDataReader {
     const std::string set = source_.Required(section, "elem_set");
     if (set.empty()) return;
     const std::vector<std::int64_t>* ids = FindElements(model_.mesh, set);
-    if (ids == nullptr) {
-      // The set may be a part that is not supported.
-      if (model_.mesh.part_names.contains(set)) return;
-      return source_.Fail(section, "there is no element set or part " + Quoted(set));
-    }
+    if (ids == nullptr) return source_.Fail(section, "there is no element set or part " + Quoted(set));
     for (const pugi::xml_node node : section.children()) {
       if (node.type() != pugi::node_element) continue;
       const auto lid = source_.IntegerAttribute(node, "lid");
