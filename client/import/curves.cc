@@ -143,7 +143,7 @@ std::optional<CurveMaker::Points> CurveMaker::OfFormula(std::int64_t controller,
   const double steps = model_.control.steps;
   const double begin = curve.times.empty() ? 0 : curve.times[0], end = curve.times.empty() ? End() : curve.times[1];
   const double pieces = steps * std::ceil(kFewest / std::max(1.0, steps));
-  if (!(pieces < kMaxPoints)) return std::nullopt;
+  if (!(pieces >= 1 && pieces < kMaxPoints)) return std::nullopt;
   Points points;
   for (double i = 0; i <= pieces; ++i) {
     const double t = begin + (end - begin) * (i / pieces);
@@ -221,7 +221,7 @@ bool CurveMaker::ExtendAfter(const LoadCurve& curve, Points& points) const {
   const std::size_t n = base.times.size() - 1;
   const double end = base.times[n], period = end - base.times[0];
   if (end >= End() || n == 0) return true;
-  if (curve.extension == kZero) points.Add(end + kRamp * period, 0);
+  if (curve.extension == kZero && base.values[n] != 0) points.AddLater(end + kRamp * period, 0);
   if (curve.extension == kExtrapolate && MayExtrapolate(curve)) {
     points.Add(End(), Line(End(), base.times[n - 1], base.values[n - 1], end, base.values[n]));
   }
@@ -231,10 +231,10 @@ bool CurveMaker::ExtendAfter(const LoadCurve& curve, Points& points) const {
   for (double k = 1; k <= copies; ++k) {
     const double offset = curve.extension == kRepeatOffset ? k * (base.values[n] - base.values[0]) : 0;
     const double start = points.times.back();
-    if (base.values[0] + offset != points.values.back()) points.Add(start + kRamp * period, base.values[0] + offset);
+    if (base.values[0] + offset != points.values.back())
+      points.AddLater(start + kRamp * period, base.values[0] + offset);
     for (std::size_t i = 1; i <= n; ++i) {
-      const double t = base.times[i] + k * period;
-      if (t > points.times.back()) points.Add(t, base.values[i] + offset);
+      points.AddLater(base.times[i] + k * period, base.values[i] + offset);
     }
   }
   return true;

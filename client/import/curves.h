@@ -37,6 +37,10 @@ class CurveMaker {
       times.push_back(time);
       values.push_back(value);
     }
+    // The same, unless the time is not later than the last one.
+    void AddLater(double time, double value) {
+      if (time > times.back()) Add(time, value);
+    }
   };
   // The points of a controller from 0 to the end of the analysis, or to where it is constant; computed once.
   std::optional<Points> Resolve(std::int64_t controller, pugi::xml_node node);

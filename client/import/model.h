@@ -161,7 +161,8 @@ struct NodalForces {
 struct SurfaceLoad {
   std::string surface;
   Vec3 traction = Vec3::Zero();
-  double pressure = 0;  // positive against the outward normal
+  double pressure = 0;          // positive against the outward normal
+  std::vector<double> factors;  // of each facet; 1 if empty
   std::optional<std::int64_t> controller;
   pugi::xml_node node;
 };
@@ -185,6 +186,12 @@ struct ElementData {
   std::map<std::string, std::unordered_map<std::int64_t, Vec3>> maps;  // by name
 };
 
+// A number for each facet of a surface.
+struct SurfaceMap {
+  std::string surface;
+  std::vector<double> values;
+};
+
 struct Model {
   UnitSystem units;
   std::string version;
@@ -193,6 +200,7 @@ struct Model {
   std::vector<ImportedMaterial> materials;
   std::unordered_map<std::string, std::size_t> material_index;  // by name, and by number where no name is the same
   ElementData data;
+  std::map<std::string, SurfaceMap> surface_maps;  // by name
   std::map<std::int64_t, LoadCurve> curves;
   std::vector<Support> supports;
   std::map<std::int32_t, RigidBody> rigid_bodies;  // by index of the material

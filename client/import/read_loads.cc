@@ -1,4 +1,5 @@
 // <Loads>: nodal forces, tractions, pressures, body forces [FEBio User Manual, 3.13; 2.9, 3.10].
+#include <cmath>
 #include <string_view>
 
 #include "client/import/sections.h"
@@ -88,7 +89,7 @@ class LoadReader {
     load.surface = source_.Required(node, "surface");
     Driven scale;
     scale.value = 1;
-    if (const pugi::xml_node child = node.child("scale")) scale = source_.DrivenNumber(child);
+    if (const pugi::xml_node child = node.child("scale")) scale = Mapped(child, load);
     load.controller = scale.controller;
     const pugi::xml_node traction = node.child("traction");
     if (!traction) return source_.Fail(node, "has no traction", "give <traction>x,y,z</traction>");
@@ -103,7 +104,28 @@ class LoadReader {
     }
     if (!vector || load.surface.empty()) return;
     load.traction = scale.value * *vector;
+    if (!Finite(load)) return;
     model_.surface_loads.push_back(std::move(load));
+  }
+
+  // A number, or a map of numbers of the load's surface, or a formula of one: the number is 1 then, with factors.
+  Driven Mapped(pugi::xml_node node, SurfaceLoad& load) {
+    const std::string_view type = node.attribute("type").value();
+    if (type != "map" && type != "math") return source_.DrivenNumber(node);
+    const std::string text = source_.MathText(node);
+    for (const auto& [name, map] : model_.surface_maps) {
+      std::string mistake;
+      const auto formula = Expression::Parse(text, name, mistake);
+      if (!formula || map.surface != load.surface || Expression::Parse(text, "", mistake)) continue;
+      for (const double value : map.values) load.factors.push_back(formula->At(value));
+      Driven driven;
+      driven.node = node;
+      driven.value = 1;
+      if (node.attribute("lc")) driven.controller = source_.IntegerAttribute(node, "lc");
+      if (driven.controller && *driven.controller <= 0) driven.controller.reset();
+      return driven;
+    }
+    return source_.DrivenNumber(node);
   }
 
   // Whether a surface load refers to the rest shape.
@@ -119,7 +141,7 @@ class LoadReader {
     load.surface = source_.Required(node, "surface");
     const pugi::xml_node child = node.child("pressure");
     if (!child) return source_.Fail(node, "has no pressure", "give <pressure lc=\"...\">");
-    const Driven pressure = source_.DrivenNumber(child);
+    const Driven pressure = Mapped(child, load);
     load.pressure = pressure.value;
     load.controller = pressure.controller;
     for (const char* name : {"symmetric_stiffness", "scale"}) {
@@ -132,7 +154,16 @@ class LoadReader {
                      "<linear> is 1",
                      "set <linear> to 1 if the pressure should not follow");
     }
-    if (!load.surface.empty()) model_.surface_loads.push_back(std::move(load));
+    if (!load.surface.empty() && Finite(load)) model_.surface_loads.push_back(std::move(load));
+  }
+
+  bool Finite(const SurfaceLoad& load) {
+    for (const double factor : load.factors) {
+      if (std::isfinite(factor)) continue;
+      source_.Fail(load.node, "is not finite on every facet", "correct its formula or map");
+      return false;
+    }
+    return true;
   }
 
   // FEBio's solver applies a body force b as -density b, so that 9.81 along z pulls down.

@@ -251,55 +251,72 @@ class LoadMaker {
   }
 
   std::size_t AddSurfaceLoad(const SurfaceLoad& load, const Surface& surface, BodyDraft& draft) {
-    std::vector<Triangle> triangles;
     std::size_t taken = 0;
-    for (const Facet& facet : surface.facets) {
-      std::vector<Triangle> own = TrianglesOf(facet);
+    std::map<double, std::vector<Triangle>> by_factor;
+    for (std::size_t f = 0; f < surface.facets.size(); ++f) {
+      std::vector<Triangle> own = TrianglesOf(surface.facets[f]);
       std::erase_if(own, [&](const Triangle& triangle) { return !draft.mesh.HasSurface(triangle); });
       taken += own.empty() ? 0 : 1;
-      triangles.insert(triangles.end(), own.begin(), own.end());
+      const double factor = load.factors.empty() ? 1 : load.factors[f];
+      if (factor == 0) continue;
+      std::vector<Triangle>& group = by_factor[factor];
+      group.insert(group.end(), own.begin(), own.end());
     }
-    if (triangles.empty()) return 0;
-    if (load.pressure != 0) {
-      AddPressure(load, triangles, draft);
-    } else {
-      AddTraction(load, load.surface, load.surface, triangles, load.traction, draft);
+    std::vector<Group> groups;
+    for (auto& [factor, triangles] : by_factor) {
+      if (triangles.empty()) continue;
+      if (load.pressure == 0) {
+        groups.push_back({factor * load.traction, std::move(triangles)});
+      } else {
+        AddDirections(factor * load.pressure, triangles, groups);
+      }
+      if (groups.size() <= kMaxGroups) continue;
+      source_.Remark(Notice::Kind::kNotTaken, load.node,
+                     "has more than 500 normal directions and values; a load here has one",
+                     "divide the surface, or remove it");
+      return taken;
+    }
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const std::string key = groups.size() == 1 ? load.surface : load.surface + "," + Text(groups[g].traction);
+      AddTraction(load, key, groups[g], draft);
     }
     return taken;
   }
 
-  void AddTraction(const SurfaceLoad& source, const std::string& key, const std::string& name,
-                   const std::vector<Triangle>& triangles, const Vec3& traction, BodyDraft& draft) {
-    v1::Load* load = NewLoad(draft, source.controller, source.node);
-    if (load == nullptr) return;
-    load->set_region(draft.SurfaceRegion(key, name, triangles));
-    for (const double component : traction) load->mutable_traction()->add_vector(model_.units.pascal * component);
+  // Triangles with the same traction.
+  struct Group {
+    Vec3 traction = Vec3::Zero();
+    std::vector<Triangle> triangles;
+  };
+  static constexpr std::size_t kMaxGroups = 500;
+
+  static std::string Text(const Vec3& vector) {
+    char text[96];
+    std::snprintf(text, sizeof(text), "%.17g,%.17g,%.17g", vector[0], vector[1], vector[2]);
+    return text;
   }
 
-  // Adds a traction for each normal direction of the triangles.
-  void AddPressure(const SurfaceLoad& load, const std::vector<Triangle>& triangles, BodyDraft& draft) {
-    constexpr std::size_t kMaxDirections = 500;
+  void AddTraction(const SurfaceLoad& source, const std::string& key, const Group& group, BodyDraft& draft) {
+    v1::Load* load = NewLoad(draft, source.controller, source.node);
+    if (load == nullptr) return;
+    load->set_region(draft.SurfaceRegion(key, source.surface, group.triangles));
+    for (const double component : group.traction) load->mutable_traction()->add_vector(model_.units.pascal * component);
+  }
+
+  // Adds a group for each normal direction of the triangles.
+  void AddDirections(double pressure, const std::vector<Triangle>& triangles, std::vector<Group>& groups) const {
     constexpr double kSame = 1e6;
-    std::map<std::array<std::int64_t, 3>, std::pair<Vec3, std::vector<Triangle>>> groups;
+    std::map<std::array<std::int64_t, 3>, Group> by_normal;
     for (const Triangle& triangle : triangles) {
       const auto x = [&](int c) { return model_.mesh.nodes[static_cast<std::size_t>(triangle[c])]; };
       const Vec3 normal = (x(1) - x(0)).cross(x(2) - x(0)).stableNormalized();
       std::array<std::int64_t, 3> key;
       for (int c = 0; c < 3; ++c) key[c] = std::llround(kSame * normal[c]);
-      groups.try_emplace(key, normal, std::vector<Triangle>()).first->second.second.push_back(triangle);
-      if (groups.size() <= kMaxDirections) continue;
-      source_.Tell(Notice::Kind::kNotTaken, load.node,
-                   "a pressure on a surface with more than 500 normal directions; a load here has one direction",
-                   "divide the surface, or remove it");
-      return;
+      const auto place = by_normal.try_emplace(key, Group{-pressure * normal, {}}).first;
+      place->second.triangles.push_back(triangle);
+      if (groups.size() + by_normal.size() > kMaxGroups) break;
     }
-    for (const auto& [key, group] : groups) {
-      std::string name = load.surface;
-      if (groups.size() > 1) {
-        for (const std::int64_t part : key) name += "," + std::to_string(part);
-      }
-      AddTraction(load, name, load.surface, group.second, -load.pressure * group.first, draft);
-    }
+    for (auto& [key, group] : by_normal) groups.push_back(std::move(group));
   }
 
   const Model& model_;

@@ -432,6 +432,34 @@ TEST(FebioLoadTest, PressureActsAgainstTheFacetsNormals) {
               HasSubstr("changed model.feb:1: Loads/surface_load `pressure`/pressure: keeps"));
 }
 
+// A pressure with a number for each facet, as a map or as a formula of one.
+TEST(FebioLoadTest, PressuresByFacet) {
+  Pieces pieces;
+  pieces.sets += "<Surface name=\"f\"><tri3 id=\"1\">1,3,2</tri3><tri3 id=\"2\">1,4,3</tri3></Surface>";
+  pieces.data =
+      "<SurfaceData name=\"p_map\" surface=\"f\" data_type=\"scalar\"><face lid=\"1\">0.5</face><face "
+      "lid=\"2\">0.2</face>"
+      "</SurfaceData>";
+  const auto load = [](const std::string& pressure) {
+    return "<surface_load type=\"pressure\" surface=\"f\">" + pressure + "<linear>1</linear></surface_load>";
+  };
+  for (const char* pressure :
+       {"<pressure lc=\"1\" type=\"map\">p_map</pressure>", "<pressure lc=\"1\" type=\"math\">1*p_map</pressure>"}) {
+    pieces.loads = load(pressure);
+    const ImportedScene imported = Import(pieces);
+    EXPECT_EQ(NoticesOf(imported), "");
+    const v1::Body& body = imported.scene.bodies(0);
+    ASSERT_EQ(body.loads_size(), 2) << pressure;
+    EXPECT_THAT(body.loads(0).traction().vector(), ElementsAre(0.2e6, 0, 0));
+    EXPECT_THAT(body.loads(1).traction().vector(), ElementsAre(0, 0, 0.5e6));
+    EXPECT_THAT(body.loads(0).scale().values(), ElementsAre(0, 2));
+  }
+  pieces.loads = load("<pressure type=\"math\">1*q</pressure>");
+  EXPECT_THAT(Refusal(pieces), HasSubstr("surface_load `pressure`/pressure `math`: `1*q` depends on `q`"));
+  pieces.data.replace(pieces.data.find("lid=\"2\""), 7, "lid=\"3\"");
+  EXPECT_THAT(Refusal(pieces), HasSubstr("lid 3 is not a facet of the surface"));
+}
+
 TEST(FebioLoadTest, BodyForcesActAgainstTheirVector) {
   Pieces pieces;
   pieces.material =
