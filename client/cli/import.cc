@@ -22,19 +22,19 @@ constexpr const char* kImportExamples =
     R"(  fascicle import biceps.feb --out biceps                 biceps/scene.json, its mesh and its fibres
   fascicle import biceps.feb --out biceps --units SI      lengths in m, forces in N (FEBio has no units itself)
   fascicle import knee.feb --out knee --split-hexahedra   hexahedra, wedges and pyramids become tetrahedra
-  fascicle import biceps.feb --out biceps --strict        fail unless the scene is complete and unchanged
+  fascicle import knee.feb --out knee --accept-loss       without what a scene cannot have, such as springs
   fascicle run biceps/scene.json --out results
 
 Supported: tetrahedra, neo-Hookean, isotropic elastic and Mooney-Rivlin solids, their mixtures with the fibres of muscle
-and tendon material, fixed and prescribed displacements, nodal forces, tractions, pressures, gravity, fibres and load
-curves of the first step. Everything else is listed at the end.
+and tendon material, fixed and prescribed displacements, rigid bodies whose six motions are given, nodal forces,
+tractions, pressures, gravity, fibres, load curves and formulas of the first step. Whatever else changes the answer
+stops the import, with its line and what to do; --accept-loss imports the rest. What changes nothing is noted.
 )";
 
 struct ImportOptions {
   std::string path;
   std::string out;
   FebioOptions febio;
-  bool strict = false;
 };
 
 std::string ReadModel(const std::string& path) {
@@ -53,22 +53,10 @@ const char* KindName(Notice::Kind kind) {
       return "not_taken";
     case Notice::Kind::kChanged:
       return "changed";
-    case Notice::Kind::kSetting:
-      return "setting";
+    case Notice::Kind::kNote:
+      return "note";
   }
   return "";
-}
-
-// Refuses the import if the scene lacks or changes anything of the model.
-void RefuseNotices(const ImportedScene& imported, const std::string& path) {
-  Error error{Error::Kind::kInvalid, path + " cannot be imported unchanged", "INVALID_MODEL", {}};
-  for (const Notice& notice : imported.notices) {
-    if (notice.kind == Notice::Kind::kSetting) continue;
-    const bool missing = notice.kind == Notice::Kind::kNotTaken;
-    error.problems.Add(notice.where,
-                       (missing ? "not supported" : "changed") + (notice.message.empty() ? "" : ": " + notice.message));
-  }
-  if (!error.problems.empty()) throw CommandError(std::move(error));
 }
 
 void WriteFiles(const ImportedScene& imported, const fs::path& folder) {
@@ -93,8 +81,11 @@ Json SummaryOf(const ImportedScene& imported, const fs::path& folder) {
   Json files = Json::array(), notices = Json::array();
   for (const ImportedFile& file : imported.files) files.push_back((folder / file.name).string());
   for (const Notice& notice : imported.notices) {
-    notices.push_back(
-        {{"kind", KindName(notice.kind)}, {"line", notice.line}, {"where", notice.where}, {"message", notice.message}});
+    notices.push_back({{"kind", KindName(notice.kind)},
+                       {"line", notice.line},
+                       {"where", notice.where},
+                       {"message", notice.message},
+                       {"hint", notice.hint}});
   }
   return {{"scene", (folder / "scene.json").string()},
           {"files", std::move(files)},
@@ -111,7 +102,6 @@ int Import(const ImportOptions& options, const Context& context) {
   if (!imported) {
     throw CommandError({Error::Kind::kInvalid, options.path + " can't be imported", "INVALID_MODEL", problems});
   }
-  if (options.strict) RefuseNotices(*imported, options.path);
   WriteFiles(*imported, options.out);
   if (context.json) {
     PrintJson(SummaryOf(*imported, options.out));
@@ -120,7 +110,7 @@ int Import(const ImportOptions& options, const Context& context) {
   const std::string scene = (fs::path(options.out) / "scene.json").string();
   std::cout << febio.name << " (FEBio " << imported->version << ", units " << imported->units << ") imported to "
             << scene << '\n';
-  PrintNotices(*imported, Notice::Kind::kSetting, "replaced by fascicle's own settings");
+  PrintNotices(*imported, Notice::Kind::kNote, "notes");
   PrintNotices(*imported, Notice::Kind::kChanged, "changed");
   PrintNotices(*imported, Notice::Kind::kNotTaken, "not supported");
   return kDone;
@@ -130,7 +120,7 @@ int Import(const ImportOptions& options, const Context& context) {
 
 void AddImport(CLI::App& app, Context& context) {
   CLI::App* command =
-      AddCommand(app, "import", "Convert a FEBio model (.feb, version 3.0 or 4.0) to a scene", kImportExamples);
+      AddCommand(app, "import", "Convert a FEBio model (.feb, version 2.5, 3.0 or 4.0) to a scene", kImportExamples);
   const auto options = std::make_shared<ImportOptions>();
   command->add_option("MODEL", options->path, "The model file")->required()->type_name("MODEL.feb");
   command->add_option("--out", options->out, "Folder for scene.json and its files")->required()->type_name("DIR");
@@ -142,7 +132,9 @@ void AddImport(CLI::App& app, Context& context) {
       ->type_name("SYSTEM");
   command->add_flag("--split-hexahedra", options->febio.split_hexahedra,
                     "Split hexahedra, wedges and pyramids into tetrahedra");
-  command->add_flag("--strict", options->strict, "Fail, without writing, if anything is not supported or changed");
+  command->add_flag(
+      "--accept-loss", options->febio.accept_loss,
+      "Import a model although a scene lacks or changes parts of it that change the answer; they are listed");
   command->callback(
       [options, &context] { context.action = [options, &context] { return Import(*options, context); }; });
 }

@@ -86,7 +86,7 @@ std::optional<std::vector<std::int32_t>> NodeSets::Collect(const std::string& ki
       if (found == mesh_.element_index.end()) continue;  // already reported
       const auto& [p, e] = found->second;
       const Part& part = mesh_.parts[static_cast<std::size_t>(p)];
-      const std::ptrdiff_t count = NodesOf(part.shape);
+      const auto count = static_cast<std::ptrdiff_t>(part.count);
       if (e >= static_cast<std::int32_t>(part.size())) continue;  // refused
       const auto first = part.nodes.begin() + e * count;
       nodes.insert(nodes.end(), first, first + count);

@@ -51,6 +51,8 @@ void DraftMesh(const Model& model, const Tetrahedra& tetrahedra, XmlSource& sour
 // The mesh file, once the draft has all of its regions. If there are no other problems, reads and checks the file as a
 // server would.
 std::string MeshText(const Model& model, const Tetrahedra& tetrahedra, XmlSource& source, const BodyDraft& draft);
+// Makes activations at most 1: what they exceed 1 by goes to the stress of the law.
+void ScaleActivations(Model& model, CurveMaker& curves);
 // Laws, density and activation.
 void SetMaterials(const Model& model, XmlSource& source, CurveMaker& curves, Origins& origins, BodyDraft& draft);
 // Fibres: constant, or a file of this name.

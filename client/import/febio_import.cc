@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
 constexpr std::size_t kMaxBodies = 1000;
 constexpr double kMaxFrames = 100'000;  // of a scene
+constexpr double kMinTissue = 50;       // [kg/m^3]
 
 // The elements that contain sections: the model itself and its first step.
 std::vector<pugi::xml_node> Holders(XmlSource& source) {
@@ -31,7 +32,8 @@ std::vector<pugi::xml_node> Holders(XmlSource& source) {
         source.Take(step);
         holders.push_back(step);
       } else {
-        source.Tell(Notice::Kind::kNotTaken, step, "a scene has one step: this one is not the first");
+        source.Tell(Notice::Kind::kNotTaken, step, "a scene has one step: this one is not the first",
+                    "continue the load curves of the first step, or remove it");
       }
     }
   }
@@ -51,25 +53,31 @@ class Importer {
       return false;
     }
     model_.version = root.attribute("version").value();
-    if (model_.version != "4.0" && model_.version != "3.0") {
+    if (model_.version != "4.0" && model_.version != "3.0" && model_.version != "2.5") {
       source_.Fail(root, "the format's version is " + Quoted(model_.version),
-                   "versions 4.0 and 3.0 are read: save it again with FEBio Studio");
+                   "versions 4.0, 3.0 and 2.5 are read: save it again with FEBio Studio");
       return false;
     }
     RefuseOtherFiles();
     SetUnits();
     ForEach("Module", [&](pugi::xml_node n) { ReadModule(n, source_, model_); });
-    if (model_.units.name.empty()) model_.units = *UnitSystemNamed("mm-N-s");
     bool has_control = false;
     ForEach("Control", [&](pugi::xml_node n) {
       if (!std::exchange(has_control, true)) ReadControl(n, source_, model_);
     });
     if (!has_control) source_.Fail(root, "has no Control section", "it says how long to simulate");
+    if (model_.units.name.empty()) AssumeUnits();
     for (const char* name : {"Globals", "Output"}) ForEach(name, [&](pugi::xml_node n) { source_.TakeAll(n); });
     ReadMeshSections(root);
     ForEach("LoadData", [&](pugi::xml_node n) { ReadLoadData(n, source_, model_); });
+    ReadLaws(source_, model_);
     ForEach("Boundary", [&](pugi::xml_node n) { ReadBoundary(n, source_, model_); });
+    ForEach("Rigid", [&](pugi::xml_node n) { ReadRigid(n, source_, model_); });
+    ForEach("Constraints", [&](pugi::xml_node n) {
+      if (n.child("rigid_body")) ReadRigid(n, source_, model_);
+    });
     ForEach("Loads", [&](pugi::xml_node n) { ReadLoads(n, source_, model_); });
+    HoldRigidNodes(source_, model_);
     return true;
   }
 
@@ -81,6 +89,7 @@ class Importer {
     if (bodies.size() > kMaxBodies) return std::nullopt;
     std::vector<BodyDraft> drafts = Draft(bodies, result.scene);
     CurveMaker curves(model_, source_);
+    ScaleActivations(model_, curves);
     for (BodyDraft& draft : drafts) {
       DraftMesh(model_, all, source_, draft);
       SetMaterials(model_, source_, curves, origins_, draft);
@@ -130,20 +139,56 @@ class Importer {
     }
   }
 
+  // Files without units have any: answers in the model's own numbers are the same in all consistent systems. Where the
+  // density counts, the system is one in which it is that of tissue.
+  void AssumeUnits() {
+    model_.units = *UnitSystemNamed("mm-N-s");
+    pugi::xml_node origin;
+    double density = 0;
+    for (const pugi::xml_node material : source_.root().child("Material").children("material")) {
+      const pugi::xml_node child = material.child("density");
+      if (!child || std::string_view(material.attribute("type").value()) == "rigid body") continue;
+      if (child.text().as_double() <= density) continue;
+      density = child.text().as_double();
+      origin = child;
+    }
+    bool counts = model_.control.dynamic;
+    ForEach("Loads", [&](pugi::xml_node n) { counts = counts || n.child("body_load"); });
+    if (!counts || density * model_.units.density <= kMaxSceneDensity) return;
+    const double in_model = density;
+    for (const char* name : {"CGS", "SI", "mm-kg-s"}) {
+      const UnitSystem system = *UnitSystemNamed(name);
+      if (density * system.density < kMinTissue || density * system.density > kMaxSceneDensity) continue;
+      char text[200];
+      std::snprintf(text, sizeof(text),
+                    "no units are named, and %g would be %.3g kg/m^3 in mm-N-s: taken as %s, where it is %.4g kg/m^3",
+                    in_model, in_model * model_.units.density, name, in_model * system.density);
+      source_.Remark(Notice::Kind::kNote, origin, std::string(text) + "; --units gives others");
+      model_.units = system;
+      return;
+    }
+  }
+
   void ReadMeshSections(pugi::xml_node root) {
-    if (!root.child("Mesh")) source_.Fail(root, "has no Mesh section", "is the file complete?");
+    const char* mesh = MeshSection();
+    if (!root.child(mesh)) source_.Fail(root, "has no " + std::string(mesh) + " section", "is the file complete?");
     if (!root.child("Material")) source_.Fail(root, "has no Material section", "is the file complete?");
-    for (const pugi::xml_node n : root.children("Mesh")) ReadMesh(n, options_.split_hexahedra, source_, model_);
+    for (const pugi::xml_node n : root.children(mesh)) ReadMesh(n, source_, model_);
     for (const pugi::xml_node n : root.children("Material")) ReadMaterials(n, source_, model_);
     if (!root.child("MeshDomains") && !model_.mesh.parts.empty()) {
-      ReadMeshDomains(pugi::xml_node(), source_, model_);
+      ReadMeshDomains(pugi::xml_node(), options_.split_hexahedra, source_, model_);
     }
-    for (const pugi::xml_node n : root.children("MeshDomains")) ReadMeshDomains(n, source_, model_);
+    for (const pugi::xml_node n : root.children("MeshDomains")) {
+      ReadMeshDomains(n, options_.split_hexahedra, source_, model_);
+    }
     for (const pugi::xml_node n : root.children("MeshData")) ReadMeshData(n, source_, model_);
   }
 
+  // Version 2.5 has the mesh in another section.
+  const char* MeshSection() const { return model_.version == "2.5" ? "Geometry" : "Mesh"; }
+
   void TellOfBodies(const std::vector<MeshBody>& bodies) {
-    const pugi::xml_node mesh = source_.root().child("Mesh");
+    const pugi::xml_node mesh = source_.root().child(MeshSection());
     if (bodies.empty() && source_.failures() == 0) {
       source_.Fail(mesh, "no part of the mesh is supported", "a scene needs at least one deformable part");
     }
@@ -151,9 +196,9 @@ class Importer {
       source_.Fail(mesh, "falls into " + std::to_string(bodies.size()) + " parts without a common face",
                    "merge the nodes of neighbouring elements");
     } else if (bodies.size() > 1) {
-      source_.notices.push_back({Notice::Kind::kSetting, source_.LineOf(mesh), source_.Where(mesh),
-                                 "its parts without a common face are " + std::to_string(bodies.size()) +
-                                     " bodies, which pass through each other"});
+      source_.Remark(Notice::Kind::kNote, mesh,
+                     "its parts without a common face are " + std::to_string(bodies.size()) +
+                         " bodies, which pass through each other");
     }
   }
 
@@ -230,9 +275,9 @@ class Importer {
       scene.mutable_tet()->set_element(v1::ELEMENT_LINEAR);
     }
     if (any_linear && (any_quadratic || any_split)) {
-      const pugi::xml_node mesh = source_.root().child("Mesh");
-      source_.notices.push_back({Notice::Kind::kChanged, source_.LineOf(mesh), source_.Where(mesh),
-                                 "elements of four nodes become elements of ten nodes, like others of the model"});
+      const pugi::xml_node mesh = source_.root().child(MeshSection());
+      source_.Remark(Notice::Kind::kChanged, mesh,
+                     "elements of four nodes become elements of ten nodes, like others of the model");
     }
   }
 
@@ -263,6 +308,21 @@ class Importer {
 
 }  // namespace
 
+namespace {
+
+// Each loss is a problem.
+void RefuseLosses(const ImportedScene& imported, Problems& problems) {
+  for (const Notice& notice : imported.notices) {
+    if (!notice.is_loss()) continue;
+    const bool missing = notice.kind == Notice::Kind::kNotTaken;
+    problems.Add(notice.where,
+                 (missing ? "not supported" : "changed") + (notice.message.empty() ? "" : ": " + notice.message),
+                 (notice.hint.empty() ? "" : notice.hint + ", or ") + "import without it by --accept-loss");
+  }
+}
+
+}  // namespace
+
 std::optional<ImportedScene> ImportFebio(std::string_view bytes, const FebioOptions& options, Problems& problems) {
   Problems own;
   std::optional<ImportedScene> result;
@@ -275,6 +335,7 @@ std::optional<ImportedScene> ImportFebio(std::string_view bytes, const FebioOpti
       if (importer.Read()) result = importer.Make();
       source.TellOfTheRest();
       if (result) result->notices = std::move(source.notices);
+      if (result && own.empty() && !options.accept_loss) RefuseLosses(*result, own);
     }
   }
   problems.Append("", own);

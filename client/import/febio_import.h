@@ -14,14 +14,17 @@ namespace fascicle::client {
 // A remark of an import in addition to its result.
 struct Notice {
   enum class Kind {
-    kNotTaken,  // part of the model that the scene lacks
-    kChanged,   // in the scene, but not exactly as in the model
-    kSetting,   // solver and output settings, replaced by fascicle's own
+    kNotTaken,  // part of the model that the scene lacks: a loss
+    kChanged,   // in the scene, but not exactly as in the model: a loss
+    kNote,      // what does not change the answer: solver and output settings, assumptions
   };
   Kind kind = Kind::kNotTaken;
   int line = 0;
   std::string where;  // "model.feb:120: Contact/contact \"c1\""
   std::string message;
+  std::string hint;  // what to do about a loss
+
+  bool is_loss() const { return kind != Kind::kNote; }
 };
 
 struct FebioOptions {
@@ -32,6 +35,9 @@ struct FebioOptions {
   std::string units;
   // Whether to split hexahedra, wedges and pyramids into tetrahedra instead of refusing them. Neighbours match.
   bool split_hexahedra = false;
+  // Whether to import a model although the scene lacks or changes parts of it that change the answer; if not, each of
+  // them is a problem.
+  bool accept_loss = false;
 };
 
 struct ImportedFile {
@@ -48,15 +54,15 @@ struct ImportedScene {
   std::string version;
 };
 
-// Reads a FEBio model (febio_spec 4.0 or 3.0): tetrahedra of four and ten nodes, the materials of scene.proto, fixed
-// and prescribed displacements, nodal forces, tractions, pressures, constant body forces, fibres, load curves, one
-// analysis step. Each face-connected part of the mesh becomes a body.
+// Reads a FEBio model (febio_spec 4.0, 3.0 or 2.5): tetrahedra of four and ten nodes, the materials of scene.proto,
+// fixed and prescribed displacements, rigid bodies whose motion is given, nodal forces, tractions, pressures, constant
+// body forces, fibres, load curves, one analysis step. Each face-connected part of the mesh becomes a body.
 //
 // All problems are added at once, each with file, line and element. Any input is safe: nothing crashes, hangs or needs
-// more memory than a small multiple of the file, and no other file is read. Parts of the model that the scene lacks are
-// listed in `notices`, in the order of the file.
+// more memory than a small multiple of the file, and no other file is read. What the scene lacks or changes is a
+// problem, or with `accept_loss` listed in `notices`, in the order of the file.
 //
-// Source: FEBio User Manual 4, chapter 3; FEBio Feature Manual. Thread-safe.
+// Source: FEBio User Manuals 2.9, 3 and 4, chapter 3; FEBio Feature Manual. Thread-safe.
 std::optional<ImportedScene> ImportFebio(std::string_view bytes, const FebioOptions& options, Problems& problems);
 
 }  // namespace fascicle::client

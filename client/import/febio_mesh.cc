@@ -41,9 +41,12 @@ class MeshConverter {
 
   static bool IsTetrahedron(const Part& part) { return part.shape == Shape::kTet4 || part.shape == Shape::kTet10; }
 
+  static bool HasVolume(const Part& part) { return part.shape != Shape::kNoVolume; }
+
   void AddPart(const Part& part) {
+    if (!HasVolume(part)) return first_.push_back(0);
     const std::int32_t tag = NewTag(3, part.name);
-    const auto count = static_cast<std::size_t>(NodesOf(part.shape));
+    const std::size_t count = part.count;
     first_.push_back(IsTetrahedron(part) ? raw_.tetrahedra.size() : raw_.solids.size());
     for (std::size_t e = 0; e < part.size(); ++e) {
       ThrowIfStopped(stop_);
@@ -71,6 +74,7 @@ class MeshConverter {
       const auto found = mesh_.element_index.find(id);
       if (found == mesh_.element_index.end()) continue;
       const auto part = static_cast<std::size_t>(found->second.first);
+      if (!HasVolume(mesh_.parts[part])) continue;
       const auto index = static_cast<std::int64_t>(first_[part]) + found->second.second;
       (IsTetrahedron(mesh_.parts[part]) ? raw_.further_tags : raw_.further_solid_tags).push_back({index, tag});
     }
@@ -114,10 +118,13 @@ std::optional<TetMesh> ReadFebioMesh(const std::string& name, std::string_view b
   if (own.empty()) {
     const pugi::xml_node root = source.root();
     Model model;
-    if (std::string_view(root.name()) != "febio_spec" || !root.child("Mesh")) {
-      source.Fail(root, "the file has no mesh of FEBio 3 or 4", "save the model again with FEBio Studio");
+    model.version = root.attribute("version").value();
+    const char* name_of_mesh = model.version == "2.5" ? "Geometry" : "Mesh";
+    if (std::string_view(root.name()) != "febio_spec" || !root.child(name_of_mesh)) {
+      source.Fail(root, "the file has no mesh of FEBio 2.5, 3 or 4", "save the model again with FEBio Studio");
     }
-    for (const pugi::xml_node section : root.children("Mesh")) ReadMesh(section, split_solids, source, model);
+    for (const pugi::xml_node section : root.children(name_of_mesh)) ReadMesh(section, source, model);
+    for (const Part& part : model.mesh.parts) IsUsable(part, split_solids, source);
     if (own.empty()) {
       RawMesh raw = MeshConverter(model.mesh, stop).Convert();
       for (const Notice& notice : source.notices) raw.notes.push_back(notice.where + ": " + notice.message);

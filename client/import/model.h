@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "client/import/expression.h"
 #include "client/import/units.h"
 #include "client/import/xml_source.h"
 #include "core/base/types.h"
@@ -20,17 +21,20 @@ namespace fascicle::client {
 
 // The supported part of a FEBio model, in the model's units. Plain data, filled by sections.h.
 
-enum class Shape { kTet4, kTet10, kHex8, kPenta6, kPyra5 };
-int NodesOf(Shape shape);
+// kOtherSolid and kNoVolume (shells, beams) occur in rigid bodies only.
+enum class Shape { kTet4, kTet10, kHex8, kPenta6, kPyra5, kOtherSolid, kNoVolume };
 
 // An <Elements> section.
 struct Part {
   std::string name;
   pugi::xml_node node;
+  std::string type;  // "tet4"
   Shape shape = Shape::kTet4;
+  std::size_t count = 4;  // nodes of an element
   std::vector<std::int64_t> ids;
-  std::vector<std::int32_t> nodes;  // indices, NodesOf(shape) for each element
-  std::int32_t material = -1;       // index, or -1 if the part is not supported
+  std::vector<std::int32_t> nodes;  // indices, `count` for each element
+  std::int32_t material = -1;       // index, or -1 if the part is no deformable solid
+  std::int32_t rigid = -1;          // index of its material if that is a rigid body
   std::size_t size() const { return ids.size(); }
 };
 
@@ -55,8 +59,7 @@ struct Mesh {
   std::vector<std::int64_t> ids;
   std::unordered_map<std::int64_t, std::int32_t> index_of;
   std::vector<Part> parts;
-  std::set<std::string> part_names;                         // of all <Elements>, unsupported ones included
-  std::unordered_map<std::string, std::size_t> part_index;  // of those in `parts`, by name
+  std::unordered_map<std::string, std::size_t> part_index;  // by name
   // Index of the part and index within it of an element, by its id.
   std::unordered_map<std::int64_t, std::pair<std::int32_t, std::int32_t>> element_index;
   std::map<std::string, NodeSet> node_sets;
@@ -64,18 +67,27 @@ struct Mesh {
   std::map<std::string, std::vector<std::int64_t>> element_sets;  // element ids
 };
 
-// A right-handed orthonormal frame, given explicitly or by three nodes of each element.
+// A vector that turns with the direction from a centre, or from a line through it, to the point in question.
+struct Round {
+  Vec3 centre = Vec3::Zero();
+  std::optional<Vec3> axis;  // of unit length; about a centre without one
+  Vec3 vector = Vec3::UnitX();
+};
+
+// A right-handed orthonormal frame, given explicitly, by three nodes of each element, or by its centroid.
 struct Axes {
   Mat3 given = Mat3::Identity();
   std::optional<std::array<int, 3>> local;  // counted from 0
+  std::optional<Round> round;
   pugi::xml_node node;
 };
 
 // Definition of a material's fibre direction in its axes.
 struct FibreSource {
-  enum class Kind { kVector, kLocal, kMap };
+  enum class Kind { kVector, kLocal, kMap, kRound };
   Kind kind = Kind::kVector;
   Vec3 vector = Vec3::UnitX();
+  Round round;
   std::array<int, 2> local = {0, 1};  // counted from 0
   std::string map;
   pugi::xml_node node;
@@ -86,22 +98,47 @@ struct ImportedMaterial {
   std::int64_t id = 0;
   pugi::xml_node node;
   bool rigid = false;
-  v1::Material law;  // in SI
+  bool used = false;  // by a deformable part
+  v1::Material law;   // in SI
   bool needs_fibres = false;
   FibreSource fibre;
   std::vector<Axes> axes;  // from outer to inner
   double density = 0;      // [kg/m^3]; 0 if absent
   // Activation of the law in [0, 1]: this number, times a controller.
   std::optional<Driven> activation;
+  std::optional<Vec3> centre;  // of mass of a rigid body, if given
+};
+
+// A degree of freedom of a rigid body.
+struct RigidMotion {
+  bool held = false;
+  std::optional<Driven> motion;  // fixed without one; displacement, or angle [rad]
+  pugi::xml_node node;
+};
+
+// What the model says of the rigid body of a material.
+struct RigidBody {
+  std::array<RigidMotion, 6> motions;                        // along x, y, z; about x, y, z
+  std::vector<std::pair<std::string, pugi::xml_node>> sets;  // node sets attached to it
+  std::vector<pugi::xml_node> forces;                        // loads and initial velocities of the body
+};
+
+// A rotation about a line, of the supports of a rigid body.
+struct RigidRotation {
+  Vec3 point = Vec3::Zero();
+  Vec3 axis = Vec3::UnitX();
+  Driven angle;
 };
 
 struct LoadCurve {
-  enum class Interpolation { kLinear, kStep, kSmooth, kSmoothStep };
-  enum class Extension { kConstant, kExtrapolate, kOther };
-  std::vector<double> times, values;
+  enum class Interpolation { kLinear, kStep, kSmooth, kSmoothStep, kSpline };
+  enum class Extension { kConstant, kExtrapolate, kRepeat, kRepeatOffset, kZero };
+  std::vector<double> times, values;  // of a formula: the ends of its interval, if it has one
+  std::optional<Expression> formula;  // of the time t
   Interpolation interpolation = Interpolation::kLinear;
-  Extension extension = Extension::kConstant;
-  std::string refused;  // why it is not supported; empty if it is
+  Extension extension = Extension::kConstant;         // after the last point
+  Extension extension_before = Extension::kConstant;  // before the first
+  std::string refused;                                // why it is not supported; empty if it is
   pugi::xml_node node;
 };
 
@@ -111,6 +148,7 @@ struct Support {
   int axis = 0;
   std::optional<Driven> motion;
   pugi::xml_node node;
+  std::int32_t rotation = -1;  // index of a rotation, or -1
 };
 
 struct NodalForces {
@@ -123,7 +161,8 @@ struct NodalForces {
 struct SurfaceLoad {
   std::string surface;
   Vec3 traction = Vec3::Zero();
-  double pressure = 0;  // positive against the outward normal
+  double pressure = 0;          // positive against the outward normal
+  std::vector<double> factors;  // of each facet; 1 if empty
   std::optional<std::int64_t> controller;
   pugi::xml_node node;
 };
@@ -147,15 +186,25 @@ struct ElementData {
   std::map<std::string, std::unordered_map<std::int64_t, Vec3>> maps;  // by name
 };
 
+// A number for each facet of a surface.
+struct SurfaceMap {
+  std::string surface;
+  std::vector<double> values;
+};
+
 struct Model {
   UnitSystem units;
   std::string version;
   Control control;
   Mesh mesh;
   std::vector<ImportedMaterial> materials;
+  std::unordered_map<std::string, std::size_t> material_index;  // by name, and by number where no name is the same
   ElementData data;
+  std::map<std::string, SurfaceMap> surface_maps;  // by name
   std::map<std::int64_t, LoadCurve> curves;
   std::vector<Support> supports;
+  std::map<std::int32_t, RigidBody> rigid_bodies;  // by index of the material
+  std::vector<RigidRotation> rotations;
   std::vector<NodalForces> nodal_forces;
   std::vector<SurfaceLoad> surface_loads;
   std::vector<BodyForce> body_forces;

@@ -59,6 +59,51 @@ std::optional<std::array<int, N>> ReadLocal(pugi::xml_node node, XmlSource& sour
   return local;
 }
 
+// Version 4 may write a value as an element of the type's name.
+pugi::xml_node Inner(pugi::xml_node node, XmlSource& source) {
+  const pugi::xml_node inner = node.child(node.attribute("type").value());
+  if (inner) source.Take(node);
+  return inner ? inner : node;
+}
+
+std::optional<Vec3> ReadDirection(pugi::xml_node node, XmlSource& source) {
+  const auto vector = source.Vector(node);
+  if (!vector) return std::nullopt;
+  const Vec3 unit = vector->stableNormalized();
+  if (unit.norm() > 0.5) return unit;
+  source.Fail(node, "is zero", "give a direction");
+  return std::nullopt;
+}
+
+// `cylindrical` or `spherical`. A spherical one may be its centre alone.
+std::optional<Round> ReadRound(pugi::xml_node node, bool is_cylindrical, XmlSource& source) {
+  source.Take(node);
+  Round round;
+  if (is_cylindrical) round.axis = Vec3::UnitZ();
+  if (!is_cylindrical && !node.child("center") && !node.child("vector") && !source.Text(node).empty()) {
+    const auto centre = source.Vector(node);
+    if (!centre) return std::nullopt;
+    round.centre = *centre;
+    return round;
+  }
+  const pugi::xml_node centre = node.child("center"), axis = node.child("axis"), vector = node.child("vector");
+  if (centre) {
+    const auto read = source.Vector(centre);
+    if (!read) return std::nullopt;
+    round.centre = *read;
+  }
+  if (axis && is_cylindrical) {
+    round.axis = ReadDirection(axis, source);
+    if (!round.axis) return std::nullopt;
+  }
+  if (vector) {
+    const auto read = ReadDirection(vector, source);
+    if (!read) return std::nullopt;
+    round.vector = *read;
+  }
+  return round;
+}
+
 }  // namespace
 
 std::optional<Mat3> ReadFrame(pugi::xml_node node, XmlSource& source) {
@@ -97,11 +142,14 @@ std::optional<Axes> ReadAxes(pugi::xml_node node, XmlSource& source) {
   } else if (type == "angles") {
     axes.given = ReadAngles(node, source).Frame();
   } else if (type == "local") {
-    axes.local = ReadLocal<3>(node, source, {0, 1, 3});
+    axes.local = ReadLocal<3>(Inner(node, source), source, {0, 1, 3});
     if (!axes.local) return std::nullopt;
+  } else if (type == "cylindrical" || type == "spherical") {
+    axes.round = ReadRound(node, type == "cylindrical", source);
+    if (!axes.round) return std::nullopt;
   } else {
     source.Fail(node, "material axes of type " + Quoted(type) + " are not supported",
-                "give them by vector, angles, local, or as element data");
+                "give them by vector, angles, local, cylindrical, spherical, or as element data");
     return std::nullopt;
   }
   return axes;
@@ -121,18 +169,23 @@ std::optional<FibreSource> ReadFibre(pugi::xml_node node, XmlSource& source) {
   } else if (type == "angles") {
     fibre.vector = ReadAngles(node, source).Radial();
   } else if (type == "local") {
-    const auto local = ReadLocal<2>(node, source, {0, 1});
+    const auto local = ReadLocal<2>(Inner(node, source), source, {0, 1});
     if (!local) return std::nullopt;
     fibre.kind = FibreSource::Kind::kLocal;
     fibre.local = *local;
   } else if (type == "map") {
     fibre.kind = FibreSource::Kind::kMap;
-    fibre.map = source.Text(node);
+    fibre.map = source.Text(Inner(node, source));
+  } else if (type == "cylindrical" || type == "spherical") {
+    const auto round = ReadRound(node, type == "cylindrical", source);
+    if (!round) return std::nullopt;
+    fibre.kind = FibreSource::Kind::kRound;
+    fibre.round = *round;
   } else if (type == "user") {
     source.Take(node);  // version 3: the element data define it
   } else {
     source.Fail(node, "fibres of type " + Quoted(type) + " are not supported",
-                "give them by vector, angles, local, map, or as element data");
+                "give them by vector, angles, local, cylindrical, spherical, map, or as element data");
     return std::nullopt;
   }
   if (fibre.kind == FibreSource::Kind::kVector && !(fibre.vector.norm() > 0.5)) {

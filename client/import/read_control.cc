@@ -64,8 +64,8 @@ void ReadControl(pugi::xml_node section, XmlSource& source, Model& model) {
     any_setting = true;
   }
   if (any_setting) {
-    source.notices.push_back({Notice::Kind::kSetting, source.LineOf(section), source.Where(section),
-                              "solver, time stepper and output levels are replaced by fascicle's own"});
+    source.Remark(Notice::Kind::kNote, section,
+                  "solver, time stepper and output levels are replaced by fascicle's own");
   }
 }
 

@@ -1,4 +1,4 @@
-// <LoadData>: load curves [FEBio Feature Manual, loadcurve].
+// <LoadData>: load curves and formulas of time [FEBio Feature Manual, loadcurve, math, math-interval].
 #include <algorithm>
 #include <string_view>
 
@@ -22,8 +22,10 @@ std::string Option(pugi::xml_node node, const char* name, XmlSource& source) {
   return Plain(node.attribute(name).value());
 }
 
+// Version 2.5 has it as the type.
 void ReadInterpolation(pugi::xml_node node, XmlSource& source, LoadCurve& curve) {
-  const std::string text = Option(node, "interpolate", source);
+  const bool is_old = std::string_view(node.name()) == "loadcurve";
+  const std::string text = is_old ? Plain(node.attribute("type").value()) : Option(node, "interpolate", source);
   using enum LoadCurve::Interpolation;
   if (text.empty() || text == "linear" || text == "1") {
     curve.interpolation = kLinear;
@@ -33,8 +35,11 @@ void ReadInterpolation(pugi::xml_node node, XmlSource& source, LoadCurve& curve)
     curve.interpolation = kSmooth;
   } else if (text == "smooth step") {
     curve.interpolation = kSmoothStep;
+  } else if (text == "cubic spline") {
+    curve.interpolation = kSpline;
   } else {
-    curve.refused = "its interpolation " + Quoted(text) + " is not supported; linear, step, smooth and smooth step are";
+    curve.refused = "its interpolation " + Quoted(text) +
+                    " is not supported; linear, step, smooth, smooth step and cubic spline are";
   }
 }
 
@@ -45,8 +50,36 @@ void ReadExtension(pugi::xml_node node, XmlSource& source, LoadCurve& curve) {
     curve.extension = kConstant;
   } else if (text == "extrapolate" || text == "1") {
     curve.extension = kExtrapolate;
+  } else if (text == "repeat" || text == "2") {
+    curve.extension = kRepeat;
+  } else if (text == "repeat offset" || text == "3") {
+    curve.extension = kRepeatOffset;
   } else {
-    curve.extension = kOther;
+    curve.refused =
+        "its extension " + Quoted(text) + " is not supported; constant, extrapolate, repeat and repeat offset are";
+  }
+  curve.extension_before = curve.extension;
+}
+
+// A formula of t, with an interval and what follows outside of it for "math-interval".
+void ReadFormula(pugi::xml_node node, bool has_interval, XmlSource& source, LoadCurve& curve) {
+  const std::string text = source.MathText(node);
+  std::string mistake;
+  curve.formula = Expression::Parse(text, "t", mistake);
+  if (!curve.formula) curve.refused = mistake;
+  const pugi::xml_node interval = node.child("interval");
+  if (!has_interval) return;
+  const auto ends = interval ? source.Pair(interval) : std::nullopt;
+  if (!ends || !((*ends)[0] < (*ends)[1])) {
+    curve.refused = "it has no interval";
+    return;
+  }
+  curve.times = {(*ends)[0], (*ends)[1]};
+  using enum LoadCurve::Extension;
+  for (const auto& [name, extension] :
+       {std::pair("left_extend", &curve.extension_before), std::pair("right_extend", &curve.extension)}) {
+    const std::string mode = Option(node, name, source);
+    *extension = mode == "zero" || mode == "0" ? kZero : mode == "repeat" || mode == "2" ? kRepeat : kConstant;
   }
 }
 
@@ -72,10 +105,13 @@ void ReadPoints(pugi::xml_node node, XmlSource& source, LoadCurve& curve) {
 
 void ReadLoadData(pugi::xml_node section, XmlSource& source, Model& model) {
   source.Take(section);
-  for (const pugi::xml_node node : section.children("load_controller")) {
+  for (const pugi::xml_node node : section.children()) {
+    const std::string_view name = node.name();
+    const bool is_old = name == "loadcurve";  // version 2.5
+    if (!is_old && name != "load_controller") continue;
     source.TakeAll(node);
     const auto id = source.IntegerAttribute(node, "id");
-    const std::string type = source.Required(node, "type");
+    const std::string type = is_old ? "loadcurve" : source.Required(node, "type");
     if (!id || type.empty()) continue;
     LoadCurve curve;
     curve.node = node;
@@ -87,8 +123,10 @@ void ReadLoadData(pugi::xml_node section, XmlSource& source, Model& model) {
       if (curve.times.empty() && source.failures() == before) {
         source.Fail(node, "the load curve has no points", "write <points><pt>time,value</pt>...</points>");
       }
+    } else if (type == "math" || type == "math-interval") {
+      ReadFormula(node, type == "math-interval", source, curve);
     } else {
-      curve.refused = "it is a " + Quoted(type) + "; only load curves are supported";
+      curve.refused = "it is a " + Quoted(type) + "; load curves, math and math-interval are supported";
     }
     if (!model.curves.try_emplace(*id, std::move(curve)).second) {
       source.Fail(node, "there is a load controller " + std::to_string(*id) + " already", "number them uniquely");

@@ -1,4 +1,5 @@
-// <Loads>: nodal forces, tractions, pressures, body forces [FEBio User Manual, 3.13].
+// <Loads>: nodal forces, tractions, pressures, body forces [FEBio User Manual, 3.13; 2.9, 3.10].
+#include <cmath>
 #include <string_view>
 
 #include "client/import/sections.h"
@@ -31,18 +32,20 @@ class LoadReader {
     } else if (element == "body_load" && type == "body force") {
       ReadBodyForce(node);
     } else {
-      source_.Tell(Notice::Kind::kNotTaken, node, "loads of type " + Quoted(type) + " are not supported");
+      source_.Tell(Notice::Kind::kNotTaken, node, "loads of type " + Quoted(type) + " are not supported",
+                   "write it as nodal forces, a traction or a body force, or remove it");
     }
   }
 
  private:
+  // Version 2.5 has the direction as the attribute bc.
   void ReadNodalLoad(pugi::xml_node node) {
     source_.Take(node);
     NodalForces forces;
     forces.node = node;
     forces.set = source_.Required(node, "node_set");
     const pugi::xml_node dof = node.child("dof");
-    const std::string name = dof ? source_.Text(dof) : std::string();
+    const std::string name = dof ? source_.Text(dof) : std::string(node.attribute("bc").value());
     const std::size_t axis = std::string_view("xyz").find(name.size() == 1 ? name[0] : '?');
     if (axis == std::string_view::npos) {
       return source_.Fail(dof ? dof : node, Quoted(name) + " is not a direction", "<dof> must be x, y or z");
@@ -86,22 +89,43 @@ class LoadReader {
     load.surface = source_.Required(node, "surface");
     Driven scale;
     scale.value = 1;
-    if (const pugi::xml_node child = node.child("scale")) scale = source_.DrivenNumber(child);
+    if (const pugi::xml_node child = node.child("scale")) scale = Mapped(child, load);
     load.controller = scale.controller;
     const pugi::xml_node traction = node.child("traction");
     if (!traction) return source_.Fail(node, "has no traction", "give <traction>x,y,z</traction>");
     std::optional<std::int64_t> ignored;
     const auto vector = DrivenVector(traction, ignored);
-    if (ignored) {
-      source_.Tell(Notice::Kind::kChanged, traction, "its lc is ignored, as in FEBio: that of <scale> applies");
-    }
+    if (ignored)
+      source_.Remark(Notice::Kind::kNote, traction, "its lc is ignored, as in FEBio: that of <scale> applies");
     if (!IsLinear(node) && vector) {
-      source_.Tell(Notice::Kind::kChanged, traction,
-                   "acts per rest area; FEBio's grows with the surface, unless <linear> is 1");
+      source_.Remark(Notice::Kind::kChanged, traction,
+                     "acts per rest area; FEBio's grows with the surface, unless <linear> is 1",
+                     "set <linear> to 1 if the total force should not grow");
     }
     if (!vector || load.surface.empty()) return;
     load.traction = scale.value * *vector;
+    if (!Finite(load)) return;
     model_.surface_loads.push_back(std::move(load));
+  }
+
+  // A number, or a map of numbers of the load's surface, or a formula of one: the number is 1 then, with factors.
+  Driven Mapped(pugi::xml_node node, SurfaceLoad& load) {
+    const std::string_view type = node.attribute("type").value();
+    if (type != "map" && type != "math") return source_.DrivenNumber(node);
+    const std::string text = source_.MathText(node);
+    for (const auto& [name, map] : model_.surface_maps) {
+      std::string mistake;
+      const auto formula = Expression::Parse(text, name, mistake);
+      if (!formula || map.surface != load.surface || Expression::Parse(text, "", mistake)) continue;
+      for (const double value : map.values) load.factors.push_back(formula->At(value));
+      Driven driven;
+      driven.node = node;
+      driven.value = 1;
+      if (node.attribute("lc")) driven.controller = source_.IntegerAttribute(node, "lc");
+      if (driven.controller && *driven.controller <= 0) driven.controller.reset();
+      return driven;
+    }
+    return source_.DrivenNumber(node);
   }
 
   // Whether a surface load refers to the rest shape.
@@ -117,7 +141,7 @@ class LoadReader {
     load.surface = source_.Required(node, "surface");
     const pugi::xml_node child = node.child("pressure");
     if (!child) return source_.Fail(node, "has no pressure", "give <pressure lc=\"...\">");
-    const Driven pressure = source_.DrivenNumber(child);
+    const Driven pressure = Mapped(child, load);
     load.pressure = pressure.value;
     load.controller = pressure.controller;
     for (const char* name : {"symmetric_stiffness", "scale"}) {
@@ -125,24 +149,34 @@ class LoadReader {
       if (other && std::string_view(name) == "symmetric_stiffness") source_.TakeAll(other);
     }
     if (!IsLinear(node)) {
-      source_.Tell(Notice::Kind::kChanged, child,
-                   "keeps the direction and area of the rest surface; FEBio's follows the deformed surface, unless "
-                   "<linear> is 1");
+      source_.Remark(Notice::Kind::kChanged, child,
+                     "keeps the direction and area of the rest surface; FEBio's follows the deformed surface, unless "
+                     "<linear> is 1",
+                     "set <linear> to 1 if the pressure should not follow");
     }
-    if (!load.surface.empty()) model_.surface_loads.push_back(std::move(load));
+    if (!load.surface.empty() && Finite(load)) model_.surface_loads.push_back(std::move(load));
+  }
+
+  bool Finite(const SurfaceLoad& load) {
+    for (const double factor : load.factors) {
+      if (std::isfinite(factor)) continue;
+      source_.Fail(load.node, "is not finite on every facet", "correct its formula or map");
+      return false;
+    }
+    return true;
   }
 
   // FEBio's solver applies a body force b as -density b, so that 9.81 along z pulls down.
   void AddBodyForce(const Vec3& force, std::optional<std::int64_t> controller, pugi::xml_node node) {
     if (force.isZero(0)) return;
     model_.body_forces.push_back({-force, controller, node});
-    source_.notices.push_back({Notice::Kind::kSetting, source_.LineOf(node), source_.Where(node),
-                               "acts against the vector that is given, as in FEBio's solver"});
+    source_.Remark(Notice::Kind::kNote, node, "acts against the vector that is given, as in FEBio's solver");
   }
 
   bool ActsEverywhere(pugi::xml_node node) {
     if (!node.attribute("elem_set")) return true;
-    source_.Tell(Notice::Kind::kNotTaken, node, "a body force on a part of the model; gravity acts on all of it");
+    source_.Tell(Notice::Kind::kNotTaken, node, "a body force on a part of the model; gravity acts on all of it",
+                 "remove elem_set, or the load");
     return false;
   }
 

@@ -12,8 +12,8 @@
 //   ... and of these with a fibre of Mooney-Rivlin type and
 //     uncoupled prescribed uniaxial active contraction         trans_iso_mooney_rivlin with active_stress
 //
-// Muscle and tendon material by themselves have a shear energy in the invariants B1 and B2 [Blemker 2005], for which
-// there is no law here.
+// Two have no equal law here, and become the nearest one as a reported change: the shear energy g1 B1^2 + g2 B2^2 of
+// muscle and tendon material [Blemker 2005], and active_contraction [Guccione, McCulloch 1993].
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -25,6 +25,8 @@
 
 namespace fascicle::client {
 namespace {
+
+constexpr double kNoSlope = 1e-9;  // relative to c3
 
 constexpr const char* kKnown =
     "supported are neo-Hookean, isotropic elastic, St.Venant-Kirchhoff, Mooney-Rivlin, incomp neo-Hookean, trans iso "
@@ -81,10 +83,7 @@ class MaterialReader {
 
   void Read(const std::string& type) {
     ReadCommon(node_);
-    if (type == "rigid body") {
-      material_.rigid = true;
-      source_.TakeAll(node_);
-    } else if (type == "neo-Hookean") {
+    if (type == "neo-Hookean") {
       ReadIsotropic(*material_.law.mutable_neo_hookean());
     } else if (type == "isotropic elastic" || type == "St.Venant-Kirchhoff") {
       ReadIsotropic(*material_.law.mutable_st_venant_kirchhoff());
@@ -96,8 +95,11 @@ class MaterialReader {
       ReadTransIso();
     } else if (type == "uncoupled solid mixture") {
       ReadMixture();
+    } else if (type == "muscle material" || type == "tendon material") {
+      ReadBlemker(type);
     } else {
-      Refuse(type);
+      source_.TakeAll(node_);
+      source_.Fail(node_, "the material " + Quoted(type) + " is not supported", kKnown);
     }
   }
 
@@ -116,7 +118,7 @@ class MaterialReader {
     }
     for (const char* name : {"laugon", "atol", "minaug", "maxaug"}) {
       if (const pugi::xml_node child = node.child(name)) {
-        source_.Tell(Notice::Kind::kSetting, child, "volumes are preserved by K only, without augmentation");
+        source_.Tell(Notice::Kind::kNote, child, "volumes are preserved by K only, without augmentation");
       }
     }
     if (const pugi::xml_node model = node.child("pressure_model")) {
@@ -159,12 +161,14 @@ class MaterialReader {
 
   // Fibres of `fibre`; if it has none, the law is that of the matrix.
   void SetTransIso(const MooneyRivlinPart& matrix, double bulk, Parameters& fibre, const char* lam_max) {
-    const double c5 = fibre.GetOr("c5", 0), c4 = fibre.GetOr("c4", 0);
-    double c3 = fibre.GetOr("c3", 0);
+    const double c4 = fibre.GetOr("c4", 0);
+    double c3 = fibre.GetOr("c3", 0), c5 = fibre.GetOr("c5", 0);
     if (c3 == 0 && c5 == 0) return SetMooneyRivlin(matrix, bulk);
-    const double transition = fibre.Get(lam_max);
+    const double transition = Transition(fibre, lam_max);
     // FEBio's rule if the scale is absent: no kink at lam_max.
     if (c3 == 0 && c4 > 0) c3 = c5 / c4 * std::exp(-c4 * (transition - 1));
+    // The stress is constant beyond lam_max; the law's slope must be positive.
+    if (c5 == 0) c5 = kNoSlope * c3;
     v1::TransIsoMooneyRivlin& law = *material_.law.mutable_trans_iso_mooney_rivlin();
     law.set_c1(Stress(matrix.c1));
     law.set_c2(Stress(matrix.c2));
@@ -176,15 +180,85 @@ class MaterialReader {
     ReadFibreOf(fibre.node());
   }
 
+  // lam_max, which has no effect beyond the law's limit of 10.
+  double Transition(Parameters& fibre, const char* lam_max) {
+    constexpr double kLargest = 10;
+    const double transition = fibre.Get(lam_max);
+    if (!(transition > kLargest)) return transition;
+    source_.Remark(Notice::Kind::kNote, fibre.node().child(lam_max), "is taken as 10: no fibre stretches tenfold");
+    return kLargest;
+  }
+
   void ReadTransIso() {
     Parameters parameters(node_, source_);
     const MooneyRivlinPart matrix = ReadMatrix("Mooney-Rivlin", parameters);
     SetTransIso(matrix, BulkModulus(parameters), parameters, "lam_max");
     if (const pugi::xml_node fibre = node_.child("fiber")) source_.TakeAll(fibre);
-    if (const pugi::xml_node active = node_.child("active_contraction")) {
-      source_.Tell(Notice::Kind::kNotTaken, active,
-                   "its stress depends on the length of sarcomeres, for which there is no law here; the nearest is the "
-                   "active_stress of trans_iso_mooney_rivlin");
+    if (const pugi::xml_node active = node_.child("active_contraction")) ReadSarcomeres(active);
+  }
+
+  // Cauchy stress T(lambda) C(t) along the fibre with T = Tmax Ca0^2 / (Ca0^2 + ECa50^2), ECa50 = Ca0max /
+  // sqrt(exp(beta (lambda lr - l0)) - 1) [Guccione, McCulloch 1993]. The nearest law has the second Piola-Kirchhoff
+  // stress T(1) C(t).
+  void ReadSarcomeres(pugi::xml_node node) {
+    Parameters parameters(node, source_);
+    source_.TakeAll(node);
+    const std::string_view type = node.attribute("type").as_string("active_contraction");
+    if (type != "active_contraction") {
+      source_.Remark(Notice::Kind::kNotTaken, node,
+                     "the active contraction " + Quoted(std::string(type)) + " has no law here",
+                     "use uncoupled prescribed uniaxial active contraction in an uncoupled solid mixture");
+      return;
+    }
+    const std::optional<Driven> scale = parameters.GetDriven("ascl");
+    const double calcium = parameters.GetOr("ca0", 1), given = parameters.GetOr("camax", 0);
+    const double largest = given > 0 ? given : calcium;
+    const double growth = std::exp(parameters.Get("beta") * (parameters.Get("refl") - parameters.Get("l0"))) - 1;
+    if (!scale || !(growth > 0) || !(calcium > 0) || !material_.law.has_trans_iso_mooney_rivlin()) {
+      source_.Remark(Notice::Kind::kNotTaken, node, "contracts nothing at rest length, or a solid without stiff fibres",
+                     "give ascl, refl above l0, and c3, c4, c5");
+      return;
+    }
+    const double stress =
+        parameters.GetOr("Tmax", 1) * calcium * calcium / (calcium * calcium + largest * largest / growth);
+    char text[320];
+    std::snprintf(
+        text, sizeof(text),
+        "its Cauchy stress grows with sarcomere length; the law's second Piola-Kirchhoff stress does not, and "
+        "equals it at rest length: %.6g times ascl, by beta, refl, l0 and ca0",
+        stress);
+    source_.Remark(
+        Notice::Kind::kChanged, node, text,
+        "use uncoupled prescribed uniaxial active contraction in an uncoupled solid mixture: that is the law");
+    material_.law.mutable_trans_iso_mooney_rivlin()->set_active_stress(Stress(stress));
+    material_.activation = scale;
+  }
+
+  // Muscle or tendon material by itself: along fibres it is the law muscle or tendon; its matrix has another energy, g1
+  // B1^2 + g2 B2^2, with shear moduli 2 g1 along and 2 g2 across the fibres, where Mooney-Rivlin has 2 c1.
+  void ReadBlemker(const std::string& type) {
+    Parameters parameters(node_, source_);
+    const double g1 = parameters.GetOr("g1", 0), g2 = parameters.GetOr("g2", 0);
+    parameters.GetOr("g3", 0);
+    const std::string hint = "write an uncoupled solid mixture of Mooney-Rivlin and " + type +
+                             " with g1 and g2 of 0: that is the law " + type.substr(0, 6);
+    if (!(g1 + g2 > 0)) {
+      return source_.Fail(node_, "has no matrix: g1 and g2 are 0, and the law " + type.substr(0, 6) + " needs c1 > 0",
+                          hint);
+    }
+    char text[320];
+    std::snprintf(
+        text, sizeof(text),
+        "has a shear energy in the invariants B1 and B2, for which there is no law here: Mooney-Rivlin with c1 "
+        "= %.6g, the mean of g1 and g2, replaces it; along fibres, too, it resists, with 3 c1 strain^2",
+        0.5 * (g1 + g2));
+    source_.Remark(Notice::Kind::kChanged, node_, text, hint);
+    const MooneyRivlinPart matrix{0.5 * (g1 + g2), 0};
+    const double bulk = BulkModulus(parameters);
+    if (type == "muscle material") {
+      MixMuscle(matrix, bulk, node_);
+    } else {
+      MixTendon(matrix, bulk, node_);
     }
   }
 
@@ -283,7 +357,7 @@ class MaterialReader {
 
   void MixMuscle(const MooneyRivlinPart& matrix, double bulk, pugi::xml_node node) {
     Parameters parameters(node, source_);
-    if (!IsFibreAlone(parameters, "muscle")) return;
+    if (node != node_ && !IsFibreAlone(parameters, "muscle")) return;
     v1::Muscle& law = *material_.law.mutable_muscle();
     law.set_c1(Stress(matrix.c1));
     law.set_c2(Stress(matrix.c2));
@@ -299,12 +373,12 @@ class MaterialReader {
     if (optimal > 0) law.set_passive_transition(transition / optimal);
     material_.activation = parameters.GetDriven("activation");
     ReadFibreOf(node);
-    ReadAxesOf(node);
+    if (node != node_) ReadAxesOf(node);
   }
 
   void MixTendon(const MooneyRivlinPart& matrix, double bulk, pugi::xml_node node) {
     Parameters parameters(node, source_);
-    if (!IsFibreAlone(parameters, "tendon")) return;
+    if (node != node_ && !IsFibreAlone(parameters, "tendon")) return;
     v1::Tendon& law = *material_.law.mutable_tendon();
     law.set_c1(Stress(matrix.c1));
     law.set_c2(Stress(matrix.c2));
@@ -313,7 +387,7 @@ class MaterialReader {
     law.set_fibre_exponent(parameters.Get("l2"));
     law.set_transition_stretch(parameters.Get(parameters.Either("lam_max", "lambda")));
     ReadFibreOf(node);
-    ReadAxesOf(node);
+    if (node != node_) ReadAxesOf(node);
   }
 
   // T0 along the first material axis, which must be the fibre direction; the law has T0 alpha.
@@ -340,25 +414,18 @@ class MaterialReader {
     material_.activation = stress;
   }
 
-  void Refuse(const std::string& type) {
-    source_.TakeAll(node_);
-    if (type == "muscle material" || type == "tendon material") {
-      const std::string law = type.substr(0, 6);
-      return source_.Fail(
-          node_,
-          Quoted(type) +
-              " has a shear energy in the invariants B1 and B2, for which there is no law here; the nearest is " + law,
-          "write an uncoupled solid mixture of Mooney-Rivlin and " + type + " with g1 and g2 of 0: that is the law " +
-              law);
-    }
-    source_.Fail(node_, "the material " + Quoted(type) + " is not supported", kKnown);
-  }
-
   pugi::xml_node node_;
   XmlSource& source_;
   const UnitSystem& units_;
   ImportedMaterial& material_;
 };
+
+void ReadRigidMaterial(XmlSource& source, ImportedMaterial& material) {
+  source.TakeAll(material.node);
+  const pugi::xml_node own = material.node.child("override_com");
+  if (own && !source.Flag(own)) return;
+  if (const pugi::xml_node centre = material.node.child("center_of_mass")) material.centre = source.Vector(centre);
+}
 
 }  // namespace
 
@@ -374,10 +441,30 @@ void ReadMaterials(pugi::xml_node section, XmlSource& source, Model& model) {
     if (!names.insert(material.name).second) {
       source.Fail(node, "there is a material " + Quoted(material.name) + " already", "name them uniquely");
     }
-    const std::string type = source.Required(node, "type");
-    if (!type.empty()) MaterialReader(node, source, model.units, material).Read(type);
+    material.rigid = source.Required(node, "type") == "rigid body";
   }
   if (model.materials.empty()) source.Fail(section, "has no materials");
+  for (std::size_t m = 0; m < model.materials.size(); ++m) {
+    model.material_index.try_emplace(model.materials[m].name, m);
+  }
+  for (std::size_t m = 0; m < model.materials.size(); ++m) {
+    model.material_index.try_emplace(std::to_string(model.materials[m].id), m);
+  }
+}
+
+void ReadLaws(XmlSource& source, Model& model) {
+  for (ImportedMaterial& material : model.materials) {
+    if (material.rigid) {
+      ReadRigidMaterial(source, material);
+      continue;
+    }
+    if (!material.used) {
+      source.TakeAll(material.node);
+      continue;
+    }
+    const std::string type = material.node.attribute("type").value();
+    if (!type.empty()) MaterialReader(material.node, source, model.units, material).Read(type);
+  }
 }
 
 }  // namespace fascicle::client

@@ -15,22 +15,23 @@ constexpr std::size_t kMaxNodes = 50'000'000;
 struct ShapeName {
   std::string_view name;
   Shape shape;
+  std::size_t count;
 };
-constexpr ShapeName kShapes[] = {{"tet4", Shape::kTet4},
-                                 {"tet10", Shape::kTet10},
-                                 {"hex8", Shape::kHex8},
-                                 {"penta6", Shape::kPenta6},
-                                 {"pyra5", Shape::kPyra5}};
+constexpr ShapeName kShapes[] = {{"tet4", Shape::kTet4, 4},
+                                 {"tet10", Shape::kTet10, 10},
+                                 {"hex8", Shape::kHex8, 8},
+                                 {"penta6", Shape::kPenta6, 6},
+                                 {"pyra5", Shape::kPyra5, 5}};
 
-// Solid elements whose omission would leave a hole in the body, and elements without volume.
+// Solid elements whose omission would leave a hole in the body, as opposed to elements without volume.
 bool IsOtherSolid(std::string_view type) {
   return type.starts_with("tet") || type.starts_with("hex") || type.starts_with("penta") || type.starts_with("pyra");
 }
 
 class MeshReader {
  public:
-  MeshReader(bool split_hexahedra, XmlSource& source, Mesh& mesh)
-      : split_hexahedra_(split_hexahedra), source_(source), mesh_(mesh) {}
+  MeshReader(XmlSource& source, Mesh& mesh, bool needs_names)
+      : source_(source), mesh_(mesh), needs_names_(needs_names) {}
 
   void Read(pugi::xml_node section) {
     source_.Take(section);
@@ -47,7 +48,7 @@ class MeshReader {
       }
     }
     if (mesh_.nodes.empty()) source_.Fail(section, "has no nodes", "is the file complete?");
-    if (mesh_.parts.empty() && !any_elements_) source_.Fail(section, "has no elements", "is the file complete?");
+    if (mesh_.parts.empty()) source_.Fail(section, "has no elements", "is the file complete?");
   }
 
  private:
@@ -88,46 +89,31 @@ class MeshReader {
     return -1;
   }
 
-  std::optional<Shape> ShapeOf(pugi::xml_node section) {
-    const std::string type = source_.Required(section, "type");
-    any_elements_ = true;
-    if (type.empty()) return std::nullopt;
-    for (const auto& [name, shape] : kShapes) {
-      if (name != type) continue;
-      if (split_hexahedra_ || shape == Shape::kTet4 || shape == Shape::kTet10) return shape;
-      source_.Fail(section, "consists of " + Quoted(type) + " elements; fascicle has tetrahedra only",
-                   "--split-hexahedra splits them, or mesh the body with tet4 or tet10");
-      return std::nullopt;
-    }
-    if (IsOtherSolid(type)) {
-      source_.Fail(section, "consists of " + Quoted(type) + " elements, which are not supported",
-                   "mesh the body with tet4 or tet10");
-    } else {
-      source_.Tell(Notice::Kind::kNotTaken, section, "elements of type " + Quoted(type) + " have no volume");
-    }
-    return std::nullopt;
-  }
-
   void ReadElements(pugi::xml_node section) {
     source_.TakeAll(section);
-    const std::string name = source_.Required(section, "name");
-    const std::optional<Shape> shape = ShapeOf(section);
-    if (!name.empty() && !mesh_.part_names.insert(name).second) {
-      source_.Fail(section, "there is a part " + Quoted(name) + " already", "name the parts uniquely");
-    }
-    if (!shape) return;
     Part part;
-    part.name = name;
+    part.name = section.attribute("name").value();
+    if (part.name.empty() && !needs_names_) part.name = "part " + std::to_string(mesh_.parts.size() + 1);
+    if (part.name.empty()) source_.Required(section, "name");
     part.node = section;
-    part.shape = *shape;
+    part.type = source_.Required(section, "type");
+    part.shape = IsOtherSolid(part.type) ? Shape::kOtherSolid : Shape::kNoVolume;
+    part.count = 0;  // as many as the first element has
+    for (const auto& [name, shape, count] : kShapes) {
+      if (name != part.type) continue;
+      part.shape = shape;
+      part.count = count;
+    }
+    if (!part.name.empty() && !mesh_.part_index.try_emplace(part.name, mesh_.parts.size()).second) {
+      source_.Fail(section, "there is a part " + Quoted(part.name) + " already", "name the parts uniquely");
+    }
     bool empty = true;
     for (const pugi::xml_node node : section.children()) {
       if (node.type() != pugi::node_element) continue;
       ReadElement(node, part);
       empty = false;
     }
-    if (empty) return source_.Fail(section, "has no elements", "is the file complete?");
-    mesh_.part_index.try_emplace(part.name, mesh_.parts.size());
+    if (empty) source_.Fail(section, "has no elements", "is the file complete?");
     mesh_.parts.push_back(std::move(part));
   }
 
@@ -135,26 +121,26 @@ class MeshReader {
     const std::string_view name = node.name();
     if (name != "elem" && name != "e")
       return source_.Fail(node, "is not an element", "write <elem id=\"...\">n1,n2,...");
-    const auto count = static_cast<std::size_t>(NodesOf(part.shape));
     const auto id = source_.IntegerAttribute(node, "id");
-    const auto numbers = source_.Integers(node, count);
-    if (!id || !numbers) return;
+    const auto numbers = source_.Integers(node, part.count);
+    if (!id || !numbers || numbers->empty()) return;
+    part.count = numbers->size();
     const std::pair place(static_cast<std::int32_t>(mesh_.parts.size()), static_cast<std::int32_t>(part.size()));
     if (!mesh_.element_index.try_emplace(*id, place).second) {
       return source_.Fail(node, "element " + std::to_string(*id) + " is given twice", "number the elements uniquely");
     }
     auto sorted = *numbers;
     std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+    if (part.shape != Shape::kNoVolume && std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
       return source_.Fail(node, "has a node twice", "mesh the body again");
     }
-    std::array<std::int32_t, 10> indices;
-    for (std::size_t n = 0; n < count; ++n) {
-      indices[n] = Find((*numbers)[n], node);
-      if (indices[n] < 0) return;
+    std::vector<std::int32_t> indices;
+    for (const std::int64_t number : *numbers) {
+      indices.push_back(Find(number, node));
+      if (indices.back() < 0) return;
     }
     part.ids.push_back(*id);
-    part.nodes.insert(part.nodes.end(), indices.begin(), indices.begin() + static_cast<std::ptrdiff_t>(count));
+    part.nodes.insert(part.nodes.end(), indices.begin(), indices.end());
   }
 
   // Numbers as text, or as elements with an id: <n id="1"/>.
@@ -242,46 +228,47 @@ class MeshReader {
     const std::string name = source_.Required(node, "name");
     auto numbers = Members(node);
     if (name.empty() || !numbers) return;
+    std::size_t skipped = 0;
     for (const std::int64_t id : *numbers) {
-      if (mesh_.element_index.contains(id)) continue;
-      source_.Fail(node, "refers to element " + std::to_string(id) + ", which does not exist", "is the file complete?");
-      break;
+      const auto found = mesh_.element_index.find(id);
+      if (found == mesh_.element_index.end()) {
+        source_.Fail(node, "refers to element " + std::to_string(id) + ", which does not exist",
+                     "is the file complete?");
+        break;
+      }
+      const auto part = static_cast<std::size_t>(found->second.first);
+      skipped += part < mesh_.parts.size() && mesh_.parts[part].shape == Shape::kNoVolume ? 1 : 0;
+    }
+    if (skipped > 0) {
+      source_.Remark(Notice::Kind::kNote, node,
+                     std::to_string(skipped) + " of its " + std::to_string(numbers->size()) +
+                         " elements are shells or beams, which are skipped");
     }
     if (!mesh_.element_sets.try_emplace(name, std::move(*numbers)).second) {
       source_.Fail(node, "there is an element set " + Quoted(name) + " already", "name the sets uniquely");
     }
   }
 
-  bool split_hexahedra_;
   XmlSource& source_;
   Mesh& mesh_;
-  bool any_elements_ = false;
+  bool needs_names_;
   bool any_unnumbered_ = false;  // nodes without a number
 };
 
-// Assigns materials to parts, and drops rigid parts.
+// Assigns materials to parts.
 class MaterialAssignment {
  public:
-  MaterialAssignment(const Model& model, XmlSource& source) : model_(model), source_(source) {
-    for (std::size_t m = 0; m < model.materials.size(); ++m) {
-      const ImportedMaterial& material = model.materials[m];
-      index_of_.try_emplace(material.name, m);
-      index_of_.try_emplace(std::to_string(material.id), m);
-    }
-  }
+  MaterialAssignment(Model& model, XmlSource& source) : model_(model), source_(source) {}
 
-  // `part` is null if the part is not supported.
-  void Assign(const std::string& name, pugi::xml_node node, Part* part) const {
-    const auto found = index_of_.find(name);
-    if (found == index_of_.end()) {
+  void Assign(const std::string& name, pugi::xml_node node, Part& part) {
+    const auto found = FindMaterial(model_, name);
+    if (!found) {
       source_.Fail(node, "there is no material " + Quoted(name), "materials of the model: " + Names());
-    } else if (part == nullptr) {
-      return;
-    } else if (model_.materials[found->second].rigid) {
-      source_.Tell(Notice::Kind::kNotTaken, node,
-                   "a rigid body: nodes that it shares with other parts are free, unless a node set constrains them");
+      for (ImportedMaterial& material : model_.materials) material.used = true;  // so that they are checked, too
+    } else if (model_.materials[*found].rigid) {
+      part.rigid = static_cast<std::int32_t>(*found);
     } else {
-      part->material = static_cast<std::int32_t>(found->second);
+      part.material = static_cast<std::int32_t>(*found);
     }
   }
 
@@ -295,27 +282,49 @@ class MaterialAssignment {
     return names.empty() ? "none" : names;
   }
 
-  const Model& model_;
+  Model& model_;
   XmlSource& source_;
-  std::unordered_map<std::string, std::size_t> index_of_;
 };
+
+// Takes the material from deformable parts that are not tetrahedra, and reports them.
+void DropOtherShapes(bool split_hexahedra, XmlSource& source, Model& model) {
+  for (Part& part : model.mesh.parts) {
+    if (part.material < 0) continue;
+    if (part.shape != Shape::kNoVolume) model.materials[static_cast<std::size_t>(part.material)].used = true;
+    if (!IsUsable(part, split_hexahedra, source)) part.material = -1;
+  }
+}
 
 }  // namespace
 
-int NodesOf(Shape shape) {
-  switch (shape) {
+bool IsUsable(const Part& part, bool split_hexahedra, XmlSource& source) {
+  switch (part.shape) {
     case Shape::kTet4:
-      return 4;
     case Shape::kTet10:
-      return 10;
+      return true;
     case Shape::kHex8:
-      return 8;
     case Shape::kPenta6:
-      return 6;
     case Shape::kPyra5:
-      return 5;
+      if (split_hexahedra) return true;
+      source.Fail(part.node, "consists of " + Quoted(part.type) + " elements; fascicle has tetrahedra only",
+                  "--split-hexahedra splits them, or mesh the body with tet4 or tet10");
+      return false;
+    case Shape::kOtherSolid:
+      source.Fail(part.node, "consists of " + Quoted(part.type) + " elements, which are not supported",
+                  "mesh the body with tet4 or tet10");
+      return false;
+    case Shape::kNoVolume:
+      source.Remark(Notice::Kind::kNotTaken, part.node,
+                    "elements of type " + Quoted(part.type) + " have no volume, and are left out",
+                    "mesh the body with solid elements, or remove the part");
+      return false;
   }
-  return 0;
+  return false;
+}
+
+std::optional<std::size_t> FindMaterial(const Model& model, const std::string& name) {
+  const auto found = model.material_index.find(name);
+  return found == model.material_index.end() ? std::nullopt : std::optional(found->second);
 }
 
 const std::vector<std::int64_t>* FindElements(const Mesh& mesh, const std::string& name) {
@@ -324,39 +333,43 @@ const std::vector<std::int64_t>* FindElements(const Mesh& mesh, const std::strin
   return part == mesh.part_index.end() ? nullptr : &mesh.parts[part->second].ids;
 }
 
-void ReadMesh(pugi::xml_node section, bool split_hexahedra, XmlSource& source, Model& model) {
-  MeshReader(split_hexahedra, source, model.mesh).Read(section);
+void ReadMesh(pugi::xml_node section, XmlSource& source, Model& model) {
+  const bool needs_names = model.version != "2.5";
+  MeshReader(source, model.mesh, needs_names).Read(section);
 }
 
-void ReadMeshDomains(pugi::xml_node section, XmlSource& source, Model& model) {
+void ReadMeshDomains(pugi::xml_node section, bool split_hexahedra, XmlSource& source, Model& model) {
   source.Take(section);
-  const MaterialAssignment materials(model, source);
-  std::unordered_map<std::string, Part*> parts;
-  for (Part& part : model.mesh.parts) parts.emplace(part.name, &part);
+  MaterialAssignment materials(model, source);
   std::set<std::string> seen;
-  for (const pugi::xml_node node : section.children("SolidDomain")) {
+  for (const pugi::xml_node node : section.children()) {
+    const std::string_view kind = node.name();
+    if (kind != "SolidDomain" && kind != "ShellDomain" && kind != "BeamDomain") continue;
     source.TakeAll(node);
     const std::string name = source.Required(node, "name"), material = source.Required(node, "mat");
-    if (!name.empty() && !model.mesh.part_names.contains(name)) {
+    const auto part = model.mesh.part_index.find(name);
+    if (!name.empty() && part == model.mesh.part_index.end()) {
       source.Fail(node, "there is no part " + Quoted(name), "it must be the name of an Elements section");
     }
-    const auto part = parts.find(name);
     seen.insert(name);
-    if (!material.empty()) materials.Assign(material, node, part == parts.end() ? nullptr : part->second);
-    const std::string_view kind = node.attribute("type").value();
-    if (!kind.empty() && kind != "elastic-solid") {
-      source.Tell(Notice::Kind::kSetting, node, "fascicle's own elements replace " + Quoted(kind));
+    if (!material.empty() && part != model.mesh.part_index.end()) {
+      materials.Assign(material, node, model.mesh.parts[part->second]);
+    }
+    const std::string_view type = node.attribute("type").value();
+    if (kind == "SolidDomain" && !type.empty() && type != "elastic-solid") {
+      source.Remark(Notice::Kind::kNote, node, "fascicle's own elements replace " + Quoted(type));
     }
   }
   for (Part& part : model.mesh.parts) {
     if (seen.contains(part.name)) continue;
     const std::string material = part.node.attribute("mat").value();
     if (!material.empty()) {
-      materials.Assign(material, part.node, &part);
-    } else {
+      materials.Assign(material, part.node, part);
+    } else if (part.shape != Shape::kNoVolume) {
       source.Fail(part.node, "no SolidDomain gives this part a material", "add one with its name to MeshDomains");
     }
   }
+  DropOtherShapes(split_hexahedra, source, model);
 }
 
 }  // namespace fascicle::client

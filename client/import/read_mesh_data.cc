@@ -1,4 +1,4 @@
-// <MeshData>: fibres and material axes of each element [FEBio User Manual, 3.8].
+// <MeshData>: fibres and material axes of each element, and numbers of each facet [FEBio User Manual, 3.8].
 #include <string_view>
 #include <utility>
 
@@ -25,11 +25,7 @@ class ElementDataReader {
     const std::string set = source_.Required(section, "elem_set");
     if (set.empty()) return;
     const std::vector<std::int64_t>* ids = FindElements(model_.mesh, set);
-    if (ids == nullptr) {
-      // The set may be a part that is not supported.
-      if (model_.mesh.part_names.contains(set)) return;
-      return source_.Fail(section, "there is no element set or part " + Quoted(set));
-    }
+    if (ids == nullptr) return source_.Fail(section, "there is no element set or part " + Quoted(set));
     for (const pugi::xml_node node : section.children()) {
       if (node.type() != pugi::node_element) continue;
       const auto lid = source_.IntegerAttribute(node, "lid");
@@ -64,12 +60,39 @@ class ElementDataReader {
   Model& model_;
 };
 
+// One number for each facet; other data are reported as not supported.
+void ReadSurfaceData(pugi::xml_node section, XmlSource& source, Model& model) {
+  const std::string_view type = section.attribute("data_type").as_string("scalar");
+  const std::string name = section.attribute("name").value();
+  if (type != "scalar" || name.empty() || section.attribute("generator") || section.attribute("type")) return;
+  source.TakeAll(section);
+  SurfaceMap map;
+  map.surface = source.Required(section, "surface");
+  const auto surface = model.mesh.surfaces.find(map.surface);
+  if (surface == model.mesh.surfaces.end()) {
+    return source.Fail(section, "there is no surface " + Quoted(map.surface), "name a Surface of the mesh");
+  }
+  map.values.assign(surface->second.facets.size(), 0);
+  for (const pugi::xml_node node : section.children("face")) {
+    const auto lid = source.IntegerAttribute(node, "lid");
+    const double value = source.Number(node);
+    if (!lid) continue;
+    if (*lid < 1 || *lid > static_cast<std::int64_t>(map.values.size())) {
+      source.Fail(node, "lid " + std::to_string(*lid) + " is not a facet of the surface", "count its facets from 1");
+      continue;
+    }
+    map.values[static_cast<std::size_t>(*lid - 1)] = value;
+  }
+  model.surface_maps[name] = std::move(map);
+}
+
 }  // namespace
 
 void ReadMeshData(pugi::xml_node section, XmlSource& source, Model& model) {
   source.Take(section);
   ElementDataReader reader(source, model);
   for (const pugi::xml_node node : section.children("ElementData")) reader.Read(node);
+  for (const pugi::xml_node node : section.children("SurfaceData")) ReadSurfaceData(node, source, model);
 }
 
 }  // namespace fascicle::client

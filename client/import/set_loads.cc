@@ -40,7 +40,7 @@ struct SetSupport {
 };
 
 bool SameMotion(const Support& a, const Support& b) {
-  if (a.motion.has_value() != b.motion.has_value()) return false;
+  if (a.motion.has_value() != b.motion.has_value() || a.rotation != b.rotation) return false;
   return !a.motion || (a.motion->value == b.motion->value && a.motion->controller == b.motion->controller);
 }
 
@@ -94,8 +94,33 @@ class Conflicts {
   std::array<std::unordered_map<std::int32_t, const Support*>, 3> holder_;
 };
 
+// Nodes outside of all deformable parts make no difference; mid-edge nodes without corners do.
+void TellOfNoCorner(const std::vector<std::int32_t>& nodes, const std::vector<BodyDraft>& drafts, pugi::xml_node node,
+                    XmlSource& source) {
+  const bool any_middle = std::any_of(drafts.begin(), drafts.end(), [&](const BodyDraft& draft) {
+    return std::any_of(nodes.begin(), nodes.end(), [&](std::int32_t n) { return draft.mesh.local.contains(n); });
+  });
+  if (any_middle) {
+    source.Remark(Notice::Kind::kNotTaken, node, "none of its nodes is a corner of an element",
+                  "add the corners next to them to the set");
+  } else {
+    source.Remark(Notice::Kind::kNote, node, "none of its nodes belongs to a deformable part: it changes nothing");
+  }
+}
+
 bool HasAny(const BodyDraft& draft, const std::vector<std::int32_t>& nodes) {
   return std::any_of(nodes.begin(), nodes.end(), [&](std::int32_t n) { return draft.mesh.HasCorner(n); });
+}
+
+void AddRotation(const RigidRotation& rotation, const Model& model, CurveMaker& curves, v1::Constraint& constraint) {
+  constexpr double kMaxAngle = 1000;
+  const auto curve =
+      curves.MakeMotion(rotation.angle.value, rotation.angle.controller, -kMaxAngle, kMaxAngle, rotation.angle.node);
+  if (!curve) return;
+  v1::Rotation& made = *constraint.mutable_motion()->mutable_rotation();
+  for (const double component : rotation.point) made.add_point(model.units.to_scene_unit * component);
+  for (const double component : rotation.axis) made.add_axis(component);
+  *made.mutable_angle() = *curve;
 }
 
 void AddConstraint(const SetSupport& set, const std::vector<std::int32_t>& nodes, const Model& model,
@@ -108,6 +133,9 @@ void AddConstraint(const SetSupport& set, const std::vector<std::int32_t>& nodes
   v1::Constraint& constraint = *draft.body.add_constraints();
   constraint.set_region(draft.NodeRegion(set.set, set.set, nodes));
   const bool all = set.axes[0] && set.axes[1] && set.axes[2];
+  if (all && set.axes[0]->rotation >= 0) {
+    AddRotation(model.rotations[static_cast<std::size_t>(set.axes[0]->rotation)], model, curves, constraint);
+  }
   for (int axis = 0; axis < 3; ++axis) {
     const Support* support = set.axes[static_cast<std::size_t>(axis)];
     if (support == nullptr) continue;
@@ -174,20 +202,20 @@ class LoadMaker {
       const Vec3 total = count * model_.units.newton * forces.each;
       for (const double component : total) load->mutable_nodal_force()->add_total(component);
     }
-    if (!any)
-      source_.Tell(Notice::Kind::kNotTaken, forces.node, "none of its nodes is a corner of a supported element");
+    if (!any) TellOfNoCorner(nodes, drafts_, forces.node, source_);
   }
 
   void AddSurfaceLoad(const SurfaceLoad& load, const Surface& surface) {
     std::size_t taken = 0;
     for (BodyDraft& draft : drafts_) taken += AddSurfaceLoad(load, surface, draft);
     if (taken == 0) {
-      source_.Tell(Notice::Kind::kNotTaken, load.node, "none of its facets is on the surface of a supported body");
+      source_.Remark(Notice::Kind::kNotTaken, load.node, "none of its facets is on the surface of a deformable part",
+                     "remove it, or correct its surface");
     } else if (taken < surface.facets.size()) {
-      source_.notices.push_back({Notice::Kind::kChanged, source_.LineOf(load.node), source_.Where(load.node),
-                                 std::to_string(surface.facets.size() - taken) + " of " +
-                                     std::to_string(surface.facets.size()) +
-                                     " facets are not on the surface of a supported body"});
+      source_.Remark(Notice::Kind::kChanged, load.node,
+                     std::to_string(surface.facets.size() - taken) + " of " + std::to_string(surface.facets.size()) +
+                         " facets are not on the surface of a deformable part",
+                     "remove them from the surface");
     }
   }
 
@@ -217,60 +245,78 @@ class LoadMaker {
       same = own == MembersOf(nodes, all_, draft.mesh);
     }
     if (same) return;
-    source_.notices.push_back({Notice::Kind::kChanged, source_.LineOf(forces.node), source_.Where(forces.node),
-                               "the total is shared equally by the set's corners and the mid-edge nodes between "
-                               "them, which differ from the nodes of the set"});
+    source_.Remark(Notice::Kind::kChanged, forces.node,
+                   "the total is shared equally by the set's corners and the mid-edge nodes between "
+                   "them, which differ from the nodes of the set");
   }
 
   std::size_t AddSurfaceLoad(const SurfaceLoad& load, const Surface& surface, BodyDraft& draft) {
-    std::vector<Triangle> triangles;
     std::size_t taken = 0;
-    for (const Facet& facet : surface.facets) {
-      std::vector<Triangle> own = TrianglesOf(facet);
+    std::map<double, std::vector<Triangle>> by_factor;
+    for (std::size_t f = 0; f < surface.facets.size(); ++f) {
+      std::vector<Triangle> own = TrianglesOf(surface.facets[f]);
       std::erase_if(own, [&](const Triangle& triangle) { return !draft.mesh.HasSurface(triangle); });
       taken += own.empty() ? 0 : 1;
-      triangles.insert(triangles.end(), own.begin(), own.end());
+      const double factor = load.factors.empty() ? 1 : load.factors[f];
+      if (factor == 0) continue;
+      std::vector<Triangle>& group = by_factor[factor];
+      group.insert(group.end(), own.begin(), own.end());
     }
-    if (triangles.empty()) return 0;
-    if (load.pressure != 0) {
-      AddPressure(load, triangles, draft);
-    } else {
-      AddTraction(load, load.surface, load.surface, triangles, load.traction, draft);
+    std::vector<Group> groups;
+    for (auto& [factor, triangles] : by_factor) {
+      if (triangles.empty()) continue;
+      if (load.pressure == 0) {
+        groups.push_back({factor * load.traction, std::move(triangles)});
+      } else {
+        AddDirections(factor * load.pressure, triangles, groups);
+      }
+      if (groups.size() <= kMaxGroups) continue;
+      source_.Remark(Notice::Kind::kNotTaken, load.node,
+                     "has more than 500 normal directions and values; a load here has one",
+                     "divide the surface, or remove it");
+      return taken;
+    }
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const std::string key = groups.size() == 1 ? load.surface : load.surface + "," + Text(groups[g].traction);
+      AddTraction(load, key, groups[g], draft);
     }
     return taken;
   }
 
-  void AddTraction(const SurfaceLoad& source, const std::string& key, const std::string& name,
-                   const std::vector<Triangle>& triangles, const Vec3& traction, BodyDraft& draft) {
-    v1::Load* load = NewLoad(draft, source.controller, source.node);
-    if (load == nullptr) return;
-    load->set_region(draft.SurfaceRegion(key, name, triangles));
-    for (const double component : traction) load->mutable_traction()->add_vector(model_.units.pascal * component);
+  // Triangles with the same traction.
+  struct Group {
+    Vec3 traction = Vec3::Zero();
+    std::vector<Triangle> triangles;
+  };
+  static constexpr std::size_t kMaxGroups = 500;
+
+  static std::string Text(const Vec3& vector) {
+    char text[96];
+    std::snprintf(text, sizeof(text), "%.17g,%.17g,%.17g", vector[0], vector[1], vector[2]);
+    return text;
   }
 
-  // Adds a traction for each normal direction of the triangles.
-  void AddPressure(const SurfaceLoad& load, const std::vector<Triangle>& triangles, BodyDraft& draft) {
-    constexpr std::size_t kMaxDirections = 500;
+  void AddTraction(const SurfaceLoad& source, const std::string& key, const Group& group, BodyDraft& draft) {
+    v1::Load* load = NewLoad(draft, source.controller, source.node);
+    if (load == nullptr) return;
+    load->set_region(draft.SurfaceRegion(key, source.surface, group.triangles));
+    for (const double component : group.traction) load->mutable_traction()->add_vector(model_.units.pascal * component);
+  }
+
+  // Adds a group for each normal direction of the triangles.
+  void AddDirections(double pressure, const std::vector<Triangle>& triangles, std::vector<Group>& groups) const {
     constexpr double kSame = 1e6;
-    std::map<std::array<std::int64_t, 3>, std::pair<Vec3, std::vector<Triangle>>> groups;
+    std::map<std::array<std::int64_t, 3>, Group> by_normal;
     for (const Triangle& triangle : triangles) {
       const auto x = [&](int c) { return model_.mesh.nodes[static_cast<std::size_t>(triangle[c])]; };
       const Vec3 normal = (x(1) - x(0)).cross(x(2) - x(0)).stableNormalized();
       std::array<std::int64_t, 3> key;
       for (int c = 0; c < 3; ++c) key[c] = std::llround(kSame * normal[c]);
-      groups.try_emplace(key, normal, std::vector<Triangle>()).first->second.second.push_back(triangle);
-      if (groups.size() <= kMaxDirections) continue;
-      source_.Tell(Notice::Kind::kNotTaken, load.node,
-                   "a pressure on a surface with more than 500 normal directions; a load here has one direction");
-      return;
+      const auto place = by_normal.try_emplace(key, Group{-pressure * normal, {}}).first;
+      place->second.triangles.push_back(triangle);
+      if (groups.size() + by_normal.size() > kMaxGroups) break;
     }
-    for (const auto& [key, group] : groups) {
-      std::string name = load.surface;
-      if (groups.size() > 1) {
-        for (const std::int64_t part : key) name += "," + std::to_string(part);
-      }
-      AddTraction(load, name, load.surface, group.second, -load.pressure * group.first, draft);
-    }
+    for (auto& [key, group] : by_normal) groups.push_back(std::move(group));
   }
 
   const Model& model_;
@@ -300,7 +346,7 @@ void SetSupports(const Model& model, XmlSource& source, CurveMaker& curves, Orig
       any = true;
       AddConstraint(set, *nodes, model, curves, origins, draft);
     }
-    if (!any) source.Tell(Notice::Kind::kNotTaken, first.node, "none of its nodes is a corner of a supported element");
+    if (!any) TellOfNoCorner(*nodes, drafts, first.node, source);
   }
 }
 

@@ -16,15 +16,14 @@ const ImportedMaterial& MaterialOf(const Model& model, std::int32_t part) {
 
 // Inertia and weight need the density; equilibrium does not.
 void SetDensity(const Model& model, XmlSource& source, BodyDraft& draft) {
-  constexpr double kMaxDensity = 30000;  // of a scene [kg/m^3]
   const bool counts = model.control.dynamic || !model.body_forces.empty();
   const ImportedMaterial& first = MaterialOf(model, draft.mesh.parts[0]);
-  if (!counts && first.density > kMaxDensity) return;  // the density is not used
+  if (!counts && first.density > kMaxSceneDensity) return;  // the density is not used
   if (first.density > 0) draft.body.set_density(first.density);
   if (!counts) return;
   if (first.density == 0) {
     source.Fail(first.node, "has no density", "inertia and weight need one: give <density>");
-  } else if (first.density > kMaxDensity) {
+  } else if (first.density > kMaxSceneDensity) {
     char text[128];
     std::snprintf(text, sizeof(text), "its density is %.3g kg/m^3 in the units %s", first.density,
                   model.units.name.c_str());
@@ -33,8 +32,8 @@ void SetDensity(const Model& model, XmlSource& source, BodyDraft& draft) {
   for (const std::int32_t p : draft.mesh.parts) {
     const ImportedMaterial& other = MaterialOf(model, p);
     if (other.density == first.density) continue;
-    source.notices.push_back({Notice::Kind::kChanged, source.LineOf(other.node), source.Where(other.node),
-                              "has the density of " + Quoted(first.name) + ": a body has one"});
+    source.Remark(Notice::Kind::kChanged, other.node, "has the density of " + Quoted(first.name) + ": a body has one",
+                  "give both materials the same density");
   }
 }
 
@@ -46,7 +45,7 @@ void SetActivation(const Model& model, CurveMaker& curves, Origins& origins, Bod
     const ImportedMaterial& material = MaterialOf(model, p);
     if (!material.activation || (first != nullptr && SameDrive(*first, *material.activation))) continue;
     const Driven& driven = *material.activation;
-    const auto curve = curves.Make(driven.value, driven.controller, 0, 1, driven.node);
+    const auto curve = curves.MakeActivation(driven.value, driven.controller, driven.node);
     if (!curve) continue;
     if (first == nullptr) {
       first = &driven;
@@ -60,10 +59,38 @@ void SetActivation(const Model& model, CurveMaker& curves, Origins& origins, Bod
   }
 }
 
-// The frame of a material or of element data at an element.
-Mat3 FrameOf(const Axes& axes, const Mesh& mesh, const Part& part, std::size_t e, XmlSource& source, bool& good) {
+// The shortest rotation that takes x to the direction from the centre or axis to a point; none on it, and none where
+// the direction is -x, as in FEBio.
+Mat3 TurnToPoint(const Round& round, const Vec3& point) {
+  Vec3 direction = point - round.centre;
+  if (round.axis) direction -= round.axis->dot(direction) * *round.axis;
+  direction = direction.stableNormalized();
+  if (!(direction.norm() > 0.5) || Vec3::UnitX().cross(direction).norm() < 1e-12) return Mat3::Identity();
+  return Eigen::Quaterniond::FromTwoVectors(Vec3::UnitX(), direction).toRotationMatrix();
+}
+
+// Axes whose first one is the turned vector; the third is perpendicular to it and to the turned y.
+Mat3 RoundFrame(const Axes& axes, const Vec3& place, XmlSource& source, bool& good) {
+  const Mat3 turn = TurnToPoint(*axes.round, place);
+  Mat3 frame;
+  frame.col(0) = turn * axes.round->vector;
+  const Vec3 across = frame.col(0).cross(turn.col(1));
+  if (!(across.norm() > 1e-3)) {
+    if (good) source.Fail(axes.node, "has a vector along y, which leaves its other axes open", "give another vector");
+    good = false;
+    return Mat3::Identity();
+  }
+  frame.col(2) = across.normalized();
+  frame.col(1) = frame.col(2).cross(frame.col(0));
+  return frame;
+}
+
+// The frame of a material or of element data at an element, of which `place` is a point.
+Mat3 FrameOf(const Axes& axes, const Mesh& mesh, const Part& part, std::size_t e, const Vec3& place, XmlSource& source,
+             bool& good) {
+  if (axes.round) return RoundFrame(axes, place, source, good);
   if (!axes.local) return axes.given;
-  const auto count = static_cast<std::size_t>(NodesOf(part.shape));
+  const std::size_t count = part.count;
   std::array<Vec3, 3> x;
   for (int k = 0; k < 3; ++k) {
     const auto n = static_cast<std::size_t>((*axes.local)[k]);
@@ -86,7 +113,8 @@ class FibreMaker {
  public:
   FibreMaker(const Model& model, XmlSource& source) : model_(model), source_(source) {}
 
-  Vec3 Fibre(std::int32_t p, std::size_t e) {
+  // The fibre at the point `place` of an element.
+  Vec3 Fibre(std::int32_t p, std::size_t e, const Vec3& place) {
     const Part& part = model_.mesh.parts[static_cast<std::size_t>(p)];
     const ImportedMaterial& material = MaterialOf(model_, p);
     if (!material.needs_fibres) return Vec3::UnitX();
@@ -100,8 +128,8 @@ class FibreMaker {
     }
     Mat3 frame = Mat3::Identity();
     if (const auto own = model_.data.axes.find(id); own != model_.data.axes.end()) frame = own->second;
-    for (const Axes& axes : material.axes) frame *= FrameOf(axes, model_.mesh, part, e, source_, good_);
-    return frame * InAxes(material, part, e, id);
+    for (const Axes& axes : material.axes) frame *= FrameOf(axes, model_.mesh, part, e, place, source_, good_);
+    return frame * InAxes(material, part, e, id, place);
   }
 
  private:
@@ -111,9 +139,10 @@ class FibreMaker {
     return Vec3::UnitX();
   }
 
-  Vec3 InAxes(const ImportedMaterial& material, const Part& part, std::size_t e, std::int64_t id) {
+  Vec3 InAxes(const ImportedMaterial& material, const Part& part, std::size_t e, std::int64_t id, const Vec3& place) {
     const FibreSource& fibre = material.fibre;
     if (fibre.kind == FibreSource::Kind::kVector) return fibre.vector;
+    if (fibre.kind == FibreSource::Kind::kRound) return TurnToPoint(fibre.round, place) * fibre.round.vector;
     if (fibre.kind == FibreSource::Kind::kMap) {
       const auto map = model_.data.maps.find(fibre.map);
       if (map == model_.data.maps.end()) {
@@ -124,7 +153,7 @@ class FibreMaker {
       return Refuse(fibre.node,
                     "the element data " + Quoted(fibre.map) + " have nothing for element " + std::to_string(id), "");
     }
-    const auto count = static_cast<std::size_t>(NodesOf(part.shape));
+    const std::size_t count = part.count;
     const auto a = static_cast<std::size_t>(fibre.local[0]), b = static_cast<std::size_t>(fibre.local[1]);
     if (a >= count || b >= count) {
       return Refuse(fibre.node, "refers to more nodes than the elements of " + Quoted(part.name) + " have", "");
@@ -146,6 +175,25 @@ void AppendNumber(double number, char end, std::string& text) {
 }
 
 }  // namespace
+
+// Models often put the stress into the load curve, and smooth curves overshoot. Both laws are linear in the product of
+// stress and activation; the passive stress of muscle is relative to its peak stress, too.
+void ScaleActivations(Model& model, CurveMaker& curves) {
+  for (ImportedMaterial& material : model.materials) {
+    if (!material.activation) continue;
+    const double largest = curves.Largest(*material.activation);
+    if (!(largest > 1)) continue;
+    material.activation->value /= largest;
+    if (material.law.has_muscle()) {
+      v1::Muscle& law = *material.law.mutable_muscle();
+      law.set_peak_stress(largest * law.peak_stress());
+      law.set_passive_scale(law.passive_scale() / largest);
+    } else if (material.law.has_trans_iso_mooney_rivlin()) {
+      v1::TransIsoMooneyRivlin& law = *material.law.mutable_trans_iso_mooney_rivlin();
+      law.set_active_stress(largest * law.active_stress());
+    }
+  }
+}
 
 void SetMaterials(const Model& model, XmlSource& source, CurveMaker& curves, Origins& origins, BodyDraft& draft) {
   const std::int32_t first = draft.mesh.parts[0];
@@ -173,7 +221,9 @@ void SetFibres(const Model& model, const Tetrahedra& all, XmlSource& source, Bod
   fibres.reserve(draft.mesh.tetrahedra.size());
   bool same = true;
   for (const std::size_t t : draft.mesh.tetrahedra) {
-    fibres.push_back(maker.Fibre(all.part[t], static_cast<std::size_t>(all.element[t])));
+    Vec3 centroid = Vec3::Zero();
+    for (const std::int32_t n : all.corners[t]) centroid += 0.25 * model.mesh.nodes[static_cast<std::size_t>(n)];
+    fibres.push_back(maker.Fibre(all.part[t], static_cast<std::size_t>(all.element[t]), centroid));
     same = same && fibres.back() == fibres.front();
   }
   if (same) {

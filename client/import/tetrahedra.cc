@@ -22,7 +22,7 @@ Tetrahedra MakeTetrahedra(const Mesh& mesh) {
   for (std::size_t p = 0; p < mesh.parts.size(); ++p) {
     const Part& part = mesh.parts[p];
     if (part.material < 0) continue;
-    const auto count = static_cast<std::size_t>(NodesOf(part.shape));
+    const std::size_t count = part.count;
     for (std::size_t e = 0; e < part.size(); ++e) {
       const std::span<const std::int32_t> nodes(part.nodes.data() + e * count, count);
       std::array<std::int32_t, 6> middles;

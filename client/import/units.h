@@ -9,6 +9,8 @@
 
 namespace fascicle::client {
 
+constexpr double kMaxSceneDensity = 30'000;  // of a scene [kg/m^3]
+
 // A model's units in SI. Time is in seconds in all systems.
 struct UnitSystem {
   std::string name;

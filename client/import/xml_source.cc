@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "client/import/expression.h"
 #include "core/geometry/text_scanner.h"
 
 namespace fascicle::client {
@@ -88,18 +89,36 @@ void XmlSource::Fail(pugi::xml_node node, const std::string& message, const std:
   problems_.Add(problems_.count() < Problems::kMaxKept ? Where(node) : std::string(), message, hint);
 }
 
-void XmlSource::Tell(Notice::Kind kind, pugi::xml_node node, std::string message) {
+void XmlSource::Remark(Notice::Kind kind, pugi::xml_node node, std::string message, std::string hint) {
   constexpr std::size_t kMaxNotices = 1000;
-  TakeAll(node);
-  if (notices.size() < kMaxNotices) notices.push_back({kind, LineOf(node), Where(node), std::move(message)});
+  if (notices.size() >= kMaxNotices) return;
+  notices.push_back({kind, LineOf(node), Where(node), std::move(message), std::move(hint)});
 }
+
+void XmlSource::Tell(Notice::Kind kind, pugi::xml_node node, std::string message, std::string hint) {
+  TakeAll(node);
+  Remark(kind, node, std::move(message), std::move(hint));
+}
+
+namespace {
+
+// What to do about a section that has no counterpart.
+const char* HintFor(pugi::xml_node node) {
+  const std::string_view name = node.name();
+  if (name == "Contact") return "remove it, or declare contact in the scene";
+  if (name == "Discrete") return "remove it; springs have no counterpart";
+  if (name == "Initial") return "remove it, or start from a result of fascicle";
+  return "remove it from the model";
+}
+
+}  // namespace
 
 void XmlSource::TellOfChildren(pugi::xml_node parent, int depth) {
   constexpr int kDeepest = 6;
   for (const pugi::xml_node child : parent.children()) {
     if (child.type() != pugi::node_element || taken_whole_.contains(child.hash_value())) continue;
     if (!taken_.contains(child.hash_value())) {
-      Tell(Notice::Kind::kNotTaken, child, "");
+      if (depth > 0 || child.first_child()) Tell(Notice::Kind::kNotTaken, child, "", HintFor(child));
     } else if (depth < kDeepest) {
       TellOfChildren(child, depth + 1);
     }
@@ -120,6 +139,15 @@ std::string XmlSource::Text(pugi::xml_node node) {
     text += child.value();
   }
   return Trimmed(std::move(text));
+}
+
+std::vector<std::string> XmlSource::WordsOf(std::string_view text) {
+  std::vector<std::string> words;
+  ForEachToken(text, [&](std::string_view token) {
+    words.emplace_back(token);
+    return true;
+  });
+  return words;
 }
 
 std::string XmlSource::Required(pugi::xml_node node, const char* attribute) {
@@ -147,14 +175,28 @@ bool XmlSource::Numbers(pugi::xml_node node, double* values, std::size_t count) 
   return false;
 }
 
+std::string XmlSource::MathText(pugi::xml_node node) {
+  const pugi::xml_node inner = node.child("math");
+  if (inner) Take(node);
+  return Text(inner ? inner : node);
+}
+
 double XmlSource::Number(pugi::xml_node node) {
   double value = 0;
+  if (std::string_view(node.attribute("type").value()) == "math") {
+    const std::string text = MathText(node);
+    std::string mistake;
+    const auto expression = Expression::Parse(text, "", mistake);
+    if (expression && std::isfinite(value = expression->At(0))) return value;
+    Fail(node, expression ? Quoted(text) + " is not finite" : mistake, "give one value for all nodes and times");
+    return 0;
+  }
   return Numbers(node, &value, 1) ? value : 0;
 }
 
 bool XmlSource::IsConstant(pugi::xml_node node) {
   const std::string_view type = node.attribute("type").value();
-  if (type.empty() || type == "const" || type == "vector") return true;
+  if (type.empty() || type == "const" || type == "vector" || type == "math") return true;
   Fail(node, "is given by a " + std::string(Quoted(type)) + ", not by one value for all", "give a constant value");
   return false;
 }

@@ -42,8 +42,10 @@ class XmlSource {
 
   // Reports a problem and marks `node`.
   void Fail(pugi::xml_node node, const std::string& message, const std::string& hint = {});
-  // Reports something that is missing or changed; marks `node` and its descendants. Keeps the first thousand.
-  void Tell(Notice::Kind kind, pugi::xml_node node, std::string message);
+  // Reports something that is missing, changed or assumed. Keeps the first thousand.
+  void Remark(Notice::Kind kind, pugi::xml_node node, std::string message, std::string hint = {});
+  // The same; marks `node` and its descendants.
+  void Tell(Notice::Kind kind, pugi::xml_node node, std::string message, std::string hint = {});
   std::size_t failures() const { return problems_.count() - count_before_; }
 
   // Marks one element, or all of its descendants, too.
@@ -51,16 +53,21 @@ class XmlSource {
     if (!taken_whole_.contains(node.parent().hash_value())) taken_.insert(node.hash_value());
   }
   void TakeAll(pugi::xml_node node) { taken_whole_.insert(node.hash_value()); }
-  // Reports every unmarked element of the model.
+  // Reports every unmarked element of the model, but empty sections.
   void TellOfTheRest();
   std::vector<Notice> notices;
 
   // The text of an element without comments; marks it.
   std::string Text(pugi::xml_node node);
+  // Words separated by commas or white space, of an element, or of a text.
+  std::vector<std::string> Words(pugi::xml_node node) { return WordsOf(Text(node)); }
+  static std::vector<std::string> WordsOf(std::string_view text);
   // A required, non-empty attribute; empty, with a problem, if it is missing.
   std::string Required(pugi::xml_node node, const char* attribute);
-  // A finite number; 0, with a problem, otherwise.
+  // A finite number, or an expression of numbers if type is "math"; 0, with a problem, otherwise.
   double Number(pugi::xml_node node);
+  // The expression of an element, which may be within <math>.
+  std::string MathText(pugi::xml_node node);
   Driven DrivenNumber(pugi::xml_node node);
   // Whether the text is 1 or true; false if the element does not exist.
   bool Flag(pugi::xml_node node);
@@ -72,7 +79,7 @@ class XmlSource {
   // An integer attribute.
   std::optional<std::int64_t> IntegerAttribute(pugi::xml_node node, const char* attribute);
 
-  // Whether a value is constant; refuses maps and expressions.
+  // Whether a value is the same everywhere: a number, or an expression (`Number` takes both). Refuses maps.
   bool IsConstant(pugi::xml_node node);
 
  private:

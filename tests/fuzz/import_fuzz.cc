@@ -30,6 +30,7 @@ void ImportAnything(std::string_view data) {
   const auto choice = static_cast<unsigned char>(data[0]);
   client::FebioOptions options;
   options.split_hexahedra = (choice & 1) != 0;
+  options.accept_loss = (choice & 8) != 0;
   options.units = kUnits[(choice >> 1) % std::size(kUnits)];
   Problems problems;
   const auto imported = client::ImportFebio(data.substr(1), options, problems);

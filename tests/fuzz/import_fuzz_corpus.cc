@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   std::filesystem::create_directories(argv[1]);
   std::ofstream(std::filesystem::path(argv[1]) / "small.feb", std::ios::binary)
       << '\0' << fascicle::testing::kSmallModel;
-  std::ofstream(std::filesystem::path(argv[1]) / "rich.feb", std::ios::binary) << '\1' << fascicle::testing::kRichModel;
+  std::ofstream(std::filesystem::path(argv[1]) / "rich.feb", std::ios::binary)
+      << '\x9' << fascicle::testing::kRichModel;
   return 0;
 }

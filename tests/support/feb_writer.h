@@ -14,7 +14,7 @@
 
 #include "core/geometry/shapes.h"
 
-// Writes FEBio models of versions 3.0 and 4.0 for tests, among others the reference problems.
+// Writes FEBio models of versions 2.5, 3.0 and 4.0 for tests, among others the reference problems.
 namespace fascicle::testing {
 
 using Point = std::array<double, 3>;
@@ -45,6 +45,7 @@ class FebWriter {
  public:
   FebWriter(std::string version, FebMesh mesh) : version_(std::move(version)), mesh_(std::move(mesh)) {}
 
+  bool is_version_2() const { return version_ == "2.5"; }
   bool is_version_3() const { return version_ == "3.0"; }
   const FebMesh& mesh() const { return mesh_; }
 
@@ -58,7 +59,13 @@ class FebWriter {
   }
 
   void AddNodeSet(const std::string& name, const std::vector<int>& nodes) {
-    sets_ += "    <NodeSet name=\"" + name + "\">" + Ids(nodes) + "</NodeSet>\n";
+    sets_ += "    <NodeSet name=\"" + name + "\">";
+    if (is_version_2()) {
+      for (const int n : nodes) sets_ += "<node id=\"" + std::to_string(n + 1) + "\"/>";
+    } else {
+      sets_ += Ids(nodes);
+    }
+    sets_ += "</NodeSet>\n";
   }
   void AddSurface(const std::string& name, const std::string& kind, const std::vector<std::vector<int>>& facets) {
     sets_ += "    <Surface name=\"" + name + "\">\n";
@@ -73,11 +80,13 @@ class FebWriter {
     material_ = "    <material id=\"1\" name=\"tissue\" type=\"" + type + "\">\n" + content + "    </material>\n";
   }
   void Fix(const std::string& set, const std::string& axes) {
+    if (is_version_2()) {
+      boundary_ += "    <fix bc=\"" + Listed(axes) + "\" node_set=\"" + set + "\"/>\n";
+      return;
+    }
     boundary_ += "    <bc name=\"fix " + set + "\" node_set=\"" + set + "\" type=\"";
     if (is_version_3()) {
-      std::string list;
-      for (const char axis : axes) list += (list.empty() ? "" : ",") + std::string(1, axis);
-      boundary_ += "fix\"><dofs>" + list + "</dofs></bc>\n";
+      boundary_ += "fix\"><dofs>" + Listed(axes) + "</dofs></bc>\n";
       return;
     }
     boundary_ += "zero displacement\">";
@@ -88,6 +97,11 @@ class FebWriter {
     boundary_ += "</bc>\n";
   }
   void Move(const std::string& set, char axis, double value) {
+    if (is_version_2()) {
+      boundary_ += "    <prescribe bc=\"" + std::string(1, axis) + "\" node_set=\"" + set + "\"><scale lc=\"1\">" +
+                   Text(value) + "</scale><relative>0</relative></prescribe>\n";
+      return;
+    }
     const std::string tag = is_version_3() ? "scale" : "value";
     boundary_ += "    <bc node_set=\"" + set + "\" type=\"" +
                  (is_version_3() ? "prescribe" : "prescribed displacement") + "\"><dof>" + axis + "</dof><" + tag +
@@ -101,30 +115,41 @@ class FebWriter {
     out +=
         "  <Control>\n    <analysis>STATIC</analysis>\n    <time_steps>10</time_steps>\n    "
         "<step_size>0.1</step_size>\n    <solver><symmetric_stiffness>0</symmetric_stiffness></solver>\n  </Control>\n";
-    out += "  <Material>\n" + material_ + "  </Material>\n  <Mesh>\n    <Nodes name=\"Object1\">\n";
+    const std::string mesh = is_version_2() ? "Geometry" : "Mesh";
+    out += "  <Material>\n" + material_ + "  </Material>\n  <" + mesh + ">\n    <Nodes name=\"Object1\">\n";
     for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) {
       out += "      <node id=\"" + std::to_string(n + 1) + "\">" + Text(mesh_.nodes[n]) + "</node>\n";
     }
-    out += "    </Nodes>\n    <Elements type=\"" + mesh_.type + "\" name=\"belly\">\n";
+    out += "    </Nodes>\n    <Elements type=\"" + mesh_.type + "\"" + (is_version_2() ? " mat=\"1\"" : "") +
+           " name=\"belly\">\n";
     for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
       out += "      <elem id=\"" + std::to_string(e + 1) + "\">" + Ids(mesh_.elements[e]) + "</elem>\n";
     }
-    out += "    </Elements>\n" + sets_ +
-           "  </Mesh>\n  <MeshDomains>\n    <SolidDomain name=\"belly\" mat=\"tissue\"/>\n" + "  </MeshDomains>\n" +
-           MeshData();
+    out += "    </Elements>\n" + sets_ + "  </" + mesh + ">\n";
+    if (!is_version_2()) out += "  <MeshDomains>\n    <SolidDomain name=\"belly\" mat=\"tissue\"/>\n  </MeshDomains>\n";
+    out += MeshData();
     out += "  <Boundary>\n" + boundary_ + "  </Boundary>\n  <Loads>\n" + loads_ + "  </Loads>\n";
     out +=
-        "  <LoadData>\n    <load_controller id=\"1\" type=\"loadcurve\">\n      <interpolate>LINEAR</interpolate>\n"
-        "      <points>\n        <point>0,0</point>\n        <point>1,1</point>\n      </points>\n"
-        "    </load_controller>\n  </LoadData>\n";
+        is_version_2()
+            ? "  <LoadData>\n    <loadcurve id=\"1\" type=\"linear\"><point>0,0</point><point>1,1</point></loadcurve>\n"
+              "  </LoadData>\n"
+            : "  <LoadData>\n    <load_controller id=\"1\" type=\"loadcurve\">\n"
+              "      <interpolate>LINEAR</interpolate>\n      <points>\n        <point>0,0</point>\n"
+              "        <point>1,1</point>\n      </points>\n    </load_controller>\n  </LoadData>\n";
     return out + "  <Output><plotfile type=\"febio\"><var type=\"displacement\"/></plotfile></Output>\n</febio_spec>\n";
   }
 
  private:
+  static std::string Listed(const std::string& axes) {
+    std::string list;
+    for (const char axis : axes) list += (list.empty() ? "" : ",") + std::string(1, axis);
+    return list;
+  }
+
   std::string MeshData() const {
     if (mesh_.fibres.empty()) return "";
     std::string out = "  <MeshData>\n    <ElementData ";
-    out += std::string(is_version_3() ? "var" : "type") + "=\"fiber\" elem_set=\"belly\">\n";
+    out += std::string(is_version_3() || is_version_2() ? "var" : "type") + "=\"fiber\" elem_set=\"belly\">\n";
     for (std::size_t e = 0; e < mesh_.fibres.size(); ++e) {
       out += "      <elem lid=\"" + std::to_string(e + 1) + "\">" + Text(mesh_.fibres[e]) + "</elem>\n";
     }

@@ -278,7 +278,7 @@ TEST_F(MeshTest, ConversionsThatFailSayWhy) {
   };
   EXPECT_THAT(refusal("a.e", "nothing"), HasSubstr("the file can't be read"));
   EXPECT_THAT(refusal("a.xdmf", "<Xdmf/>"), HasSubstr("write it as .vtu"));
-  EXPECT_THAT(refusal("a.feb", "<febio_spec version=\"2.0\"/>"), HasSubstr("no mesh of FEBio 3 or 4"));
+  EXPECT_THAT(refusal("a.feb", "<febio_spec version=\"2.0\"/>"), HasSubstr("no mesh of FEBio 2.5, 3 or 4"));
   EXPECT_THAT(refusal("a.node", "1 3 0 0\n1 0 0 0\n"), HasSubstr("a.ele: there is no such file"));
   EXPECT_THAT(refusal("bar.obj", kBar), HasSubstr("is not that of a mesh"));
   EXPECT_THAT(refusal("b.inp", kAbaqus, {"--split-hexahedra", "--unit", "m"}),

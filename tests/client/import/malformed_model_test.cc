@@ -37,7 +37,7 @@ struct Mistake {
 
 const std::vector<Mistake>& Mistakes() {
   static const std::vector<Mistake> mistakes = {
-      {"Version", "4.0", "2.5", "<febio_spec", "model.feb:2", "`2.5`", "4.0 and 3.0"},
+      {"Version", "4.0", "2.0", "<febio_spec", "model.feb:2", "`2.0`", "4.0, 3.0 and 2.5"},
       {"Module", "\"solid\"", "\"biphasic\"", "<Module", "Module `biphasic`", "not supported", "solids only"},
       {"Units", "<Module type=\"solid\"/>", "<Module type=\"solid\"><units>furlong</units></Module>", "<Module",
        "units", "`furlong`", "--units"},
@@ -49,7 +49,7 @@ const std::vector<Mistake>& Mistakes() {
       {"UnknownMaterial", "type=\"Mooney-Rivlin\"", "type=\"Ogden\"", "<material", "material `rubber`", "`Ogden`",
        "Mooney-Rivlin"},
       {"MuscleMaterial", "type=\"Mooney-Rivlin\"", "type=\"muscle material\"", "<material", "material `rubber`",
-       "B1 and B2", "uncoupled solid mixture"},
+       "has no matrix", "uncoupled solid mixture"},
       {"NoBulkModulus", "<k>80</k>", "", "<material", "material `rubber`", "has no k", "<k>"},
       {"ParameterIsNoNumber", "<c1>0.03", "<c1>0.03 MPa", "<c1>", "material `rubber`/c1", "`MPa`", ""},
       {"ParameterInTime", "<c1>", "<c1 lc=\"1\">", "<c1", "material `rubber`/c1", "changes in time", "remove lc"},
@@ -106,7 +106,8 @@ const std::vector<Mistake>& Mistakes() {
       {"PointOfThreeNumbers", "<pt>1,1</pt>", "<pt>1,1,1</pt>", "<pt>1,1,1", "pt", "has 3 numbers where 2", ""},
       {"NoPoints", "<pt>0,0</pt>\n        <pt>1,1</pt>", "", "<load_controller", "load_controller `1`", "no points",
        "<points>"},
-      {"MathController", "type=\"loadcurve\"", "type=\"math\"", "<value", "value", "`math`", "linear load curve"},
+      {"MathController", "type=\"loadcurve\"", "type=\"math\"", "<value", "value", "not a formula",
+       "linear load curve"},
       {"OtherFile", "<MeshDomains>", "<Include>part.feb</Include>\n  <MeshDomains>", "<Include>", "Include",
        "another file", "here"},
   };
