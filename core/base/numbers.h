@@ -41,6 +41,21 @@ inline double InverseCubeRoot(double x) {
   return RefinedInverseCubeRoot(x, std::bit_cast<double>(power + kOne));
 }
 
+// (exp x - 1)/x, 1 at x = 0. The divided difference of the exponential: (exp a - exp b)/(a - b) = exp b times its value
+// at a - b.
+template <class T>
+T ExponentialQuotient(const T& x) {
+  return Select(x == 0, 1, Expm1(x) / x);
+}
+// (exp x - 1 - x)/x^2, 1/2 at x = 0; near it, where the difference cancels, by its series.
+template <class T>
+T SecondExponentialQuotient(const T& x) {
+  const T square = x * x;
+  const T series =
+      (0.5 + x / 6) + square * ((1.0 / 24 + x / 120) + square * ((1.0 / 720 + x / 5040) + square * (1.0 / 40320)));
+  return Select(square < 2.5e-3, series, (Expm1(x) - x) / square);
+}
+
 // f applied to each number by itself, for functions without a branch-free formula.
 template <class Function>
 double Map(const Function& f, double x) {

@@ -44,7 +44,7 @@ double FastestWave(const EulerianBody& body, const EulerianState& state, const B
   std::vector<double> of_cell;
   std::visit(
       [&]<class Law>(const Law& law) {
-        if (!Law::kNeedsFibres) return;
+        if (!Law::kStiffens) return;
         of_cell.resize(cells.solid.size());
         team.For(of_cell.size(), 64, [&](std::size_t begin, std::size_t end) {
           for (std::size_t c = begin; c < end; ++c) {

@@ -74,10 +74,10 @@ inline constexpr double kRequired = std::numeric_limits<double>::quiet_NaN();
 //   kSource      paper and equation
 //   kParameters  std::array<ParameterInfo, n>
 //   kNeedsFibres whether the law requires fibre directions
+//   kStiffens    whether the tangent of a stretched material may be many times that at rest
 //   VolumeModulus, WithVolumeModulus
 //                the coefficient k of the term k/2 (ln J)^2 of W, and the same law with another k (of any sign), so
-//                that
-//                a method can evaluate part of that term elsewhere. Laws without the term return 0 and themselves.
+//                that a method can evaluate part of that term elsewhere. Laws without the term return 0 and themselves.
 // Constructed from the values of its parameters in the order of kParameters.
 // Where J <= 0, a law that is undefined there returns non-finite values; it never traps.
 template <class M>
@@ -87,6 +87,7 @@ concept ConstitutiveModel = requires(const M m, const Mat3& F, const FibreState&
   { M::kTitle } -> std::convertible_to<const char*>;
   { M::kSource } -> std::convertible_to<const char*>;
   { M::kNeedsFibres } -> std::convertible_to<bool>;
+  { M::kStiffens } -> std::convertible_to<bool>;
   {std::span<const ParameterInfo>(M::kParameters)};
   M(values);
   { m.Energy(F, fibre) } -> std::same_as<double>;  // W [J/m^3]

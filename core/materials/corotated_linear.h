@@ -18,6 +18,7 @@ class CorotatedLinear : public LawFunctions<CorotatedLinear> {
   static constexpr const char* kSource = "Sifakis 2012, FEM Simulation of 3D Deformable Solids, 3.4";
   static constexpr auto kParameters = IsotropicModuli::kParameters;
   static constexpr bool kNeedsFibres = false;
+  static constexpr bool kStiffens = false;
 
   explicit CorotatedLinear(std::span<const double> values) : moduli_(values) {}
 

@@ -87,6 +87,29 @@ class ExponentialToeCurve {
   double value_, slope_, integral_, integral_over_length_;  // at the transition
 };
 
+// Fung-type energy of fibres as a function of their strain E: k1/(2 k2) (exp(k2 E^2) - 1) for E > 0, zero below. With
+// k2 = 0, its limit k1/2 E^2. The derivative is continuous; the second derivative jumps from 0 to k1 at E = 0.
+// [Holzapfel, Gasser, Ogden 2000, J. Elasticity 61, equation 65]
+struct FungCurve {
+  template <class T>
+  T Energy(const T& E) const {
+    const T square = E * E;
+    return Select(E > 0, 0.5 * k1 * square * ExponentialQuotient<T>(k2 * square), 0);
+  }
+  template <class T>
+  T Derivative(const T& E) const {
+    return Select(E > 0, k1 * E * Exp(k2 * E * E), 0);
+  }
+  template <class T>
+  T SecondDerivative(const T& E) const {
+    const T exponent = k2 * E * E;
+    return Select(E > 0, k1 * (1 + 2 * exponent) * Exp(exponent), 0);
+  }
+
+  double k1;  // >= 0 [Pa]
+  double k2;  // >= 0
+};
+
 }  // namespace fascicle
 
 #endif  // FASCICLE_CORE_MATERIALS_FIBRE_CURVES_H_

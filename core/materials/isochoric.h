@@ -5,7 +5,7 @@
 #include "core/materials/constitutive_model.h"
 #include "core/materials/tangent_terms.h"
 
-// The nearly incompressible energy shared by Mooney-Rivlin, muscle and tendon:
+// What the nearly incompressible laws share. Mooney-Rivlin, muscle, tendon and their relatives:
 //
 //   W = c1 (I1bar - 3) + c2 (I2bar - 3) + K/2 (ln J)^2 + F2(lambda),  lambda^2 = I4bar = J^(-2/3) |F a0|^2
 //
@@ -14,7 +14,7 @@
 // hyperelasticity, Comput. Methods Appl. Mech. Eng. 135; Teran 2003, 5]
 //
 // The terms in I1bar and I4bar are linear in C. Apart from the curvature of F2, their derivatives are those of J^(-2/3)
-// (C : N) with N = c1 I + W4 a0 a0^T and W4 = dF2/d(lambda^2). So the three laws share everything but N.
+// (C : N) with N = c1 I + W4 a0 a0^T and W4 = dF2/d(lambda^2). So they share everything but N.
 namespace fascicle {
 
 // Coefficients of the matrix that surrounds the fibres.
@@ -102,6 +102,31 @@ template <class T>
 Matrix3<T> FibreStretchSquaredGradient(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const Vector3<T>& a0) {
   const Vector3<T> a = F * a0;
   return (2 * k.scale) * (Outer(a, a0) - (1.0 / 3.0 * Dot(a, a)) * k.InverseTranspose());
+}
+
+// The gradient of an invariant Cbar:N of a constant symmetric N:
+// d(J^(-2/3) C:N)/dF = 2 J^(-2/3) (F N - C:N/3 F^-T).
+template <class T>
+Matrix3<T> InvariantGradient(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const Matrix3<T>& N) {
+  return (2 * k.scale) * (F * N - (1.0 / 3.0 * Contract(k.C, N)) * k.InverseTranspose());
+}
+
+// Laws whose energy is K/2 (ln J)^2 and a function of such invariants alone. N is the sum of their matrices, each times
+// the derivative of the energy with respect to its invariant.
+template <class T>
+Matrix3<T> StressOfInvariants(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const Matrix3<T>& N, double bulk) {
+  return InvariantGradient(F, k, N) + (bulk * k.log_J * k.inverse_J) * k.cofactor;
+}
+// Adds the derivative by F of the stress above, with N held constant.
+template <class T, class Terms>
+void AddTangentOfInvariants(const Matrix3<T>& F, const IsochoricKinematics<T>& k, const Matrix3<T>& N, double bulk,
+                            Terms& terms) {
+  const T s = 2 * k.scale;
+  const T contraction = s * Contract(k.C, N);
+  const Matrix3<T> h = k.InverseTranspose();
+  terms.Pair((-2.0 / 3.0 * s) * (F * N) + (0.5 * bulk + (1.0 / 9.0) * contraction) * h, h);
+  terms.Right(s * N);
+  terms.Transposed((1.0 / 3.0) * contraction - bulk * k.log_J, h);
 }
 
 // Derivatives of the fibre energy F2 with respect to lambda^2.

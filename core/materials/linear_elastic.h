@@ -17,6 +17,7 @@ class LinearElastic : public LawFunctions<LinearElastic> {
   static constexpr const char* kSource = "Hooke's law; Sifakis 2012, FEM Simulation of 3D Deformable Solids, 3.2";
   static constexpr auto kParameters = IsotropicModuli::kParameters;
   static constexpr bool kNeedsFibres = false;
+  static constexpr bool kStiffens = false;
 
   explicit LinearElastic(std::span<const double> values) : moduli_(values) {}
 

@@ -35,6 +35,10 @@ template class LawFunctions<MooneyRivlin>;
 template class LawFunctions<Muscle>;
 template class LawFunctions<Tendon>;
 template class LawFunctions<TransIsoMooneyRivlin>;
+template class LawFunctions<Yeoh>;
+template class LawFunctions<Ogden>;
+template class LawFunctions<FungFibre>;
+template class LawFunctions<HolzapfelGasserOgden>;
 
 namespace {
 

@@ -8,20 +8,24 @@
 
 #include "core/materials/constitutive_model.h"
 #include "core/materials/corotated_linear.h"
+#include "core/materials/fung_fibre.h"
+#include "core/materials/holzapfel_gasser_ogden.h"
 #include "core/materials/linear_elastic.h"
 #include "core/materials/mooney_rivlin.h"
 #include "core/materials/muscle.h"
 #include "core/materials/neo_hookean.h"
+#include "core/materials/ogden.h"
 #include "core/materials/st_venant_kirchhoff.h"
 #include "core/materials/tendon.h"
 #include "core/materials/trans_iso_mooney_rivlin.h"
+#include "core/materials/yeoh.h"
 
 namespace fascicle {
 
 // The closed list of laws. A new law is a header, an entry here, an instantiation in material.cc and a message of the
 // same name in scene.proto. Range checks, the test battery and `fascicle materials` follow from this list.
 using Material = std::variant<LinearElastic, StVenantKirchhoff, CorotatedLinear, NeoHookean, MooneyRivlin, Muscle,
-                              Tendon, TransIsoMooneyRivlin>;
+                              Tendon, TransIsoMooneyRivlin, Yeoh, Ogden, FungFibre, HolzapfelGasserOgden>;
 
 // The static members of a law, independent of its type.
 struct LawInfo {

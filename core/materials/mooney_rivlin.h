@@ -20,6 +20,7 @@ class MooneyRivlin : public LawFunctions<MooneyRivlin> {
       {"bulk_modulus", "Pa", 0, true, 1e12, false, kRequired, "bulk modulus K"},
   }};
   static constexpr bool kNeedsFibres = false;
+  static constexpr bool kStiffens = false;
 
   explicit MooneyRivlin(std::span<const double> values) : moduli_{values[0], values[1], values[2]} {}
 

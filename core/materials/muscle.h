@@ -41,6 +41,7 @@ class Muscle : public LawFunctions<Muscle> {
       {"eccentric_force", "1", 1, true, 5, false, 1.4, "plateau of the active stress of a lengthening fibre"},
   }};
   static constexpr bool kNeedsFibres = true;
+  static constexpr bool kStiffens = true;
 
   // Trailing values may be omitted and take their defaults.
   explicit Muscle(std::span<const double> values)

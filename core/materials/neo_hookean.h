@@ -17,6 +17,7 @@ class NeoHookean : public LawFunctions<NeoHookean> {
   static constexpr const char* kSource = "Bonet & Wood 2008, Nonlinear Continuum Mechanics, compressible neo-Hookean";
   static constexpr auto kParameters = IsotropicModuli::kParameters;
   static constexpr bool kNeedsFibres = false;
+  static constexpr bool kStiffens = false;
 
   explicit NeoHookean(std::span<const double> values) : moduli_(values) {}
 

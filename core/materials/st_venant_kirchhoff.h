@@ -17,6 +17,7 @@ class StVenantKirchhoff : public LawFunctions<StVenantKirchhoff> {
   static constexpr const char* kSource = "Sifakis 2012, FEM Simulation of 3D Deformable Solids, 3.3";
   static constexpr auto kParameters = IsotropicModuli::kParameters;
   static constexpr bool kNeedsFibres = false;
+  static constexpr bool kStiffens = false;
 
   explicit StVenantKirchhoff(std::span<const double> values) : moduli_(values) {}
 

@@ -29,6 +29,7 @@ class Tendon : public LawFunctions<Tendon> {
       {"transition_stretch", "1", 1, true, 2, false, 1.03, "fibre stretch from which the fibre stress is a line"},
   }};
   static constexpr bool kNeedsFibres = true;
+  static constexpr bool kStiffens = true;
 
   explicit Tendon(std::span<const double> values)
       : moduli_{values[0], values[1], values[2]}, curve_(values[3], values[4], values[5]) {}

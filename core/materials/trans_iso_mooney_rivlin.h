@@ -34,6 +34,7 @@ class TransIsoMooneyRivlin : public LawFunctions<TransIsoMooneyRivlin> {
       {"active_stress", "Pa", 0, false, 1e9, false, 0, "second Piola-Kirchhoff stress T0 at full activation"},
   }};
   static constexpr bool kNeedsFibres = true;
+  static constexpr bool kStiffens = true;
 
   explicit TransIsoMooneyRivlin(std::span<const double> values)
       : moduli_{values[0], values[1], values[6]},

@@ -8,14 +8,16 @@
 
 namespace fascicle {
 
-// One point of a uniaxial tension test along z, which is also the fibre direction. The sides are free: F = diag(l, l,
-// stretch), with the lateral stretch l for which the lateral stress vanishes.
+// One point of a uniaxial tension test along z, which is also the fibre direction. The sides are free: F = diag(l_x,
+// l_y, stretch), with the lateral stretches for which the lateral stresses vanish. A law with a reference direction has
+// it along x, whatever its components; l_x = l_y for all other laws.
 struct UniaxialPoint {
-  double stretch = 0;          // along z [1]
-  double lateral_stretch = 0;  // l [1]
-  double volume_ratio = 0;     // J = l^2 stretch [1]
-  double cauchy_stress = 0;    // sigma_zz, force per deformed area [Pa]
-  double nominal_stress = 0;   // P_zz, force per rest area [Pa]
+  double stretch = 0;            // along z [1]
+  double lateral_stretch = 0;    // l_x [1]
+  double lateral_stretch_y = 0;  // l_y [1]
+  double volume_ratio = 0;       // J = l_x l_y stretch [1]
+  double cauchy_stress = 0;      // sigma_zz, force per deformed area [Pa]
+  double nominal_stress = 0;     // P_zz, force per rest area [Pa]
   // Whether such a lateral stretch was found. If not, all members but `stretch` are NaN.
   bool converged = false;
 };

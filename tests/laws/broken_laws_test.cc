@@ -10,7 +10,7 @@
 #include "core/materials/isochoric.h"
 #include "core/materials/material.h"
 #include "core/materials/tensor_algebra.h"
-#include "law_checks.h"
+#include "tests/support/law_checks.h"
 
 namespace fascicle {
 namespace {

@@ -55,7 +55,11 @@ inline std::vector<Material> EveryLaw() {
           MooneyRivlin(std::array{2e3, 1e3, 2e4}),
           Muscle(std::array{5e2, 5e2, 1e5, 3e4, 1.2, 0.05, 6.6, 1.4}),
           Tendon(std::array{5e3, 5e3, 1e6, 2.7e4, 20.0, 1.03}),
-          TransIsoMooneyRivlin(std::array{2e3, 1e3, 5e2, 8.0, 5e4, 1.2, 2e4, 1e4})};
+          TransIsoMooneyRivlin(std::array{2e3, 1e3, 5e2, 8.0, 5e4, 1.2, 2e4, 1e4}),
+          Yeoh(std::array{3e3, -2e2, 5e2, 2e4}),
+          Ogden(std::array{4e3, 1.3, 3e2, 5.0, 2e3, -2.0, 2e4}),
+          FungFibre(std::array{2e3, 1e3, 5e3, 2.0, 2e4}),
+          HolzapfelGasserOgden(std::array{6e3, 5e3, 2.0, 0.1, 0.6, 0.0, 0.3, 1.0, 2e4})};
 }
 inline constexpr int kLaws = std::variant_size_v<Material>;
 

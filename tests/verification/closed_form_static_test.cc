@@ -3,6 +3,7 @@
 
 #include <numbers>
 #include <set>
+#include <vector>
 
 #include "core/materials/uniaxial_curve.h"
 #include "tests/support/reference_problems.h"
@@ -68,6 +69,41 @@ TEST(ContractionTest, BarWithFibresAcross) {
     for (std::size_t n = 1; n < X.size(); ++n) {
       for (const std::size_t m : {std::size_t{0}, std::size_t{2}, std::size_t{6}, n - 1}) {
         EXPECT_NEAR((x[n] - x[m]).norm(), (U * (X[n] - X[m])).norm(), 1e-6 * 0.04);
+      }
+    }
+  }
+}
+
+// A bar with free sides is stretched or shortened along its fibres, by laws that stiffen: the force of the support is
+// the nominal stress, and every node moves with the homogeneous gradient.
+TEST(StretchTest, BarOfStiffeningLaws) {
+  const std::vector<Material> laws = {Yeoh(std::array{3e4, -1e3, 2e2, 1e8}),
+                                      Ogden(std::array{6e4, 1.3, 600.0, 5.0, 2e3, -2.0, 1e8}),
+                                      FungFibre(std::array{1e4, 5e3, 2e4, 2.0, 1e8}),
+                                      HolzapfelGasserOgden(std::array{1e4, 2e4, 3.0, 0.15, 0.6, 1.0, 0.0, 0.0, 1e8})};
+  for (const Material& law : laws) {
+    for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
+      for (const double stretch : {0.7, 1.6}) {
+        Body body = BoxBody(Vec3(0.01, 0.01, 0.04), {2, 2, 4}, law);
+        body.tet().fibres = ConstantFibres(body.tet().mesh, Vec3::UnitZ());
+        Constraint pull = Fix(kZ1, {false, false, true});
+        pull.motion.translation[2] = Ramp((stretch - 1) * 0.04);
+        body.constraints = {Fix(kX0, {true, false, false}), Fix(kY0, {false, true, false}),
+                            Fix(kZ0, {false, false, true}), pull};
+        SteppedRun run(StaticScene(body, element));
+        ASSERT_TRUE(run.To(1));
+        const UniaxialPoint exact = UniaxialTension(law, 0, stretch);
+        ASSERT_TRUE(exact.converged);
+        const double nominal = run.Reaction(3)[2] / (0.01 * 0.01);
+        std::printf("%-24s %d stretch %.1f: %.9g Pa, exact %.9g; %lld iterations\n",
+                    std::visit([](const auto& l) { return l.kName; }, law), static_cast<int>(element), stretch, nominal,
+                    exact.nominal_stress, static_cast<long long>(run.state.iterations));
+        EXPECT_NEAR(nominal, exact.nominal_stress, 1e-6 * std::abs(exact.nominal_stress));
+        for (std::size_t n = 0; n < run.model.nodes(); ++n) {
+          const Vec3& X = run.model.rest_positions()[n];
+          const Vec3 x(exact.lateral_stretch * X[0], exact.lateral_stretch_y * X[1], exact.stretch * X[2]);
+          EXPECT_LT((run.state.positions[n] - x).norm(), 1e-6 * 0.04);
+        }
       }
     }
   }

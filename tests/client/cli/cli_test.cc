@@ -6,6 +6,7 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -369,7 +370,7 @@ TEST_F(CliTest, SchemaTellsUnitsRangesAndDefaults) {
 
 TEST_F(CliTest, MaterialCurvesAsTableAndPlot) {
   const Finished list = Fascicle({"materials", "--json"});
-  EXPECT_EQ(Lines(list.out).size(), 8u);
+  EXPECT_EQ(Lines(list.out).size(), 12u);
   const Finished curve = Fascicle({"materials", "curve", "muscle", "--activation", "0", "1", "--stretch", "1", "1.4",
                                    "--points", "5", "--csv", folder_ / "curve.csv", "--out", folder_ / "curve.png"});
   EXPECT_EQ(curve.exit_code, 0) << curve.err;
@@ -397,6 +398,40 @@ TEST_F(CliTest, MaterialCurvesAsTableAndPlot) {
   EXPECT_EQ(bad.exit_code, 2);
   EXPECT_THAT(bad.err,
               AllOf(HasSubstr("young_modulus: is required"), HasSubstr("0.7 is out of range"), HasSubstr("--set x")));
+}
+
+// A table of a law's own curve: compared, and fitted from other values.
+TEST_F(CliTest, MaterialCurvesBesideMeasuredOnes) {
+  const std::string table = folder_ / "test.csv";
+  std::string text = "stretch, nominal stress [Pa]\n";
+  // Incompressible neo-Hookean rubber of shear modulus 60 kPa: P = 6e4 (s - 1/s^2).
+  for (const double s : {0.8, 1.1, 1.3, 1.6, 2.0}) {
+    text += std::to_string(s) + ", " + std::to_string(6e4 * (s - 1 / (s * s))) + "\n";
+  }
+  std::ofstream(table) << text;
+  const std::vector<std::string> law = {
+      "materials", "curve", "mooney_rivlin", "--set", "c1=1e4", "--set", "bulk_modulus=1e11", "--data", table};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), law.begin(), law.end());
+    return Fascicle(more);
+  };
+  const Finished overlay = with({"--out", folder_ / "overlay.png"});
+  EXPECT_EQ(overlay.exit_code, 0) << overlay.err;
+  EXPECT_THAT(overlay.out, AllOf(HasSubstr("measured"), HasSubstr("root mean square")));
+  EXPECT_GT(fs::file_size(folder_ / "overlay.png"), 1000u);
+  const std::vector<json> lines = Lines(with({"--fit", "c1", "c2", "--json"}).out);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_TRUE(lines[0]["converged"].get<bool>());
+  EXPECT_NEAR(lines[0]["parameters"]["c1"].get<double>(), 3e4, 1);
+  EXPECT_NEAR(lines[0]["parameters"]["c2"].get<double>(), 0, 1);
+  EXPECT_LT(lines[0]["residual"].get<double>(), 1);
+  EXPECT_EQ(lines[1]["stretch"][0], 0.8) << "the curve covers the data";
+  EXPECT_THAT(with({"--fit", "c7"}).err, AllOf(HasSubstr("--fit c7"), HasSubstr("unknown parameter")));
+  std::ofstream(table) << "1.1 200\n1.2\n-1 5\n";
+  const Finished bad = with({});
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_THAT(bad.err, AllOf(HasSubstr("line 2"), HasSubstr("line 3")));
+  EXPECT_THAT(Fascicle({"materials", "curve", "tendon", "--fit", "c1"}).err, HasSubstr("--data FILE"));
 }
 
 TEST_F(CliTest, CompletionKnowsCommandsAndOptions) {

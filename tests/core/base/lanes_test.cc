@@ -124,5 +124,33 @@ TYPED_TEST(LanesTest, SelectTakesEachLaneByItself) {
   for (int k = 0; k < L<S>::kLanes; ++k) EXPECT_EQ(mapped[k], k - 1);
 }
 
+// To a few ulps, for one number and for lanes, also across the switch to a series.
+TYPED_TEST(LanesTest, ExponentialQuotients) {
+  using S = TypeParam;
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> exponent(-25, 3);
+  double worst_first = 0, worst_second = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const S x = static_cast<S>((i % 2 == 0 ? 1 : -1) * std::exp(exponent(random)));
+    const long double exact = x;
+    const long double first = std::expm1(exact) / exact;
+    // The difference cancels for small x, where the first terms of the series are exact.
+    const long double second = std::abs(exact) < 1e-3L
+                                   ? 0.5L + exact / 6 + exact * exact / 24 + exact * exact * exact / 120
+                                   : (std::expm1(exact) - exact) / (exact * exact);
+    worst_first = std::max(worst_first, Ulps(First<S>([](auto a) { return ExponentialQuotient(a); }, x), first));
+    worst_second =
+        std::max(worst_second, Ulps(First<S>([](auto a) { return SecondExponentialQuotient(a); }, x), second));
+    if (!std::is_same_v<S, double>) continue;
+    worst_first = std::max(worst_first, Ulps<double>(ExponentialQuotient<double>(x), first));
+    worst_second = std::max(worst_second, Ulps<double>(SecondExponentialQuotient<double>(x), second));
+  }
+  EXPECT_LT(worst_first, 3);
+  // (exp x - 1 - x) loses a factor of 2/|x| at the end of the series, |x| = 0.05.
+  EXPECT_LT(worst_second, 80);
+  EXPECT_EQ(ExponentialQuotient(0.0), 1);
+  EXPECT_EQ(SecondExponentialQuotient(0.0), 0.5);
+}
+
 }  // namespace
 }  // namespace fascicle

@@ -16,7 +16,8 @@ TEST(Laws, AreThoseOfTheSceneInItsOrder) {
   std::vector<std::string_view> names;
   for (const LawInfo& law : Laws()) names.push_back(law.name);
   EXPECT_THAT(names, ::testing::ElementsAre("linear_elastic", "st_venant_kirchhoff", "corotated_linear", "neo_hookean",
-                                            "mooney_rivlin", "muscle", "tendon", "trans_iso_mooney_rivlin"));
+                                            "mooney_rivlin", "muscle", "tendon", "trans_iso_mooney_rivlin", "yeoh",
+                                            "ogden", "fung_fibre", "holzapfel_gasser_ogden"));
 }
 
 TEST(Laws, AreFoundByName) {
@@ -27,8 +28,9 @@ TEST(Laws, AreFoundByName) {
 }
 
 TEST(Laws, DescribeThemselves) {
-  const std::set<std::string_view> kFibrous = {"muscle", "tendon", "trans_iso_mooney_rivlin"};
-  const std::set<std::string_view> kUnits = {"Pa", "1", "1/s"};
+  const std::set<std::string_view> kFibrous = {"muscle", "tendon", "trans_iso_mooney_rivlin", "fung_fibre",
+                                               "holzapfel_gasser_ogden"};
+  const std::set<std::string_view> kUnits = {"Pa", "1", "1/s", "rad"};
   for (const LawInfo& law : Laws()) {
     EXPECT_FALSE(std::string_view(law.title).empty());
     EXPECT_FALSE(std::string_view(law.source).empty());

@@ -79,6 +79,35 @@ TEST(CheckSceneTest, FibreThatIsNoDirection) {
   EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 5"));
 }
 
+// Two families of fibres need a plane: the body's reference direction must not be that of a fibre.
+TEST(CheckSceneTest, FibresAlongTheReferenceDirection) {
+  const auto law = [](double gamma, double z) {
+    return HolzapfelGasserOgden(std::array{6e3, 5e3, 2.0, 0.1, gamma, 0.0, 0.0, z, 2e4});
+  };
+  Scene scene = GoodScene();
+  Body& body = scene.bodies[0];
+  body.material = law(0.6, 1);
+  Problems none;
+  CheckScene(scene, none);
+  EXPECT_TRUE(none.empty()) << none.ToString();
+  body.tet().fibres[5] = -Vec3::UnitZ();
+  EXPECT_EQ(ProblemOf(scene).path, "bodies[0].fibres");
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 5"));
+  // With gamma = 0 there is no plane; a part without families does not need it.
+  body.material = law(0, 1);
+  CheckScene(scene, none);
+  EXPECT_TRUE(none.empty()) << none.ToString();
+  body.material = law(0.6, 1);
+  body.tet().materials.more = {NeoHookean(std::array{1e4, 0.3})};
+  body.tet().materials.of.assign(body.tet().mesh.tetrahedra.size(), 0);
+  body.tet().materials.of[5] = 1;
+  CheckScene(scene, none);
+  EXPECT_TRUE(none.empty()) << none.ToString();
+  // Without a reference direction, no element has it.
+  body.material = law(0.6, 0);
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 0"));
+}
+
 TEST(CheckSceneTest, FibresThatOnlyAPartNeeds) {
   Scene scene = GoodScene();
   Body& body = scene.bodies[0];

@@ -1,5 +1,5 @@
-#ifndef FASCICLE_TESTS_LAWS_LAW_CHECKS_H_
-#define FASCICLE_TESTS_LAWS_LAW_CHECKS_H_
+#ifndef FASCICLE_TESTS_SUPPORT_LAW_CHECKS_H_
+#define FASCICLE_TESTS_SUPPORT_LAW_CHECKS_H_
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -155,16 +155,21 @@ double ObjectivityError(const Law& law, const Sample& s, const Mat3& Q) {
 }
 
 // W(F Q; Q^T a0) = W(F; a0), and likewise P(F Q; Q^T a0) = P(F; a0) Q: the fibre is the only distinguished direction.
-// An isotropic law gets a fibre that does not rotate, so that it must ignore it.
+// An isotropic law gets a fibre that does not rotate, so that it must ignore it. `turned` is the law with its own
+// directions, if it has any, turned by Q^T.
 template <class Law>
-double SymmetryError(const Law& law, const Sample& s, const Mat3& Q) {
+double SymmetryError(const Law& law, const Law& turned, const Sample& s, const Mat3& Q) {
   const double W = law.Energy(s.F, s.fibre);
   const Mat3 P = law.Stress(s.F, s.fibre);
-  FibreState turned = s.fibre;
-  if (Law::kNeedsFibres) turned.direction = Q.transpose() * s.fibre.direction;
-  const double energy = std::abs(law.Energy(s.F * Q, turned) - W) / std::max(std::abs(W), law.ShearModulus());
-  const double stress = (law.Stress(s.F * Q, turned) - P * Q).norm() / std::max(P.norm(), law.ShearModulus());
+  FibreState fibre = s.fibre;
+  if (Law::kNeedsFibres) fibre.direction = Q.transpose() * s.fibre.direction;
+  const double energy = std::abs(turned.Energy(s.F * Q, fibre) - W) / std::max(std::abs(W), law.ShearModulus());
+  const double stress = (turned.Stress(s.F * Q, fibre) - P * Q).norm() / std::max(P.norm(), law.ShearModulus());
   return std::max(energy, stress);
+}
+template <class Law>
+double SymmetryError(const Law& law, const Sample& s, const Mat3& Q) {
+  return SymmetryError(law, law, s, Q);
 }
 
 // W - W' = (k - k')/2 (ln J)^2 for the same law with another coefficient k' of its volume term, and its first and
@@ -228,4 +233,4 @@ double ModuliError(const Law& law, int axis) {
 
 }  // namespace fascicle::laws
 
-#endif  // FASCICLE_TESTS_LAWS_LAW_CHECKS_H_
+#endif  // FASCICLE_TESTS_SUPPORT_LAW_CHECKS_H_
