@@ -751,7 +751,7 @@ TEST(FebioRigidTest, AFixedBodyHoldsTheNodesOfDeformableParts) {
   const ImportedScene imported = Import(pieces);
   EXPECT_EQ(
       NoticesOf(imported),
-      "note model.feb:1: Loads/surface_load `pressure`: none of its facets belongs to a deformable part: it changes "
+      "note model.feb:2: Loads/surface_load `pressure`: none of its facets belongs to a deformable part: it changes "
       "nothing\n");
   EXPECT_EQ(ImportedMeshOf(imported).tetrahedra.size(), 1u);
   ASSERT_EQ(imported.scene.bodies(0).constraints_size(), 1);
