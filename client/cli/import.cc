@@ -128,7 +128,7 @@ void AddImport(CLI::App& app, Context& context) {
       ->add_option(
           "--units", options->febio.units,
           "The model's units: mm-N-MPa (mm-N-s), m-N-Pa (SI), mm-kg-s, um-nN-s or CGS; by default those named by the "
-          "file, or mm-N-MPa")
+          "file, or mm-N-MPa, or where inertia or weight count those in which the density is that of tissue")
       ->type_name("SYSTEM");
   command->add_flag("--split-hexahedra", options->febio.split_hexahedra,
                     "Split hexahedra, wedges and pyramids into tetrahedra");

@@ -277,7 +277,8 @@ class Importer {
     if (any_linear && (any_quadratic || any_split)) {
       const pugi::xml_node mesh = source_.root().child(MeshSection());
       source_.Remark(Notice::Kind::kChanged, mesh,
-                     "elements of four nodes become elements of ten nodes, like others of the model");
+                     "elements of four nodes become elements of ten nodes, like others of the model",
+                     "mesh the model with one element type");
     }
   }
 

@@ -31,7 +31,7 @@ struct FebioOptions {
   // Name of the file in messages.
   std::string name = "model.feb";
   // SI, mm-N-s, mm-kg-s, um-nN-s or CGS, or mm-N-MPa for mm-N-s and m-N-Pa for SI. If empty: the units named by the
-  // file, or mm-N-s if it names none.
+  // file; or mm-N-s, or where inertia or weight count the first system in which the density is that of tissue.
   std::string units;
   // Whether to split hexahedra, wedges and pyramids into tetrahedra instead of refusing them. Neighbours match.
   bool split_hexahedra = false;

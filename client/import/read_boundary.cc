@@ -55,7 +55,7 @@ class BoundaryReader {
       const pugi::xml_node dof = node.child("dof");
       Prescribe(node, dof ? dof : node, dof ? source_.Text(dof) : std::string());
     } else if (type == "rigid") {
-      source_.Take(node);
+      source_.TakeAll(node);  // how shells are attached does not matter
       const pugi::xml_node rb = node.child("rb");
       if (!rb) return source_.Fail(node, "has no rb", "give <rb>, the name of the rigid body's material");
       Attach(node, source_.Text(rb), rb);

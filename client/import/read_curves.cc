@@ -89,7 +89,7 @@ void ReadPoints(pugi::xml_node node, XmlSource& source, LoadCurve& curve) {
   source.Take(points);
   for (const pugi::xml_node point : points.children()) {
     const std::string_view name = point.name();
-    if (name != "pt" && name != "point") continue;
+    if (name != "pt" && name != "point" && name != "loadpoint") continue;
     const auto pair = source.Pair(point);
     if (!pair) continue;
     if (!curve.times.empty() && !((*pair)[0] > curve.times.back())) {

@@ -50,13 +50,21 @@ class RigidReader {
       ReadPrescribed(node, *body);
     } else if (type == "rigid_rotation_vector") {
       ReadRotationVector(node, *body);
-    } else {
+    } else if (IsForce(element, type)) {
       source_.TakeAll(node);
       body->forces.push_back(node);
+    } else {
+      source_.Tell(Notice::Kind::kNotTaken, node, "the rigid constraint " + Quoted(type) + " is not supported",
+                   "write rigid_fixed, rigid_displacement and rigid_rotation");
     }
   }
 
  private:
+  // Version 3 has loads and initial velocities among the constraints.
+  static bool IsForce(std::string_view element, const std::string& type) {
+    return element == "rigid_load" || element == "rigid_ic" || type == "force" || type.starts_with("initial");
+  }
+
   RigidBody* BodyOf(pugi::xml_node node) {
     const pugi::xml_node rb = node.child("rb");
     const std::string name = rb ? source_.Text(rb) : std::string();
@@ -301,8 +309,12 @@ void ReadRigidBody(pugi::xml_node node, XmlSource& source, Model& model) {
     if (child.type() != pugi::node_element) continue;
     source.TakeAll(child);
     const std::string_view name = child.name();
-    if (name != "fixed" && name != "prescribed") {
+    if (name == "force" || name.starts_with("initial")) {
       body->forces.push_back(child);
+      continue;
+    }
+    if (name != "fixed" && name != "prescribed") {
+      source.Remark(Notice::Kind::kNotTaken, child, "is not supported", "write <fixed> and <prescribed>");
       continue;
     }
     const std::string bc = source.Required(child, "bc");

@@ -131,7 +131,7 @@ void AddConstraint(const SetSupport& set, const std::vector<std::int32_t>& nodes
                      : set.axes[2])
           ->node;
   v1::Constraint& constraint = *draft.body.add_constraints();
-  constraint.set_region(draft.NodeRegion(set.set, set.set, nodes));
+  constraint.set_region(draft.NodeRegion(set.set, set.set.substr(set.set.starts_with('@') ? 1 : 0), nodes));
   const bool all = set.axes[0] && set.axes[1] && set.axes[2];
   if (all && set.axes[0]->rotation >= 0) {
     AddRotation(model.rotations[static_cast<std::size_t>(set.axes[0]->rotation)], model, curves, constraint);
@@ -208,18 +208,31 @@ class LoadMaker {
   void AddSurfaceLoad(const SurfaceLoad& load, const Surface& surface) {
     std::size_t taken = 0;
     for (BodyDraft& draft : drafts_) taken += AddSurfaceLoad(load, surface, draft);
-    if (taken == 0) {
+    const auto deformable = static_cast<std::size_t>(
+        std::count_if(surface.facets.begin(), surface.facets.end(), [&](const Facet& f) { return IsDeformable(f); }));
+    if (taken == 0 && deformable == 0) {
+      source_.Remark(Notice::Kind::kNote, load.node,
+                     "none of its facets belongs to a deformable part: it changes nothing");
+    } else if (taken == 0) {
       source_.Remark(Notice::Kind::kNotTaken, load.node, "none of its facets is on the surface of a deformable part",
                      "remove it, or correct its surface");
-    } else if (taken < surface.facets.size()) {
+    } else if (taken < deformable) {
       source_.Remark(Notice::Kind::kChanged, load.node,
-                     std::to_string(surface.facets.size() - taken) + " of " + std::to_string(surface.facets.size()) +
+                     std::to_string(deformable - taken) + " of " + std::to_string(surface.facets.size()) +
                          " facets are not on the surface of a deformable part",
                      "remove them from the surface");
     }
   }
 
  private:
+  // Whether all corners of a facet belong to one deformable body.
+  bool IsDeformable(const Facet& facet) const {
+    return std::any_of(drafts_.begin(), drafts_.end(), [&](const BodyDraft& draft) {
+      return std::all_of(facet.node.begin(), facet.node.begin() + facet.corners,
+                         [&](std::int32_t n) { return draft.mesh.HasCorner(n); });
+    });
+  }
+
   // A new load with its scale over time; null after a problem.
   v1::Load* NewLoad(BodyDraft& draft, const std::optional<std::int64_t>& controller, pugi::xml_node node) {
     std::optional<v1::Curve> scale;
@@ -247,7 +260,8 @@ class LoadMaker {
     if (same) return;
     source_.Remark(Notice::Kind::kChanged, forces.node,
                    "the total is shared equally by the set's corners and the mid-edge nodes between "
-                   "them, which differ from the nodes of the set");
+                   "them, which differ from the nodes of the set",
+                   "write it as a traction on a surface");
   }
 
   std::size_t AddSurfaceLoad(const SurfaceLoad& load, const Surface& surface, BodyDraft& draft) {

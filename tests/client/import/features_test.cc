@@ -744,8 +744,15 @@ const char* kAllFixed =
 TEST(FebioRigidTest, AFixedBodyHoldsTheNodesOfDeformableParts) {
   Pieces pieces = WithRigidPart();
   pieces.rest = kAllFixed;
+  // A load on the rigid part changes nothing.
+  pieces.sets += "<Surface name=\"outside\"><tri3 id=\"1\">2,3,5</tri3></Surface>";
+  pieces.loads =
+      "<surface_load type=\"pressure\" surface=\"outside\"><pressure>1</pressure><linear>1</linear></surface_load>";
   const ImportedScene imported = Import(pieces);
-  EXPECT_EQ(NoticesOf(imported), "");
+  EXPECT_EQ(
+      NoticesOf(imported),
+      "note model.feb:2: Loads/surface_load `pressure`: none of its facets belongs to a deformable part: it changes "
+      "nothing\n");
   EXPECT_EQ(ImportedMeshOf(imported).tetrahedra.size(), 1u);
   ASSERT_EQ(imported.scene.bodies(0).constraints_size(), 1);
   EXPECT_EQ(imported.scene.bodies(0).constraints(0).axes_size(), 0);
@@ -770,6 +777,8 @@ TEST(FebioRigidTest, AFreeBodyStopsTheImport) {
   pieces.rest.replace(pieces.rest.find("<Ru_dof>"), 8, "<Rz_dof>1</Rz_dof><Rw_dof>1</Rw_dof><Ru_dof>");
   EXPECT_THAT(NoticesOf(Import(pieces)),
               HasSubstr("note model.feb:3: Rigid/rigid_load `rigid_force`: acts on a rigid"));
+  pieces.rest = "<Rigid><rigid_bc type=\"rigid_euler_angles\"><rb>bone</rb></rigid_bc></Rigid>";
+  EXPECT_THAT(Refusal(pieces), HasSubstr("the rigid constraint `rigid_euler_angles` is not supported"));
   pieces.rest = "<Rigid><rigid_connector type=\"rigid spring\"><body_a>bone</body_a></rigid_connector></Rigid>";
   EXPECT_THAT(Refusal(pieces), HasSubstr("rigid connectors are not supported"));
   pieces.rest = "<Rigid><rigid_bc type=\"rigid_fixed\"><rb>bome</rb><Rx_dof>1</Rx_dof></rigid_bc></Rigid>";
@@ -779,7 +788,7 @@ TEST(FebioRigidTest, AFreeBodyStopsTheImport) {
 // Displacements and a rotation about the centre of mass, which is the centroid of the rigid tetrahedron.
 TEST(FebioRigidTest, MotionsTurnAboutTheCentreOfMass) {
   Pieces pieces = WithRigidPart();
-  pieces.boundary = "<bc type=\"rigid\" node_set=\"t1\"><rb>bone</rb></bc>";
+  pieces.boundary = "<bc type=\"rigid\" node_set=\"t1\"><rb>bone</rb><clamp_shells>1</clamp_shells></bc>";
   pieces.sets += "<NodeSet name=\"t1\">1</NodeSet>";
   const std::string fixed =
       "<rigid_bc type=\"rigid_fixed\"><rb>bone</rb><Rx_dof>1</Rx_dof><Ry_dof>1</Ry_dof><Ru_dof>1</Ru_dof></rigid_bc>";

@@ -291,6 +291,8 @@ TEST(FebioVersionsTest, AMuscleBetweenBones) {
   const v1::Body& body = imported.scene.bodies(0);
   EXPECT_EQ(body.name(), "belly");
   ASSERT_EQ(body.constraints_size(), 2);
+  EXPECT_EQ(body.constraints(0).region(), "rigid_upper");
+  EXPECT_EQ(body.constraints(1).region(), "rigid_lower");
   EXPECT_NEAR(body.constraints(0).motion().translation(0).curve().values(1), 2e-3, 1e-15);
   const v1::Rotation& rotation = body.constraints(0).motion().rotation();
   EXPECT_THAT(rotation.point(), ::testing::ElementsAre(::testing::DoubleNear(5, 1e-12), ::testing::DoubleNear(5, 1e-12),
