@@ -46,9 +46,9 @@ inline Constraint Fix(Side side, std::array<bool, 3> axes = {true, true, true}) 
   return Constraint{static_cast<std::int32_t>(side), axes, {}};
 }
 
-// Every law with usable parameters, in the order of the list; soft enough that all have wave speeds of a few m/s. Fibres
-// that begin to pull at rest are soft there and stiffen later: the tangent at rest, by which stable steps are judged, is
-// that of slack fibres.
+// Every law with usable parameters, in the order of the list; soft enough that all have wave speeds of a few m/s.
+// Fibres that begin to pull at rest are soft there and stiffen later: the tangent at rest, by which stable steps are
+// judged, is that of slack fibres.
 inline std::vector<Material> EveryLaw() {
   return {LinearElastic(std::array{1e4, 0.3}),
           StVenantKirchhoff(std::array{1e4, 0.3}),
