@@ -60,7 +60,7 @@ inline std::vector<Material> EveryLaw() {
           TransIsoMooneyRivlin(std::array{2e3, 1e3, 5e2, 8.0, 5e4, 1.2, 2e4, 1e4}),
           Yeoh(std::array{3e3, -2e2, 5e2, 2e4}),
           Ogden(std::array{4e3, 1.3, 3e2, 5.0, 2e3, -2.0, 2e4}),
-          FungFibre(std::array{2e3, 1e3, 1e2, 20.0, 2e4}),
+          FungFibre(std::array{2e3, 1e3, 1e2, 4.0, 2e4}),
           HolzapfelGasserOgden(std::array{6e3, 50.0, 20.0, 0.1, 0.6, 0.0, 0.3, 1.0, 2e4})};
 }
 inline constexpr int kLaws = std::variant_size_v<Material>;
