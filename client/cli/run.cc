@@ -7,6 +7,9 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <system_error>
+#include <utility>
 
 #include "client/cli/command.h"
 #include "client/cli/digests.h"
@@ -66,6 +69,28 @@ class TemporaryFolder {
   fs::path path_;
 };
 
+// Removes the folders that a scene which is refused would leave behind.
+class NewFolders {
+ public:
+  explicit NewFolders(fs::path results)
+      : results_(std::move(results)),
+        makes_data_(!fs::exists(DataFolderIn(results_))),
+        makes_results_(!fs::exists(results_)) {}
+  ~NewFolders() {
+    std::error_code ignored;
+    if (!kept_ && makes_data_) fs::remove_all(DataFolderIn(results_), ignored);
+    if (!kept_ && makes_results_) fs::remove(results_, ignored);
+  }
+  NewFolders(const NewFolders&) = delete;
+  NewFolders& operator=(const NewFolders&) = delete;
+  void Keep() { kept_ = true; }
+
+ private:
+  const fs::path results_;
+  const bool makes_data_, makes_results_;
+  bool kept_ = false;
+};
+
 void WriteResults(const Followed& followed, const fs::path& folder) {
   if (followed.table.size() == 0) return;
   ReplaceFile(folder / "series.csv", CsvOf(followed.table));
@@ -95,6 +120,8 @@ int Run(const RunOptions& options, const Context& context) {
   std::unique_ptr<TemporaryFolder> temporary;
   const bool keeps_one = options.data.empty() && !options.out.empty();
   if (options.data.empty() && options.out.empty()) temporary = std::make_unique<TemporaryFolder>();
+  std::optional<NewFolders> folders;  // outlives the server
+  if (keeps_one) folders.emplace(options.out);
   server::ServerOptions server_options;
   server_options.data_directory = temporary   ? temporary->path().string()
                                   : keeps_one ? DataFolderIn(options.out).string()
@@ -105,6 +132,7 @@ int Run(const RunOptions& options, const Context& context) {
   Client client(server->address());
   if (keeps_one) CancelAll(client);
   const v1::Job job = Take(client.Submit(package, options.threads, interrupts.token()));
+  if (folders) folders->Keep();
   const std::stop_callback cancel(interrupts.token(), [&] { (void)client.CancelJob(job.name()); });
   std::optional<VtkSeriesWriter> frames;
   const auto on_frame = [&](const v1::Geometry& geometry, const v1::Frame& frame) {
