@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "client/cli/command.h"
+#include "client/cli/convergence.h"
 #include "client/cli/digests.h"
 #include "client/cli/follow.h"
 #include "client/cli/interrupts.h"
@@ -34,6 +35,7 @@ constexpr const char* kRunExamples = R"(  fascicle run scene.json               
   fascicle render out --out fibres.png --fibres   the same job again: plot, render, export, sample and show take out/
   fascicle run scene.json --threads 2 --data db   on two threads; the server's database stays in db/
   fascicle run scene.json --profile               and print the time spent in each stage
+  fascicle run scene.json --check                 again with half the step and half the mesh size: is it converged?
   fascicle run scene.json --set 'bodies[0].activation.values=[0, 0.5]'
   fascicle run scene.json --json | jq .series     for programs
 
@@ -47,6 +49,7 @@ struct RunOptions {
   int threads = 1;
   bool digests = false;
   bool profile = false;
+  bool check = false;
 };
 
 // A temporary folder, removed by the destructor.
@@ -113,6 +116,32 @@ void DeleteOthers(Client& client, const std::string& job) {
   }
 }
 
+// Runs a changed scene to its end, compares its series and deletes its job.
+CheckedRun RunChanged(Client& client, const ScenePackage& package, const v1::Scene& changed, std::string what,
+                      const SeriesTable& before, const RunOptions& options, const std::stop_token& stop) {
+  std::cerr << "check: " << what << "\n";
+  const v1::Job job = Take(client.Submit({changed, package.assets}, options.threads, stop));
+  const std::stop_callback cancel(stop, [&] { (void)client.CancelJob(job.name()); });
+  const Followed followed = Follow(client, job.name(), 0, {}, {});
+  Check(client.DeleteJob(job.name()));
+  return {std::move(what), followed.job, ChangesBetween(before, followed.table)};
+}
+
+// The further runs of `--check`. Ends early if the user interrupts it.
+std::vector<CheckedRun> CheckConvergence(Client& client, const ScenePackage& package, const Followed& followed,
+                                         const RunOptions& options, const std::stop_token& stop) {
+  std::vector<CheckedRun> runs;
+  if (followed.job.state() != v1::Job::STATE_SUCCEEDED) return runs;
+  const SeriesTable& before = followed.table;
+  const auto run = [&](const std::optional<v1::Scene>& changed, const char* what) {
+    if (!changed || stop.stop_requested()) return;
+    runs.push_back(RunChanged(client, package, *changed, what, before, options, stop));
+  };
+  run(WithHalfStep(package.scene, before.steps().back()), "half the time step");
+  run(WithHalfMeshSize(package.scene), "half the mesh size");
+  return runs;
+}
+
 int Run(const RunOptions& options, const Context& context) {
   const ScenePackage package = LoadSceneOrFail(options.scene);
   // Created before the server, whose threads must not receive the signals.
@@ -142,16 +171,21 @@ int Run(const RunOptions& options, const Context& context) {
     frames->Add(frame);
   };
   const Followed followed = Follow(client, job.name(), 0, on_frame, {});
+  const std::vector<CheckedRun> checked =
+      options.check ? CheckConvergence(client, package, followed, options, interrupts.token())
+                    : std::vector<CheckedRun>();
   if (keeps_one) DeleteOthers(client, job.name());
   server->Stop();
   if (frames) frames->Finish();
   if (context.json) {
     Json summary = SummaryJson(followed);
     if (options.profile) summary["profile"] = ProfileJson(followed.job);
+    if (options.check) summary["check"] = CheckJson(checked);
     PrintJson(summary);
   } else {
     PrintSummary(followed);
     if (options.profile) PrintProfile(followed.job);
+    PrintCheck(checked);
   }
   if (!options.out.empty()) {
     WriteResults(followed, options.out);
@@ -176,6 +210,8 @@ void AddRun(CLI::App& app, Context& context) {
   command->add_option("--threads", options->threads, "Number of threads; results do not depend on it")
       ->check(CLI::Range(1, 256));
   command->add_flag("--digests", options->digests, "Print a line with the digest of each frame");
+  command->add_flag("--check", options->check,
+                    "Run twice more, with half the time step and half the mesh size, and compare all series");
   command->add_flag("--profile", options->profile, "Print the time spent in each stage");
   command->callback([options, &context] { context.action = [options, &context] { return Run(*options, context); }; });
 }

@@ -5,6 +5,7 @@
 
 #include "server/translate/materials.h"
 #include "server/translate/parts.h"
+#include "server/translate/refine_body.h"
 #include "server/translate/regions.h"
 #include "server/translate/shapes.h"
 #include "server/translate/supports_and_loads.h"
@@ -62,6 +63,7 @@ TranslatedBody TranslateBody(const BodySource& source, Method method, Problems& 
   body.excitation = TranslateExcitation(source, others);
   result.complete = structure.empty() && has_mesh && AllObeyRules(wire.regions()) && AllObeyRules(wire.constraints()) &&
                     AllObeyRules(wire.loads());
+  if (result.complete) RefineBody(source, selectors, body, others);
   problems.Append("", structure);
   problems.Append("", others);
   return result;

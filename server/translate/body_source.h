@@ -18,6 +18,7 @@ struct BodySource {
   const AssetReader& assets;
   std::int64_t& budget;  // elements left for the body; reduced by its number of elements
   const TranslateTools& tools;
+  int refinements = 0;  // times that each element is divided
 };
 
 // Adds a problem for each of the named fields that the body has, because its shape does not support them.

@@ -1,5 +1,6 @@
 #include "server/translate/methods.h"
 
+#include <cmath>
 #include <utility>
 
 #include "server/translate/values.h"
@@ -53,6 +54,11 @@ std::optional<Bounds> TranslateRoom(const v1::EulerianMethod& method, Problems& 
 
 }  // namespace
 
+int RefinementsOf(const v1::Scene& scene) {
+  constexpr int kMost = 3;
+  return scene.refinements() >= 0 && scene.refinements() <= kMost ? scene.refinements() : 0;
+}
+
 TetMethod TranslateTetMethod(const v1::Scene& scene) {
   TetMethod method;
   if (!scene.has_tet() || !ObeysRules(scene.tet())) return method;
@@ -86,7 +92,8 @@ EulerianMethod TranslateEulerianMethod(const v1::Scene& scene, Problems& problem
   const v1::EulerianMethod& wire = scene.eulerian();
   method.room = TranslateRoom(wire, problems);
   if (!ObeysRules(wire)) return method;
-  method.cell_size = wire.cell_size();
+  // A refined grid has half the cells' size.
+  method.cell_size = std::ldexp(wire.cell_size(), -RefinementsOf(scene));
   method.margin = wire.margin();
   if (wire.volume() == v1::VOLUME_TREATMENT_DIVERGENCE_FREE) method.volume = VolumeTreatment::kDivergenceFree;
   if (wire.volume() == v1::VOLUME_TREATMENT_NONE) method.volume = VolumeTreatment::kNone;

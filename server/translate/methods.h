@@ -7,6 +7,9 @@
 
 namespace fascicle::server {
 
+// Times that the elements of a scene are divided; 0 if the scene's value is invalid.
+int RefinementsOf(const v1::Scene& scene);
+
 // The settings of each method for a scene (defaults filled in). Neutral settings replace invalid ones, and those of
 // methods that the scene does not use.
 TetMethod TranslateTetMethod(const v1::Scene& scene);

@@ -65,6 +65,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   auto result = std::make_shared<Scene>();
   result->name = filled.name();
   result->duration = filled.duration();
+  const int refinements = RefinementsOf(filled);
   result->method = filled.has_voxel() ? Method::kVoxel : filled.has_eulerian() ? Method::kEulerian : Method::kTet;
   result->tet = TranslateTetMethod(filled);
   result->voxel = TranslateVoxelMethod(filled);
@@ -81,7 +82,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     ThrowIfStopped(tools.stop);
     const std::string path = IndexPath("bodies", static_cast<std::size_t>(i));
     names.Add(filled.bodies(i).name(), JoinPath(path, "name"), found);
-    TranslatedBody body = TranslateBody({filled.bodies(i), path, assets, budget, tools}, result->method, found);
+    TranslatedBody body = TranslateBody({filled.bodies(i), path, assets, budget, tools, refinements}, result->method, found);
     complete.push_back(body.complete);
     sources.push_back(SourcePath(filled.bodies(i).mesh(), path));
     AddCurvedEdgesNote(result->tet, path, body.body);

@@ -290,6 +290,47 @@ TEST_F(CliTest, RunTellsWhereTheTimeWent) {
   EXPECT_GT(profile["wall_seconds"], 0);
 }
 
+// A bar of 40 x 10 x 10 mm in equilibrium; `end` is what happens at its free end.
+std::string BarText(const std::string& start, const std::string& end) {
+  return R"({"bodies": [{"name": "bar", "unit": "mm",
+    "mesh": {"box": {"size": [40, 10, 10], "divisions": [4, 1, 1]}}, "material": {"neo_hookean": {"young_modulus": 1e5}},
+    "regions": [{"name": "x0", "plane": {"point": [0, 0, 0], "normal": [-1, 0, 0]}},
+                {"name": "y0", "plane": {"point": [0, 0, 0], "normal": [0, -1, 0]}},
+                {"name": "z0", "plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}},
+                {"name": "x1", "plane": {"point": [40, 0, 0], "normal": [1, 0, 0]}}],
+    "constraints": [)" +
+         start + R"(], "loads": [{"region": "x1", "traction": {"value": )" + end + R"(}}]}],
+    "duration": 1, "output": {"frame_interval": 0.5}, "tet": {"stepping": "quasi_static", "element": "linear"}})";
+}
+
+// Linear elements stretch exactly and bend too stiffly.
+TEST_F(CliTest, CheckTellsWhetherTheAnswerHasConverged) {
+  const std::string stretched = File(
+      "stretched.json",
+      BarText(R"({"region": "x0", "axes": ["x"]}, {"region": "y0", "axes": ["y"]}, {"region": "z0", "axes": ["z"]})",
+              "[1e4, 0, 0]"));
+  const Finished exact = Fascicle({"run", stretched, "--check", "--out", folder_ / "out", "--json"});
+  ASSERT_EQ(exact.exit_code, 0) << exact.err;
+  const json check = json::parse(exact.out)["check"];
+  ASSERT_EQ(check.size(), 2u);
+  EXPECT_EQ(check[0]["with"], "half the time step");
+  EXPECT_EQ(check[1]["with"], "half the mesh size");
+  for (const json& run : check) {
+    EXPECT_EQ(run["state"], "succeeded");
+    EXPECT_LT(run["largest_change"]["relative_change"], 1e-6) << run;
+  }
+  // The folder keeps the job of the scene itself.
+  EXPECT_EQ(json::parse(Fascicle({"show", folder_ / "out", "--json"}).out)["state"], "succeeded");
+
+  const std::string bent = File("bent.json", BarText(R"({"region": "x0"})", "[0, 0, 100]"));
+  const Finished coarse = Fascicle({"run", bent, "--check"});
+  ASSERT_EQ(coarse.exit_code, 0) << coarse.err;
+  EXPECT_THAT(coarse.out, AllOf(HasSubstr("half the time step: changes at most"),
+                                HasSubstr("the answer is not converged: run with half the mesh size")));
+  const json finer = json::parse(Fascicle({"run", bent, "--check", "--json"}).out)["check"][1];
+  EXPECT_GT(finer["largest_change"]["relative_change"], 0.1);
+}
+
 TEST_F(CliTest, SettingsChangeTheScene) {
   const std::string scene = File("scene.json", SceneText(2, 5));
   const auto set = [&](const std::string& setting) { return Fascicle({"validate", scene, "--set", setting}); };

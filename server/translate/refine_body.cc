@@ -1,0 +1,87 @@
+#include "server/translate/refine_body.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/refinement.h"
+
+namespace fascicle::server {
+namespace {
+
+// One value for each part of every element; nothing if there is none.
+template <class Value>
+void RepeatForParts(std::vector<Value>& values) {
+  std::vector<Value> repeated;
+  repeated.reserve(kChildren * values.size());
+  for (const Value& value : values) repeated.insert(repeated.end(), kChildren, value);
+  values = std::move(repeated);
+}
+
+void RefineShape(TetShape& shape, const std::stop_token& stop) {
+  RefinedTetrahedra fine = Refined(shape.mesh, stop);
+  RepeatForParts(shape.fibres);
+  RepeatForParts(shape.materials.of);
+  RepeatForParts(shape.activations.of);
+  RepeatForParts(shape.activation_scale);
+  if (!shape.initial_displacement.empty()) {
+    std::vector<Vec3>& u = shape.initial_displacement;
+    for (const auto& [i, j] : fine.ends) u.push_back(0.5 * (u[i] + u[j]));
+  }
+  shape.mesh = std::move(fine.mesh);
+}
+
+void RefineShape(VoxelShape& shape, const std::stop_token& stop) {
+  const VoxelGrid coarse = std::move(shape.mesh.grid);
+  std::vector<std::int32_t> brick_of(coarse.voxels(), -1);
+  std::int32_t bricks = 0;
+  for (std::size_t v = 0; v < brick_of.size(); ++v) {
+    if (coarse.material[v] != 0) brick_of[v] = bricks++;
+  }
+  shape.mesh = MakeBrickMesh(Refined(coarse, stop), stop);
+  if (shape.materials.of.empty()) return;
+  const std::vector<std::int32_t> parts = std::move(shape.materials.of);
+  shape.materials.of.clear();
+  ForVoxels(
+      shape.mesh.grid,
+      [&](std::size_t v, const GridIndex& at) {
+        if (shape.mesh.grid.material[v] == 0) return;
+        shape.materials.of.push_back(parts[brick_of[coarse.IndexOf({at[0] / 2, at[1] / 2, at[2] / 2})]]);
+      },
+      stop);
+}
+
+std::int64_t ElementsOf(const TetShape& shape) { return static_cast<std::int64_t>(shape.mesh.tetrahedra.size()); }
+std::int64_t ElementsOf(const VoxelShape& shape) { return static_cast<std::int64_t>(shape.mesh.bricks.size()); }
+
+// Whether the budget allows the parts, which it then pays.
+bool PayForParts(const BodySource& source, std::int64_t elements, Problems& problems) {
+  std::int64_t parts = elements;
+  for (int k = 0; k < source.refinements; ++k) parts *= static_cast<std::int64_t>(kChildren);
+  if (parts - elements > source.budget) {
+    problems.Add("refinements", std::to_string(parts) + " elements of " + source.path + " are too many; " +
+                                    std::to_string(source.budget + elements) + " are left for it",
+                 "refine less often, or use a coarser mesh");
+    return false;
+  }
+  source.budget -= parts - elements;
+  return true;
+}
+
+template <class Shape>
+void Refine(const BodySource& source, const RegionSelectors& selectors, Shape& shape, Body& body, Problems& problems) {
+  if (!PayForParts(source, ElementsOf(shape), problems)) return;
+  for (int k = 0; k < source.refinements; ++k) RefineShape(shape, source.tools.stop);
+  body.regions = SelectRegions(selectors, shape.mesh, source.tools.stop);
+  body.notes.push_back(source.path + ": refined to " + std::to_string(ElementsOf(shape)) + " elements");
+}
+
+}  // namespace
+
+void RefineBody(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& problems) {
+  if (source.refinements == 0) return;
+  if (auto* tet = std::get_if<TetShape>(&body.shape)) Refine(source, selectors, *tet, body, problems);
+  if (auto* voxel = std::get_if<VoxelShape>(&body.shape)) Refine(source, selectors, *voxel, body, problems);
+}
+
+}  // namespace fascicle::server
