@@ -60,9 +60,8 @@ std::map<std::string, double> ScalesOf(const SeriesTable& table) {
 }
 
 const SeriesChange* LargestChange(const std::vector<SeriesChange>& changes) {
-  const auto largest = std::max_element(changes.begin(), changes.end(), [](const auto& a, const auto& b) {
-    return a.relative < b.relative;
-  });
+  const auto largest = std::max_element(changes.begin(), changes.end(),
+                                        [](const auto& a, const auto& b) { return a.relative < b.relative; });
   return largest == changes.end() ? nullptr : &*largest;
 }
 

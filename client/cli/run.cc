@@ -171,9 +171,9 @@ int Run(const RunOptions& options, const Context& context) {
     frames->Add(frame);
   };
   const Followed followed = Follow(client, job.name(), 0, on_frame, {});
-  const std::vector<CheckedRun> checked =
-      options.check ? CheckConvergence(client, package, followed, options, interrupts.token())
-                    : std::vector<CheckedRun>();
+  const std::vector<CheckedRun> checked = options.check
+                                              ? CheckConvergence(client, package, followed, options, interrupts.token())
+                                              : std::vector<CheckedRun>();
   if (keeps_one) DeleteOthers(client, job.name());
   server->Stop();
   if (frames) frames->Finish();

@@ -59,8 +59,9 @@ bool PayForParts(const BodySource& source, std::int64_t elements, Problems& prob
   std::int64_t parts = elements;
   for (int k = 0; k < source.refinements; ++k) parts *= static_cast<std::int64_t>(kChildren);
   if (parts - elements > source.budget) {
-    problems.Add("refinements", std::to_string(parts) + " elements of " + source.path + " are too many; " +
-                                    std::to_string(source.budget + elements) + " are left for it",
+    problems.Add("refinements",
+                 std::to_string(parts) + " elements of " + source.path + " are too many; " +
+                     std::to_string(source.budget + elements) + " are left for it",
                  "refine less often, or use a coarser mesh");
     return false;
   }

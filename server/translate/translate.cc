@@ -82,7 +82,8 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     ThrowIfStopped(tools.stop);
     const std::string path = IndexPath("bodies", static_cast<std::size_t>(i));
     names.Add(filled.bodies(i).name(), JoinPath(path, "name"), found);
-    TranslatedBody body = TranslateBody({filled.bodies(i), path, assets, budget, tools, refinements}, result->method, found);
+    TranslatedBody body =
+        TranslateBody({filled.bodies(i), path, assets, budget, tools, refinements}, result->method, found);
     complete.push_back(body.complete);
     sources.push_back(SourcePath(filled.bodies(i).mesh(), path));
     AddCurvedEdgesNote(result->tet, path, body.body);

@@ -135,7 +135,8 @@ TEST(RefinementTest, CurvedElementsKeepTheirShape) {
     const std::array<double, 4> L = {0.1, 0.2, 0.3, 0.4};
     // In the straight element, barycentric coordinates are coordinates.
     const Vec3 place = PointIn(fine_straight, t, L);
-    EXPECT_LT((PointIn(fine, t, L) - PointIn(coarse, 0, {1 - place.sum(), place[0], place[1], place[2]})).norm(), 1e-14);
+    EXPECT_LT((PointIn(fine, t, L) - PointIn(coarse, 0, {1 - place.sum(), place[0], place[1], place[2]})).norm(),
+              1e-14);
   }
 }
 
