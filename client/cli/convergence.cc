@@ -43,18 +43,25 @@ double LargestOf(const std::vector<double>& values) {
   return largest;
 }
 
-// The largest absolute value of each quantity, at least a millionth of the largest with its unit.
+// Moments and energies have the same dimension. Moments that vanish by symmetry are small beside energies.
+const std::string& DimensionOf(const SeriesTable::Column& column) {
+  static const std::string joule = "J";
+  return column.unit == "N m" ? joule : column.unit;
+}
+
+// The largest absolute value of each quantity, at least a millionth of the largest with its dimension.
 std::map<std::string, double> ScalesOf(const SeriesTable& table) {
   constexpr double kNegligible = 1e-6;
-  std::map<std::string, double> of_quantity, of_unit;
+  std::map<std::string, double> of_quantity, of_dimension;
   for (const SeriesTable::Column& column : table.columns()) {
     double& quantity = of_quantity[QuantityOf(column)];
     quantity = std::fmax(quantity, LargestOf(column.values));
-    of_unit[column.unit] = std::fmax(of_unit[column.unit], quantity);
+    double& dimension = of_dimension[DimensionOf(column)];
+    dimension = std::fmax(dimension, quantity);
   }
   for (const SeriesTable::Column& column : table.columns()) {
     double& quantity = of_quantity[QuantityOf(column)];
-    quantity = std::fmax(quantity, kNegligible * of_unit[column.unit]);
+    quantity = std::fmax(quantity, kNegligible * of_dimension[DimensionOf(column)]);
   }
   return of_quantity;
 }
@@ -76,12 +83,12 @@ void PrintChanges(const CheckedRun& run) {
     std::printf(": no result to compare\n");
     return;
   }
-  std::printf(": changes at most %.2g %% (%s)\n", 100 * largest->relative, largest->name.c_str());
+  std::printf(": changes at most %.3g %% (%s)\n", 100 * largest->relative, largest->name.c_str());
   int width = 6;
   for (const SeriesChange& change : run.changes) width = std::max(width, static_cast<int>(change.name.size()));
   std::printf("%-*s  %-6s %13s %13s %9s\n", width, "series", "unit", "final", "with it", "change");
   for (const SeriesChange& change : run.changes) {
-    std::printf("%-*s  %-6s %13.6g %13.6g %7.2g %%\n", width, change.name.c_str(), change.unit.c_str(), change.before,
+    std::printf("%-*s  %-6s %13.6g %13.6g %7.3g %%\n", width, change.name.c_str(), change.unit.c_str(), change.before,
                 change.after, 100 * change.relative);
   }
   if (largest->relative > kWorthMentioning) {

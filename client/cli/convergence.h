@@ -28,7 +28,7 @@ struct SeriesChange {
   std::string name, unit;
   double before = 0, after = 0;  // final values
   // The largest change in a frame, relative to the largest absolute value of the components of this quantity. Values
-  // below a millionth of others with their unit count as zero.
+  // below a millionth of others with their dimension count as zero.
   double relative = 0;
 };
 

@@ -9,9 +9,9 @@
 namespace fascicle {
 namespace {
 
-using Edge = std::array<std::int32_t, 2>;  // node indices, ascending
+using EdgeEnds = std::array<std::int32_t, 2>;  // node indices, ascending
 
-Edge EdgeOf(std::int32_t i, std::int32_t j) { return {std::min(i, j), std::max(i, j)}; }
+EdgeEnds EdgeBetween(std::int32_t i, std::int32_t j) { return {std::min(i, j), std::max(i, j)}; }
 
 // Refines one mesh. The nodes of a tetrahedron are numbered as those of a quadratic element: four corners, then the
 // middles of kTetEdges.
@@ -19,7 +19,7 @@ class TetrahedraRefiner {
  public:
   TetrahedraRefiner(const TetMesh& coarse, const std::stop_token& stop) : coarse_(coarse), stop_(stop) {
     for (const CurvedEdge& edge : coarse.curved_edges) {
-      curved_.emplace(EdgeOf(edge.ends[0], edge.ends[1]), edge.middle);
+      curved_.emplace(EdgeBetween(edge.ends[0], edge.ends[1]), edge.middle);
     }
   }
 
@@ -40,7 +40,7 @@ class TetrahedraRefiner {
   using Nodes = std::array<std::int32_t, 10>;
 
   std::int32_t MiddleOf(std::int32_t i, std::int32_t j) {
-    const Edge edge = EdgeOf(i, j);
+    const EdgeEnds edge = EdgeBetween(i, j);
     const std::uint64_t key = static_cast<std::uint64_t>(edge[0]) << 32 | static_cast<std::uint32_t>(edge[1]);
     const auto [place, is_new] = middles_.try_emplace(key, static_cast<std::int32_t>(result_.mesh.nodes.size()));
     if (is_new) {
@@ -54,10 +54,10 @@ class TetrahedraRefiner {
   }
 
   // The middles of the halves of a parabola.
-  void AddHalves(const Edge& edge, const Vec3& middle, std::int32_t node) {
+  void AddHalves(const EdgeEnds& edge, const Vec3& middle, std::int32_t node) {
     const Vec3 &a = coarse_.nodes[edge[0]], &b = coarse_.nodes[edge[1]];
-    halves_[EdgeOf(edge[0], node)] = 0.375 * a + 0.75 * middle - 0.125 * b;
-    halves_[EdgeOf(edge[1], node)] = 0.375 * b + 0.75 * middle - 0.125 * a;
+    halves_[EdgeBetween(edge[0], node)] = 0.375 * a + 0.75 * middle - 0.125 * b;
+    halves_[EdgeBetween(edge[1], node)] = 0.375 * b + 0.75 * middle - 0.125 * a;
   }
 
   void Divide(const Tetrahedron& tet) {
@@ -84,7 +84,7 @@ class TetrahedraRefiner {
     for (int k = 0; k < 4; ++k) {
       AddTetrahedron(n[shortest[0]], n[shortest[1]], n[shortest[2 + k]], n[shortest[2 + (k + 1) % 4]]);
     }
-    diagonal_ = EdgeOf(n[shortest[0]], n[shortest[1]]);
+    diagonal_ = EdgeBetween(n[shortest[0]], n[shortest[1]]);
   }
   double Length(const Nodes& n, const int* diagonal) const {
     return (result_.mesh.nodes[n[diagonal[0]]] - result_.mesh.nodes[n[diagonal[1]]]).norm();
@@ -97,7 +97,7 @@ class TetrahedraRefiner {
     if (SignedVolume(result_.mesh, tetrahedra.size() - 1) < 0) std::swap(tetrahedra.back()[2], tetrahedra.back()[3]);
   }
 
-  bool IsCurved(std::int32_t i, std::int32_t j) const { return curved_.contains(EdgeOf(i, j)); }
+  bool IsCurved(std::int32_t i, std::int32_t j) const { return curved_.contains(EdgeBetween(i, j)); }
 
   // Edges inside of a curved element's faces, and the diagonal, follow the element's quadratic map.
   void CurveInside(const Nodes& n) {
@@ -110,7 +110,7 @@ class TetrahedraRefiner {
         if (!IsCurved(a, b) && !IsCurved(b, d) && !IsCurved(d, a)) continue;
         any = true;
         const std::int32_t ab = MiddleOf(a, b), ad = MiddleOf(a, d), bd = MiddleOf(b, d);
-        halves_[EdgeOf(ab, ad)] = -0.125 * (X[b] + X[d]) + 0.5 * (X[ab] + X[ad]) + 0.25 * X[bd];
+        halves_[EdgeBetween(ab, ad)] = -0.125 * (X[b] + X[d]) + 0.5 * (X[ab] + X[ad]) + 0.25 * X[bd];
       }
     }
     if (!any) return;
@@ -165,10 +165,10 @@ class TetrahedraRefiner {
 
   const TetMesh& coarse_;
   const std::stop_token& stop_;
-  std::map<Edge, Vec3> curved_;  // the middle of each curved edge of the coarse mesh
-  std::map<Edge, Vec3> halves_;  // and of each of the fine one
+  std::map<EdgeEnds, Vec3> curved_;  // the middle of each curved edge of the coarse mesh
+  std::map<EdgeEnds, Vec3> halves_;  // and of each of the fine one
   std::unordered_map<std::uint64_t, std::int32_t> middles_;
-  Edge diagonal_ = {};
+  EdgeEnds diagonal_ = {};
   RefinedTetrahedra result_;
 };
 

@@ -54,6 +54,26 @@ struct NodalForce {
 template <>
 inline constexpr auto kFieldNames<NodalForce> = FieldNames("total");
 
+// Against the outward normal of the deformed surface.
+struct Pressure {
+  double value = 0;  // [Pa]
+};
+template <>
+inline constexpr auto kFieldNames<Pressure> = FieldNames("value");
+
+struct BodyForce {
+  Vec3 density = Vec3::Zero();  // [N/m^3] of rest volume
+};
+template <>
+inline constexpr auto kFieldNames<BodyForce> = FieldNames("density");
+
+// Springs that pull the nodes of the region to their rest positions.
+struct Springs {
+  Vec3 stiffness = Vec3::Zero();  // along x, y, z [N/m], in equal parts on the nodes of the region
+};
+template <>
+inline constexpr auto kFieldNames<Springs> = FieldNames("stiffness");
+
 template <>
 inline constexpr auto kFieldNames<SternMuscle> = FieldNames("origin_distance", "insertion_distance", "peak_force",
                                                             "optimal_angle", "contractile_fraction", "hill_curvature",
@@ -71,7 +91,7 @@ inline constexpr auto kFieldNames<SternPull> = FieldNames("", "");
 
 struct Load {
   std::int32_t region = 0;  // index into Body::regions
-  std::variant<Traction, NodalForce> kind;
+  std::variant<Traction, NodalForce, Pressure, BodyForce, Springs> kind;
   Curve scale = Curve::Constant(1);
   std::optional<SternPull> stern;  // replaces the scale of a unit force; a series in the output
 };

@@ -14,7 +14,7 @@ namespace {
 // Resultant of a load at scale 1 [N].
 Vec3 Resultant(const Body& body, const Load& load) {
   Vec3 sum = Vec3::Zero();
-  for (const auto& [node, force] : NodalForcesOf(load, LoadedRegionOf(body.regions[load.region], body.nodes()))) {
+  for (const auto& [node, force] : NodalForcesOf(load, LoadedRegionOf(body.regions[load.region], body))) {
     sum += force;
   }
   return sum;
@@ -38,6 +38,10 @@ std::array<bool, 3> HeldAxes(const Body& body) {
   std::array<bool, 3> held = {};
   for (const Constraint& constraint : body.constraints) {
     for (int axis = 0; axis < 3; ++axis) held[axis] |= constraint.axes[axis];
+  }
+  for (const Load& load : body.loads) {
+    const auto* springs = std::get_if<Springs>(&load.kind);
+    for (int axis = 0; axis < 3 && springs != nullptr; ++axis) held[axis] |= springs->stiffness[axis] > 0;
   }
   return held;
 }

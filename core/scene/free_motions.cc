@@ -70,6 +70,15 @@ std::vector<Part> PartsOf(const Body& body, const std::vector<std::int32_t>& par
       }
     }
   }
+  for (const Load& load : body.loads) {
+    const auto* springs = std::get_if<Springs>(&load.kind);
+    if (springs == nullptr) continue;
+    for (const std::int32_t n : body.regions[load.region].nodes) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (springs->stiffness[axis] > 0) parts[part_of[n]].held.emplace_back(n, axis);
+      }
+    }
+  }
   return parts;
 }
 

@@ -19,7 +19,8 @@ struct FreePart {
 };
 
 // The parts (elements connected by nodes) of a body with a TetShape that have infinitesimal rigid motions under which
-// no prescribed component of a node moves. Prescribed are the components of its constraints, whatever their motion.
+// no prescribed component of a node moves. Prescribed are the components of its constraints, whatever their motion, and
+// those of its springs.
 std::vector<FreePart> FindFreeParts(const Body& body);
 
 }  // namespace fascicle

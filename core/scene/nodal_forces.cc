@@ -7,8 +7,11 @@ namespace {
 
 using Forces = std::map<std::int32_t, Vec3>;
 
-bool ActsOnFaces(const Traction&) { return true; }
-bool ActsOnFaces(const NodalForce&) { return false; }
+LoadedPart PartOf(const Traction&) { return LoadedPart::kFaces; }
+LoadedPart PartOf(const NodalForce&) { return LoadedPart::kNodes; }
+LoadedPart PartOf(const Pressure&) { return LoadedPart::kFaces; }
+LoadedPart PartOf(const BodyForce&) { return LoadedPart::kElements; }
+LoadedPart PartOf(const Springs&) { return LoadedPart::kNodes; }
 
 Forces ForcesOf(const Traction& traction, const LoadedRegion& region) {
   Forces forces;
@@ -28,6 +31,44 @@ Forces ForcesOf(const NodalForce& force, const LoadedRegion& region) {
   return forces;
 }
 
+Forces ForcesOf(const Pressure& pressure, const LoadedRegion& region) {
+  Forces forces;
+  for (const LoadedRegion::Face& face : region.faces) {
+    for (int c = 0; c < face.count; ++c) {
+      forces.try_emplace(face.nodes[c], Vec3::Zero()).first->second -= pressure.value / face.count * face.area;
+    }
+  }
+  return forces;
+}
+
+Forces ForcesOf(const BodyForce& force, const LoadedRegion& region) {
+  Forces forces;
+  for (const auto& [node, volume] : region.volumes) forces.emplace(node, volume * force.density);
+  return forces;
+}
+
+Forces ForcesOf(const Springs&, const LoadedRegion&) { return {}; }
+
+using Volumes = std::map<std::int32_t, double>;
+
+Volumes VolumesOf(const Region& region, const TetShape& shape) {
+  Volumes volumes;
+  for (const std::int32_t e : region.elements) {
+    const double share = SignedVolume(shape.mesh, static_cast<std::size_t>(e)) / 4;
+    for (const std::int32_t node : shape.mesh.tetrahedra[e]) volumes[node] += share;
+  }
+  return volumes;
+}
+Volumes VolumesOf(const Region& region, const VoxelShape& shape) {
+  Volumes volumes;
+  const double share = shape.mesh.grid.spacing.prod() / 8;
+  for (const std::int32_t e : region.elements) {
+    for (const std::int32_t node : shape.mesh.bricks[e]) volumes[node] += share;
+  }
+  return volumes;
+}
+Volumes VolumesOf(const Region&, const SurfaceShape&) { return {}; }
+
 }  // namespace
 
 LoadedRegion LoadedRegionOf(const Region& region, const std::vector<Vec3>& X) {
@@ -42,8 +83,18 @@ LoadedRegion LoadedRegionOf(const Region& region, const std::vector<Vec3>& X) {
   return loaded;
 }
 
-bool NeedsSurface(const Load& load) {
-  return std::visit([](const auto& kind) { return ActsOnFaces(kind); }, load.kind);
+LoadedRegion LoadedRegionOf(const Region& region, const Body& body) {
+  LoadedRegion loaded = LoadedRegionOf(region, body.nodes());
+  loaded.volumes = std::visit([&](const auto& shape) { return VolumesOf(region, shape); }, body.shape);
+  return loaded;
+}
+
+LoadedPart LoadedPartOf(const Load& load) {
+  return std::visit([](const auto& kind) { return PartOf(kind); }, load.kind);
+}
+
+bool DependsOnPositions(const Load& load) {
+  return std::holds_alternative<Pressure>(load.kind) || std::holds_alternative<Springs>(load.kind);
 }
 
 std::map<std::int32_t, Vec3> NodalForcesOf(const Load& load, const LoadedRegion& region) {

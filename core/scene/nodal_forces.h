@@ -8,7 +8,7 @@
 
 #include "core/base/types.h"
 #include "core/geometry/region.h"
-#include "core/scene/acting.h"
+#include "core/scene/body.h"
 
 namespace fascicle {
 
@@ -24,14 +24,23 @@ struct LoadedRegion {
   };
   std::vector<std::int32_t> nodes;
   std::vector<Face> faces;
+  // The part of the elements' rest volume that belongs to each node: the integral of its shape function [m^3]. May be
+  // negative at the corners of quadratic elements.
+  std::map<std::int32_t, double> volumes;
 };
 
-// A region of a mesh that has corner nodes only.
+// A region of a mesh that has corner nodes only, without volumes.
 //   X  rest positions of the mesh's nodes [m]
 LoadedRegion LoadedRegionOf(const Region& region, const std::vector<Vec3>& X);
+// A region of a body's mesh, with volumes.
+LoadedRegion LoadedRegionOf(const Region& region, const Body& body);
 
-// Whether this load acts on faces, so that the region must have some.
-bool NeedsSurface(const Load& load);
+// What a load acts on, so that the region must have some.
+enum class LoadedPart { kNodes, kFaces, kElements };
+LoadedPart LoadedPartOf(const Load& load);
+
+// Whether the force depends on the present positions. NodalForcesOf is then its value at rest.
+bool DependsOnPositions(const Load& load);
 
 // The force of a load on each node at scale 1 [N]; ordered by node, so that sums are reproducible.
 // To add a kind of load: a message in scene.proto, a struct in acting.h, its translation, and its two functions in

@@ -32,6 +32,7 @@ struct NodalForces {
       ViscousForce(model, state.positions, state.velocities, team, workspace, viscous);
     }
     ExternalForce(model, controls, team, external);
+    AddPositionLoads(model, controls.load_scales, state.positions, external);
     AddFloorForce(model, state.positions, external);
   }
 };

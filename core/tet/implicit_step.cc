@@ -13,6 +13,8 @@ namespace {
 constexpr int kEasyIterations = 10;
 // A run fails when it needs steps shorter than this part of its duration.
 constexpr double kShortestStep = 0x1p-12;
+// A step whose loads still depend on its positions after this many expansions is too long.
+constexpr int kMostExpansions = 30;
 
 // Velocity and inertia force at the end of a step as functions of the positions there: v = rate (x - v_centre), M a =
 // inertia M (x - a_centre).
@@ -77,6 +79,19 @@ StepProblem ProblemOf(const NewtonResult& result) {
   return StepProblem::kNoEquilibrium;
 }
 
+// Adds the iterations of a further solution, whose outcome is that of all.
+void AddTo(NewtonResult& total, const NewtonResult& result) {
+  const int iterations = total.iterations + result.iterations;
+  LinearSolves solves = total.solves;
+  solves.direct += result.solves.direct;
+  solves.iterative += result.solves.iterative;
+  solves.iterations += result.solves.iterations;
+  solves.not_converged += result.solves.not_converged;
+  total = result;
+  total.iterations = iterations;
+  total.solves = solves;
+}
+
 }  // namespace
 
 StepProposal TetSolver::ProposeImplicit(const TetState& state, double end) const {
@@ -129,13 +144,7 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
       continued[n] += free.cwiseProduct(ahead - now.positions[n]);
     }
   }
-  const NewtonResult result = [&] {
-    const StageTimer timer(profile_, "Newton");
-    NewtonOptions options;
-    options.tolerance = method_.newton_tolerance;
-    options.guess = is_static ? nullptr : &continued;
-    return newton_->Solve(potential_, target, options, next.positions, next.pressures);
-  }();
+  const NewtonResult result = SolvePositions(target, is_static ? nullptr : &continued, step.next, next);
 
   StepReport report;
   report.iterations = result.iterations;
@@ -144,6 +153,7 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
   if (report.problem == StepProblem::kNoEquilibrium) report.bad = FindElementsAt(model_, result.node);
   next.iterations = now.iterations + result.iterations;
   if (report.problem != StepProblem::kNone) return report;
+  CompleteExternalForces(step, next.positions);
 
   next.velocities.assign(model_.nodes(), Vec3::Zero());
   next.accelerations.assign(model_.nodes(), Vec3::Zero());
@@ -163,6 +173,50 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
   next.smallest_ratio = SmallestRatio(next.positions);
   next.peak_kinetic = now.peak_kinetic;
   return report;
+}
+
+// Solves for the positions and pressures at the end of the step. Loads that depend on positions are expanded about the
+// last solution until the expansion is as exact as the equilibrium: a pressure has no potential at a free rim, so that
+// Newton's line search has nothing to decrease but that of its expansion.
+NewtonResult TetSolver::SolvePositions(const NodalVector& target, const NodalVector* guess, const Controls& controls,
+                                       TetState& next) {
+  const StageTimer timer(profile_, "Newton");
+  NewtonOptions options;
+  options.tolerance = method_.newton_tolerance;
+  options.guess = guess;
+  if (model_.position_loads().empty()) {
+    return newton_->Solve(potential_, target, options, next.positions, next.pressures);
+  }
+  NewtonResult total;
+  for (int expansions = 0; expansions < kMostExpansions; ++expansions) {
+    const LoadExpansion expansion = ExpandPositionLoads(model_, controls.load_scales, next.positions);
+    NodalVector load = external_next_;
+    AddPositionLoads(model_, controls.load_scales, next.positions, load);
+    potential_.load = &load;
+    potential_.expansion = &expansion;
+    const NewtonResult result = newton_->Solve(potential_, target, options, next.positions, next.pressures);
+    potential_.load = &external_next_;
+    potential_.expansion = nullptr;
+    options.guess = nullptr;
+    AddTo(total, result);
+    if (result.end != NewtonResult::End::kConverged) return total;
+    const double error = ErrorOf(expansion, load, controls, next.positions);
+    if (error <= options.tolerance * result.force_scale) return total;
+  }
+  total.end = NewtonResult::End::kNotConverged;
+  return total;
+}
+
+// Norm of what the expansion misses in the force on free components [N]. `load` is the force at its centre.
+double TetSolver::ErrorOf(const LoadExpansion& expansion, const NodalVector& load, const Controls& controls,
+                          const NodalVector& x) const {
+  NodalVector exact = external_next_, change;
+  AddPositionLoads(model_, controls.load_scales, x, exact);
+  expansion.Multiply(x, change);
+  return std::sqrt(SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {
+    const Vec3 free = model_.mass()[n] * model_.inverse_mass()[n];
+    return free.cwiseProduct(exact[n] - load[n] + change[n]).squaredNorm();
+  }));
 }
 
 double TetSolver::SmallestRatio(const NodalVector& x) const {

@@ -15,6 +15,7 @@
 #include "core/scene/scene.h"
 #include "core/tet/element.h"
 #include "core/tet/element_blocks.h"
+#include "core/tet/position_loads.h"
 #include "core/tet/volume_patches.h"
 
 namespace fascicle {
@@ -48,7 +49,7 @@ struct TetGroup {
   LawTable laws;  // the law of an element is laws[law_of()[element]]
 };
 
-// A load as nodal forces at scale 1.
+// A load as nodal forces at scale 1; without nodes if it is one of TetModel::position_loads().
 struct NodalLoad {
   std::vector<std::int32_t> nodes;  // ascending
   std::vector<Vec3> forces;         // [N]
@@ -166,6 +167,7 @@ class TetModel {
   const std::vector<ElementNodeIndex>& node_uses() const { return node_uses_; }
 
   const std::vector<NodalLoad>& loads() const { return loads_; }
+  const PositionLoads& position_loads() const { return position_loads_; }
   const std::vector<Support>& supports() const { return supports_; }
   // Nodes that may touch floors, in ascending order; empty without floors. The contact stiffness of a node is that of
   // the layer of elements above it: M A / h, with M the longitudinal modulus of its body's material, A the node's share
@@ -199,6 +201,7 @@ class TetModel {
   std::vector<std::int32_t> node_use_begin_;
   std::vector<ElementNodeIndex> node_uses_;
   std::vector<NodalLoad> loads_;
+  PositionLoads position_loads_;
   std::vector<Support> supports_;
   std::vector<ContactNode> contact_nodes_;
   bool has_mass_damping_ = false;

@@ -54,7 +54,9 @@ class TetModelBuilder {
 
   std::vector<std::int32_t> NodesOfRegion(const Region& region, const TetBody& body) const;
   LoadedRegion LoadedRegionIn(const Region& region, const TetBody& body) const;
+  void AddVolumes(const Region& region, const TetBody& body, LoadedRegion& loaded) const;
   void AddLoads(const TetBody& body);
+  void AddPositionLoad(const Load& load, const TetBody& body);
   void AddSupports(std::int32_t body_index);
   void AddContactNodes(const TetBody& body);
 

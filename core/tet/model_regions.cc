@@ -45,17 +45,66 @@ LoadedRegion TetModelBuilder::LoadedRegionIn(const Region& region, const TetBody
       face.nodes[c] = model_.order() == ElementOrder::kLinear ? n[c] : MiddleOf(n[c], n[(c + 1) % 3]);
     }
   }
+  AddVolumes(region, body, loaded);
   return loaded;
+}
+
+// The integrals of the shape functions over the region's elements. Those of quadratic elements with straight edges are
+// -V/20 at corners and V/5 at mid-edge nodes.
+void TetModelBuilder::AddVolumes(const Region& region, const TetBody& body, LoadedRegion& loaded) const {
+  const auto first = static_cast<std::int32_t>(body.node_begin);
+  for (const std::int32_t e : region.elements) {
+    const Tetrahedron& tet = body.source->tet().mesh.tetrahedra[e];
+    const double volume = SignedVolume(body.source->tet().mesh, static_cast<std::size_t>(e));
+    const bool is_linear = model_.order() == ElementOrder::kLinear;
+    for (const std::int32_t n : tet) loaded.volumes[first + n] += is_linear ? volume / 4 : -volume / 20;
+    if (is_linear) continue;
+    for (const auto& [i, j] : kTetEdges) loaded.volumes[MiddleOf(first + tet[i], first + tet[j])] += volume / 5;
+  }
 }
 
 void TetModelBuilder::AddLoads(const TetBody& body) {
   const Body& source = *body.source;
   for (const Load& load : source.loads) {
+    if (DependsOnPositions(load)) {
+      AddPositionLoad(load, body);
+      model_.loads_.emplace_back();
+      continue;
+    }
     const auto forces = NodalForcesOf(load, LoadedRegionIn(source.regions[load.region], body));
     NodalLoad& entry = model_.loads_.emplace_back();
     for (const auto& [n, force] : forces) {
       entry.nodes.push_back(n);
       entry.forces.push_back(force);
+    }
+  }
+}
+
+void TetModelBuilder::AddPositionLoad(const Load& load, const TetBody& body) {
+  const Region& region = body.source->regions[load.region];
+  PositionLoads& loads = model_.position_loads_;
+  if (const auto* pressure = std::get_if<Pressure>(&load.kind)) {
+    PressureLoad& entry = loads.pressures.emplace_back();
+    entry.load = model_.loads_.size();
+    entry.pressure = pressure->value;
+    const auto first = static_cast<std::int32_t>(body.node_begin);
+    for (const Triangle& t : region.triangles) {
+      PressureFace& face = entry.faces.emplace_back();
+      for (int c = 0; c < 3; ++c) {
+        face.nodes[c] = first + t[c];
+        if (model_.order() == ElementOrder::kQuadratic) {
+          face.nodes[3 + c] = MiddleOf(first + t[c], first + t[(c + 1) % 3]);
+        }
+      }
+    }
+  }
+  if (const auto* springs = std::get_if<Springs>(&load.kind)) {
+    SpringLoad& entry = loads.springs.emplace_back();
+    entry.load = model_.loads_.size();
+    entry.largest_scale = *std::max_element(load.scale.values.begin(), load.scale.values.end());
+    const std::vector<std::int32_t> nodes = NodesOfRegion(region, body);
+    for (const std::int32_t n : nodes) {
+      entry.springs.push_back({n, springs->stiffness / static_cast<double>(nodes.size())});
     }
   }
 }

@@ -292,6 +292,7 @@ double NewtonSolver::RelativeForce(NewtonResult& result) const {
     largest = excess;
     result.node = n;
   }
+  result.force_scale = now_.force_scale;
   result.residual = std::max(0.0, std::sqrt(squares) - now_.rounding) / now_.force_scale;
   return result.residual;
 }

@@ -18,9 +18,10 @@ struct NewtonOptions {
 struct NewtonResult {
   enum class End { kConverged, kNotConverged, kInvalid };
   End end = End::kNotConverged;
-  int iterations = 0;    // factorizations
-  double residual = 0;   // largest |force| on an unknown component over the norm of all element forces [1]
-  std::size_t node = 0;  // the node where it occurs
+  int iterations = 0;      // factorizations
+  double residual = 0;     // largest |force| on an unknown component over the norm of all element forces [1]
+  double force_scale = 0;  // that norm [N]
+  std::size_t node = 0;    // the node where it occurs
   LinearSolves solves;
 };
 

@@ -150,6 +150,13 @@ NewtonSystem::Evaluation NewtonSystem::Evaluate(const IncrementalPotential& pote
     }
     return energy;
   });
+  if (potential.expansion != nullptr) {
+    potential.expansion->Multiply(x, expansion_force_);
+    total.energy += 0.5 * SumOverNodes(team, model_.nodes(), [&](std::size_t n) {
+                      force[n] -= expansion_force_[n];
+                      return expansion_force_[n].dot(x[n] - potential.expansion->centre[n]);
+                    });
+  }
   if (!potential.untangling) {
     AddFloorForce(model_, x, force);
     total.energy += FloorEnergy(model_, x);

@@ -81,8 +81,9 @@ class NewtonSystem {
   ForceWorkspace forces_;
   double force_floor_ = 0;  // [N]
   std::vector<double> force_rounding_;
-  double energy_rounding_ = 0;  // [J]
-  std::vector<double> acting_;  // W p for each patch [Pa]
+  double energy_rounding_ = 0;   // [J]
+  std::vector<double> acting_;   // W p for each patch [Pa]
+  NodalVector expansion_force_;  // of LoadExpansion [N]
   void Assemble(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
                 const NodalVector& force, const NodalVector& prescribed, ThreadTeam& team);
   void Project(const IncrementalPotential& potential, const NodalVector& x, double projection,

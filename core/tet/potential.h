@@ -13,14 +13,16 @@ namespace fascicle {
 // The terms are: elastic and active energy of points and patches; inertia and mass damping with a coefficient m and a
 // centre c for each node; the viscous increment W_v = dt (mu' |dE|^2 + lambda'/2 tr(dE)^2) / dt^2, where dE is the
 // change of Green strain during the step and whose derivative is the viscous stress of ViscousStress at the mean rate
-// of the step; the energy of floors W_c (FloorEnergy); dead loads f. Quasi-static steps have neither m nor W_v.
+// of the step; the energy of floors W_c (FloorEnergy); loads f, with the second-order term of those that depend on
+// positions, 1/2 (x - c) . S (x - c), see LoadExpansion. Quasi-static steps have neither m nor W_v.
 struct IncrementalPotential {
   FibreDrive drive;
-  const NodalVector* load = nullptr;      // f [N]
-  std::vector<double> inertia;            // m for each node [N/m]; empty in quasi-static steps
-  NodalVector inertia_centre;             // c [m]
-  const NodalVector* previous = nullptr;  // positions one step ago, for W_v [m]
-  double viscous_rate = 0;                // 1/dt [1/s]; 0 without W_v
+  const NodalVector* load = nullptr;         // f [N]
+  const LoadExpansion* expansion = nullptr;  // of f, which is its value at the centre; null: f is constant
+  std::vector<double> inertia;               // m for each node [N/m]; empty in quasi-static steps
+  NodalVector inertia_centre;                // c [m]
+  const NodalVector* previous = nullptr;     // positions one step ago, for W_v [m]
+  double viscous_rate = 0;                   // 1/dt [1/s]; 0 without W_v
   // Whether UntanglingLaw replaces W, U and W_v.
   bool untangling = false;
 };

@@ -141,6 +141,11 @@ void SaddleAssembly::Assemble(const IncrementalPotential& potential, const Nodal
   if (!potential.untangling) {
     ForFloorStiffness(model_, x, [&](std::size_t n, const Mat3& stiffness) { diagonal(n) += stiffness; });
   }
+  if (potential.expansion != nullptr) {
+    for (const auto& [row, column, block] : potential.expansion->stiffness) {
+      matrix_.A[matrix_.pattern.PlaceOf(row, column)] += block;
+    }
+  }
   matrix_.least_eigenvalue = potential.inertia.empty() ? 0 : 1;
   for (std::size_t n = 0; n < potential.inertia.size(); ++n) {
     const double largest = diagonal(n).cwiseAbs().rowwise().sum().maxCoeff();  // Gershgorin

@@ -57,6 +57,7 @@ TetState TetSolver::InitialState(const Controls& start) {
 // a = M^-1 (f + loads) - a_m v. With a = 0 the first step of a released body would be of first order.
 void TetSolver::SetFirstAcceleration(const Controls& start, TetState& state) {
   ExternalForce(model_, start, team_, external_next_);
+  AddPositionLoads(model_, start.load_scales, state.positions, external_next_);
   for (std::size_t n = 0; n < model_.nodes(); ++n) {
     const Vec3 damping = model_.mass_damping()[n] * state.velocities[n];
     state.accelerations[n] =

@@ -75,6 +75,10 @@ class TetSolver {
 
   // Steppings that solve for the end of the step: implicit_step.cc.
   StepReport StepImplicit(const TetState& now, const StepControls& step, TetState& next);
+  NewtonResult SolvePositions(const NodalVector& target, const NodalVector* guess, const Controls& controls,
+                              TetState& next);
+  double ErrorOf(const LoadExpansion& expansion, const NodalVector& load, const Controls& controls,
+                 const NodalVector& x) const;
   StepProposal ProposeExplicit(TetState& state, const Controls& now, double end);
   StepProposal ProposeImplicit(const TetState& state, double end) const;
   void AcceptImplicit(TetState& state, const StepReport& report, double dt);
@@ -84,7 +88,8 @@ class TetSolver {
   double SmallestRatio(const NodalVector& x) const;
   FibreDrive DriveOf(const TetState& now, const StepControls& step) const;
 
-  void UpdateExternalForces(const StepControls& step);
+  void UpdateExternalForces(const TetState& now, const StepControls& step);
+  void CompleteExternalForces(const StepControls& step, const NodalVector& positions);
   void Drift(const TetState& now, const StepControls& step, TetState& next);
   CgResult SolveDamping(const NodalVector& x, const NodalVector& internal, const NodalVector& external,
                         double half_step, TetState& next);

@@ -51,6 +51,7 @@ void TetStiffness::Apply(const TetModel& model, const NodalVector& p, ThreadTeam
   });
   AddSlots<3>(sharing, workspace.slot_sums.data(), team, Numbers(product));
   AddFloorStiffness(model, p, product);
+  AddSpringStiffness(model, p, product);
 }
 
 void TetStiffness::ApplyToPatches(const TetModel& model, const NodalVector& p, ThreadTeam& team,

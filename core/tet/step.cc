@@ -22,7 +22,7 @@ StepReport TetSolver::Attempt(const TetState& now, const Controls& controls_now,
   made.time_step = dt;
   made.dissipated = now.dissipated;
   made.iterations = now.iterations;
-  UpdateExternalForces(step);
+  UpdateExternalForces(now, step);
   const StepReport report = IsImplicit()                              ? StepImplicit(now, step, made)
                             : method_.stepping == Stepping::kExplicit ? StepExplicit(now, step, made)
                                                                       : StepMixed(now, step, made);
@@ -30,11 +30,16 @@ StepReport TetSolver::Attempt(const TetState& now, const Controls& controls_now,
   return report;
 }
 
-// Loads and gravity at both ends of the step.
-void TetSolver::UpdateExternalForces(const StepControls& step) {
+// Loads and gravity at both ends of the step. Those that depend on the positions at its end follow when these are
+// known.
+void TetSolver::UpdateExternalForces(const TetState& now, const StepControls& step) {
   const StageTimer timer(profile_, "external force");
   ExternalForce(model_, step.now, team_, external_now_);
+  AddPositionLoads(model_, step.now.load_scales, now.positions, external_now_);
   ExternalForce(model_, step.next, team_, external_next_);
+}
+void TetSolver::CompleteExternalForces(const StepControls& step, const NodalVector& positions) {
+  AddPositionLoads(model_, step.next.load_scales, positions, external_next_);
 }
 
 StepReport TetSolver::StepExplicit(const TetState& now, const StepControls& step, TetState& next) {
@@ -54,6 +59,7 @@ StepReport TetSolver::StepExplicit(const TetState& now, const StepControls& step
   }
   // x' = x + dt v_half
   Drift(now, step, next);
+  CompleteExternalForces(step, next.positions);
   // f' = f(x', v_half)
   const ForceReport forces =
       UpdateForce(model_.has_strain_damping() ? &next.velocities : nullptr, DriveOf(now, step), next);
@@ -85,6 +91,7 @@ StepReport TetSolver::StepMixed(const TetState& now, const StepControls& step, T
   const CgResult first = SolveDamping(now.positions, now.force, external_now_, dt / 2, next);
   // x' = x + dt v_half
   Drift(now, step, next);
+  CompleteExternalForces(step, next.positions);
   // f' = f(x')
   const ForceReport forces = UpdateForce(nullptr, DriveOf(now, step), next);
   MeasureMotion(now, next, report);

@@ -130,7 +130,7 @@ std::vector<Reaction> VoxelSceneBody::SumOverSupports(const VoxelField<double>& 
 
 void VoxelSceneBody::AddLoads() {
   for (const Load& load : source_->loads) {
-    const auto forces = NodalForcesOf(load, LoadedRegionOf(source_->regions[load.region], source_->nodes()));
+    const auto forces = NodalForcesOf(load, LoadedRegionOf(source_->regions[load.region], *source_));
     NodalLoad nodal;
     for (const auto& [node, force] : forces) {
       nodal.nodes.push_back(node);

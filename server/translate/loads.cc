@@ -50,6 +50,15 @@ std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_p
       case v1::Load::kStern:
         TranslateStern(load, path, translated, problems);
         break;
+      case v1::Load::kPressure:
+        translated.kind = Pressure{load.pressure().value()};
+        break;
+      case v1::Load::kBodyForce:
+        translated.kind = BodyForce{ToVec3(load.body_force().density())};
+        break;
+      case v1::Load::kSprings:
+        translated.kind = Springs{ToVec3(load.springs().stiffness())};
+        break;
       case v1::Load::KIND_NOT_SET:
         break;  // reported by the rules
     }

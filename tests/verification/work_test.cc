@@ -93,6 +93,21 @@ TEST(WorkTest, OfALoadGravityAndARotation) {
   EXPECT_GT(run.Last("energy/external_work"), 1e-5);
 }
 
+TEST(WorkTest, OfAPressureAndSprings) {
+  Body body = BoxBody(Vec3(0.02, 0.005, 0.005), {4, 1, 1}, NeoHookean(std::array{1e4, 0.3}));
+  Load springs, pressure;
+  springs.region = kX0;
+  springs.kind = Springs{Vec3(20, 20, 20)};
+  pressure.region = kZ1;
+  pressure.kind = Pressure{120};
+  pressure.scale = SmoothRamp(1);
+  body.constraints = {Fix(kX1)};
+  body.loads = {springs, pressure};
+  const RunResult run =
+      CheckBalance("block on springs under pressure", StaticScene(std::move(body), ElementOrder::kQuadratic));
+  EXPECT_NE(run.Last("energy/load_work"), 0);
+}
+
 // With inertia the balance holds to the order of the stepping, also where a support moves and damping acts on it.
 TEST(WorkTest, OfASupportInDynamics) {
   Body body = BoxBody(Vec3(0.03, 0.01, 0.01), {6, 2, 2}, NeoHookean(std::array{1e4, 0.3}));

@@ -299,7 +299,7 @@ std::string BarText(const std::string& start, const std::string& end) {
                 {"name": "z0", "plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}},
                 {"name": "x1", "plane": {"point": [40, 0, 0], "normal": [1, 0, 0]}}],
     "constraints": [)" +
-         start + R"(], "loads": [{"region": "x1", "traction": {"value": )" + end + R"(}}]}],
+         start + R"(], "loads": [{"region": "x1", "traction": {"vector": )" + end + R"(}}]}],
     "duration": 1, "output": {"frame_interval": 0.5}, "tet": {"stepping": "quasi_static", "element": "linear"}})";
 }
 

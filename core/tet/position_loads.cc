@@ -1,0 +1,132 @@
+#include "core/tet/position_loads.h"
+
+#include <Eigen/Geometry>
+
+#include "core/tet/model.h"
+
+namespace fascicle {
+namespace {
+
+// Shape functions and their derivatives at a point of a reference triangle with area 1/2, and the point's weight.
+template <int kNodes>
+struct FacePoint {
+  double weight;
+  std::array<double, kNodes> N, d1, d2;
+};
+
+// The centroid, exact for linear faces: their area vector is constant.
+std::array<FacePoint<3>, 1> LinearFacePoints() { return {{{0.5, {1. / 3, 1. / 3, 1. / 3}, {-1, 1, 0}, {-1, 0, 1}}}}; }
+
+FacePoint<6> QuadraticFacePoint(double L1, double L2, double weight) {
+  const double L0 = 1 - L1 - L2;
+  return {weight / 2,
+          {L0 * (2 * L0 - 1), L1 * (2 * L1 - 1), L2 * (2 * L2 - 1), 4 * L0 * L1, 4 * L1 * L2, 4 * L2 * L0},
+          {1 - 4 * L0, 4 * L1 - 1, 0, 4 * (L0 - L1), 4 * L2, -4 * L2},
+          {1 - 4 * L0, 0, 4 * L2 - 1, -4 * L1, 4 * L1, 4 * (L0 - L2)}};
+}
+
+// Six points, exact for polynomials of degree 4 [Dunavant 1985], which N_a (x,1 x x,2) is.
+std::array<FacePoint<6>, 6> QuadraticFacePoints() {
+  constexpr double kA = 0.44594849091596488632, kWeightA = 0.22338158967801146570;
+  constexpr double kB = 0.09157621350977074346, kWeightB = 0.10995174365532186764;
+  return {QuadraticFacePoint(kA, kA, kWeightA),         QuadraticFacePoint(1 - 2 * kA, kA, kWeightA),
+          QuadraticFacePoint(kA, 1 - 2 * kA, kWeightA), QuadraticFacePoint(kB, kB, kWeightB),
+          QuadraticFacePoint(1 - 2 * kB, kB, kWeightB), QuadraticFacePoint(kB, 1 - 2 * kB, kWeightB)};
+}
+
+// Calls visit(points of a face) for the model's elements.
+template <class Visit>
+void WithFacePoints(const TetModel& model, const Visit& visit) {
+  static const auto linear = LinearFacePoints();
+  static const auto quadratic = QuadraticFacePoints();
+  model.order() == ElementOrder::kLinear ? visit(linear) : visit(quadratic);
+}
+
+template <int kNodes>
+Vec3 TangentOf(const std::array<double, kNodes>& derivatives, const PressureFace& face, const NodalVector& x) {
+  Vec3 tangent = Vec3::Zero();
+  for (int a = 0; a < kNodes; ++a) tangent += derivatives[a] * x[face.nodes[a]];
+  return tangent;
+}
+
+template <int kNodes>
+void AddPressureForce(double pressure, const PressureFace& face, const FacePoint<kNodes>& point, const NodalVector& x,
+                      NodalVector& force) {
+  const Vec3 t1 = TangentOf<kNodes>(point.d1, face, x), t2 = TangentOf<kNodes>(point.d2, face, x);
+  const Vec3 push = -pressure * point.weight * t1.cross(t2);
+  for (int a = 0; a < kNodes; ++a) force[face.nodes[a]] += point.N[a] * push;
+}
+
+// The matrix of v -> a x v.
+Mat3 CrossMatrix(const Vec3& a) {
+  Mat3 matrix;
+  matrix << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
+  return matrix;
+}
+
+// Half of -df_a/dx_b and, at (b, a), half of its transpose: together with those of (b, a), the symmetric part.
+template <int kNodes>
+void AddPressureStiffness(double pressure, const PressureFace& face, const FacePoint<kNodes>& point,
+                          const NodalVector& x, std::vector<LoadExpansion::Entry>& entries) {
+  const Mat3 t1 = CrossMatrix(TangentOf<kNodes>(point.d1, face, x));
+  const Mat3 t2 = CrossMatrix(TangentOf<kNodes>(point.d2, face, x));
+  for (int a = 0; a < kNodes; ++a) {
+    for (int b = 0; b < kNodes; ++b) {
+      const Mat3 half = 0.5 * pressure * point.weight * point.N[a] * (point.d2[b] * t1 - point.d1[b] * t2);
+      entries.push_back({face.nodes[a], face.nodes[b], half});
+      entries.push_back({face.nodes[b], face.nodes[a], half.transpose()});
+    }
+  }
+}
+
+}  // namespace
+
+void AddPositionLoads(const TetModel& model, std::span<const double> load_scales, const NodalVector& x,
+                      NodalVector& force) {
+  WithFacePoints(model, [&](const auto& points) {
+    for (const PressureLoad& load : model.position_loads().pressures) {
+      const double pressure = load_scales[load.load] * load.pressure;
+      for (const PressureFace& face : load.faces) {
+        for (const auto& point : points) AddPressureForce(pressure, face, point, x, force);
+      }
+    }
+  });
+  for (const SpringLoad& load : model.position_loads().springs) {
+    for (const auto& [node, stiffness] : load.springs) {
+      force[node] -= load_scales[load.load] * stiffness.cwiseProduct(x[node] - model.rest_positions()[node]);
+    }
+  }
+}
+
+void LoadExpansion::Multiply(const NodalVector& x, NodalVector& product) const {
+  product.assign(x.size(), Vec3::Zero());
+  for (const auto& [row, column, block] : stiffness) product[row] += block * (x[column] - centre[column]);
+}
+
+LoadExpansion ExpandPositionLoads(const TetModel& model, std::span<const double> load_scales, const NodalVector& c) {
+  LoadExpansion expansion{c, {}};
+  WithFacePoints(model, [&](const auto& points) {
+    for (const PressureLoad& load : model.position_loads().pressures) {
+      const double pressure = load_scales[load.load] * load.pressure;
+      for (const PressureFace& face : load.faces) {
+        for (const auto& point : points) AddPressureStiffness(pressure, face, point, c, expansion.stiffness);
+      }
+    }
+  });
+  for (const SpringLoad& load : model.position_loads().springs) {
+    for (const auto& [node, stiffness] : load.springs) {
+      expansion.stiffness.push_back({node, node, Mat3((load_scales[load.load] * stiffness).asDiagonal())});
+    }
+  }
+  return expansion;
+}
+
+void AddSpringStiffness(const TetModel& model, const NodalVector& p, NodalVector& product) {
+  for (const SpringLoad& load : model.position_loads().springs) {
+    for (const auto& [node, stiffness] : load.springs) {
+      product[node] += load.largest_scale * stiffness.cwiseProduct(p[node]);
+    }
+  }
+}
+
+}  // namespace fascicle

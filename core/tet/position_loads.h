@@ -1,0 +1,70 @@
+#ifndef FASCICLE_CORE_TET_POSITION_LOADS_H_
+#define FASCICLE_CORE_TET_POSITION_LOADS_H_
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/linalg/nodal_vector.h"
+
+namespace fascicle {
+
+class TetModel;
+
+// Loads whose forces depend on the positions:
+//   pressure   f_a = -p times the integral of N_a (x,1 x x,2) over the deformed faces [Bonet & Wood 2008, 8.5]
+//   springs    f_n = -k_n (x_n - X_n)
+// Both are multiplied by the scale of their load.
+
+// A face of the surface: three corners and, for quadratic elements, the nodes between corners 0 and 1, 1 and 2, 2 and
+// 0; counter-clockwise seen from outside.
+struct PressureFace {
+  std::array<std::int32_t, 6> nodes = {};
+};
+struct PressureLoad {
+  std::size_t load = 0;  // index into TetModel::loads(), for its scale
+  double pressure = 0;   // at scale 1 [Pa]
+  std::vector<PressureFace> faces;
+};
+struct NodeSpring {
+  std::int32_t node = 0;
+  Vec3 stiffness = Vec3::Zero();  // along x, y, z, at scale 1 [N/m]
+};
+struct SpringLoad {
+  std::size_t load = 0;
+  double largest_scale = 0;  // at any time
+  std::vector<NodeSpring> springs;
+};
+struct PositionLoads {
+  std::vector<PressureLoad> pressures;
+  std::vector<SpringLoad> springs;
+
+  bool empty() const { return pressures.empty() && springs.empty(); }
+};
+
+// Adds the forces of all such loads to every node [N].
+//   load_scales  Controls::load_scales
+void AddPositionLoads(const TetModel& model, std::span<const double> load_scales, const NodalVector& x,
+                      NodalVector& force);
+
+// Their expansion to the first order about positions c: f(x) = f(c) - S (x - c), with the symmetric part S of -df/dx.
+// A pressure on a surface that is closed, or held at its rim, has a potential, so its -df/dx is symmetric.
+struct LoadExpansion {
+  struct Entry {
+    std::int32_t row = 0, column = 0;  // nodes
+    Mat3 block = Mat3::Zero();         // [N/m]
+  };
+  NodalVector centre;            // c [m]
+  std::vector<Entry> stiffness;  // S; several entries may have the same place
+  // product = S (x - c).
+  void Multiply(const NodalVector& x, NodalVector& product) const;
+};
+LoadExpansion ExpandPositionLoads(const TetModel& model, std::span<const double> load_scales, const NodalVector& c);
+
+// product += K p for the springs at their largest scale: an upper bound for the stable step.
+void AddSpringStiffness(const TetModel& model, const NodalVector& p, NodalVector& product);
+
+}  // namespace fascicle
+
+#endif  // FASCICLE_CORE_TET_POSITION_LOADS_H_
