@@ -48,6 +48,16 @@ void NumberNodes(const Tetrahedra& all, MeshBody& body) {
 
 }  // namespace
 
+bool MeshBody::IsOutward(const Triangle& triangle) const {
+  const auto key = std::lower_bound(surface_keys.begin(), surface_keys.end(), Ascending(triangle));
+  Triangle turned = surface[static_cast<std::size_t>(key - surface_keys.begin())];
+  for (int turn = 0; turn < 3; ++turn) {
+    if (turned == triangle) return true;
+    std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+  }
+  return false;
+}
+
 bool MeshBody::HasSurface(const Triangle& triangle) const {
   return std::binary_search(surface_keys.begin(), surface_keys.end(), Ascending(triangle));
 }

@@ -24,6 +24,8 @@ struct MeshBody {
   bool quadratic = false;                                // ten-node elements
 
   bool HasSurface(const Triangle& triangle) const;
+  // Whether the nodes of a triangle of the surface are counter-clockwise seen from outside.
+  bool IsOutward(const Triangle& triangle) const;
   bool HasCorner(std::int32_t node) const {
     const auto found = local.find(node);
     return found != local.end() && is_corner[static_cast<std::size_t>(found->second)];

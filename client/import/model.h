@@ -162,6 +162,7 @@ struct SurfaceLoad {
   std::string surface;
   Vec3 traction = Vec3::Zero();
   double pressure = 0;          // positive against the outward normal
+  bool follows = false;         // whether the pressure follows the deformed surface
   std::vector<double> factors;  // of each facet; 1 if empty
   std::optional<std::int64_t> controller;
   pugi::xml_node node;

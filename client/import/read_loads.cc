@@ -148,12 +148,7 @@ class LoadReader {
       const pugi::xml_node other = node.child(name);
       if (other && std::string_view(name) == "symmetric_stiffness") source_.TakeAll(other);
     }
-    if (!IsLinear(node)) {
-      source_.Remark(Notice::Kind::kChanged, child,
-                     "keeps the direction and area of the rest surface; FEBio's follows the deformed surface, unless "
-                     "<linear> is 1",
-                     "set <linear> to 1 if the pressure should not follow");
-    }
+    load.follows = !IsLinear(node);
     if (!load.surface.empty() && Finite(load)) model_.surface_loads.push_back(std::move(load));
   }
 

@@ -4,6 +4,7 @@
 //   neo-Hookean                                                neo_hookean
 //   isotropic elastic, St.Venant-Kirchhoff                     st_venant_kirchhoff
 //   Mooney-Rivlin; incomp neo-Hookean (c1 = G/2)               mooney_rivlin
+//   Ogden, Yeoh of up to three terms                           ogden, yeoh
 //   trans iso Mooney-Rivlin                                    trans_iso_mooney_rivlin
 //   uncoupled solid mixture of Mooney-Rivlin and
 //     muscle material with g1 = g2 = g3 = 0                    muscle
@@ -29,8 +30,10 @@ namespace {
 constexpr double kNoSlope = 1e-9;  // relative to c3
 
 constexpr const char* kKnown =
-    "supported are neo-Hookean, isotropic elastic, St.Venant-Kirchhoff, Mooney-Rivlin, incomp neo-Hookean, trans iso "
-    "Mooney-Rivlin, and uncoupled solid mixtures of Mooney-Rivlin with muscle material, tendon material, uncoupled "
+    "supported are neo-Hookean, isotropic elastic, St.Venant-Kirchhoff, Mooney-Rivlin, incomp neo-Hookean, Ogden, "
+    "Yeoh, "
+    "trans iso Mooney-Rivlin, and uncoupled solid mixtures of Mooney-Rivlin with muscle material, tendon material, "
+    "uncoupled "
     "fiber-exp-linear or uncoupled prescribed uniaxial active contraction";
 
 // The parameters of a material or solid, each marked when it is read.
@@ -91,6 +94,10 @@ class MaterialReader {
       Parameters parameters(node_, source_);
       const MooneyRivlinPart matrix = ReadMatrix(type, parameters);
       SetMooneyRivlin(matrix, BulkModulus(parameters));
+    } else if (type == "Ogden") {
+      ReadOgden();
+    } else if (type == "Yeoh") {
+      ReadYeoh();
     } else if (type == "trans iso Mooney-Rivlin") {
       ReadTransIso();
     } else if (type == "uncoupled solid mixture") {
@@ -157,6 +164,39 @@ class MaterialReader {
     law.set_c1(Stress(matrix.c1));
     law.set_c2(Stress(matrix.c2));
     law.set_bulk_modulus(Stress(bulk));
+  }
+
+  // Refuses terms beyond the third, unless they are 0.
+  void RefuseFurtherTerms(Parameters& parameters) {
+    for (const char* name : {"c4", "c5", "c6"}) {
+      if (parameters.GetOr(name, 0) == 0) continue;
+      source_.Fail(node_.child(name), "is a term beyond the third, of which the law has none",
+                   "fit three terms to the same data: fascicle materials curve --data --fit");
+    }
+  }
+
+  void ReadOgden() {
+    Parameters parameters(node_, source_);
+    v1::Ogden& law = *material_.law.mutable_ogden();
+    law.set_c1(Stress(parameters.Get("c1")));
+    law.set_m1(parameters.Get("m1"));
+    law.set_c2(Stress(parameters.GetOr("c2", 0)));
+    law.set_m2(parameters.GetOr("m2", 1));
+    law.set_c3(Stress(parameters.GetOr("c3", 0)));
+    law.set_m3(parameters.GetOr("m3", 1));
+    law.set_bulk_modulus(Stress(BulkModulus(parameters)));
+    for (const char* name : {"m4", "m5", "m6"}) parameters.GetOr(name, 1);
+    RefuseFurtherTerms(parameters);
+  }
+
+  void ReadYeoh() {
+    Parameters parameters(node_, source_);
+    v1::Yeoh& law = *material_.law.mutable_yeoh();
+    law.set_c1(Stress(parameters.Get("c1")));
+    law.set_c2(Stress(parameters.GetOr("c2", 0)));
+    law.set_c3(Stress(parameters.GetOr("c3", 0)));
+    law.set_bulk_modulus(Stress(BulkModulus(parameters)));
+    RefuseFurtherTerms(parameters);
   }
 
   // Fibres of `fibre`; if it has none, the law is that of the matrix.

@@ -273,14 +273,19 @@ class LoadMaker {
       taken += own.empty() ? 0 : 1;
       const double factor = load.factors.empty() ? 1 : load.factors[f];
       if (factor == 0) continue;
-      std::vector<Triangle>& group = by_factor[factor];
-      group.insert(group.end(), own.begin(), own.end());
+      for (const Triangle& triangle : own) {
+        // A pressure here pushes inwards, in FEBio against the facet's own normal.
+        const bool turns = load.follows && !draft.mesh.IsOutward(triangle);
+        by_factor[turns ? -factor : factor].push_back(triangle);
+      }
     }
     std::vector<Group> groups;
     for (auto& [factor, triangles] : by_factor) {
       if (triangles.empty()) continue;
       if (load.pressure == 0) {
-        groups.push_back({factor * load.traction, std::move(triangles)});
+        groups.push_back({factor * load.traction, 0, std::move(triangles)});
+      } else if (load.follows) {
+        groups.push_back({Vec3::Zero(), factor * load.pressure, std::move(triangles)});
       } else {
         AddDirections(factor * load.pressure, triangles, groups);
       }
@@ -291,29 +296,36 @@ class LoadMaker {
       return taken;
     }
     for (std::size_t g = 0; g < groups.size(); ++g) {
-      const std::string key = groups.size() == 1 ? load.surface : load.surface + "," + Text(groups[g].traction);
-      AddTraction(load, key, groups[g], draft);
+      const std::string key = groups.size() == 1 ? load.surface : load.surface + "," + Text(groups[g]);
+      AddGroup(load, key, groups[g], draft);
     }
     return taken;
   }
 
-  // Triangles with the same traction.
+  // Triangles with the same traction, or the same pressure that follows them.
   struct Group {
     Vec3 traction = Vec3::Zero();
+    double pressure = 0;
     std::vector<Triangle> triangles;
   };
   static constexpr std::size_t kMaxGroups = 500;
 
-  static std::string Text(const Vec3& vector) {
-    char text[96];
-    std::snprintf(text, sizeof(text), "%.17g,%.17g,%.17g", vector[0], vector[1], vector[2]);
+  static std::string Text(const Group& group) {
+    const Vec3& t = group.traction;
+    char text[128];
+    std::snprintf(text, sizeof(text), "%.17g,%.17g,%.17g", t[0], t[1], t[2]);
+    if (group.pressure != 0) std::snprintf(text, sizeof(text), "%.17g", group.pressure);
     return text;
   }
 
-  void AddTraction(const SurfaceLoad& source, const std::string& key, const Group& group, BodyDraft& draft) {
+  void AddGroup(const SurfaceLoad& source, const std::string& key, const Group& group, BodyDraft& draft) {
     v1::Load* load = NewLoad(draft, source.controller, source.node);
     if (load == nullptr) return;
     load->set_region(draft.SurfaceRegion(key, source.surface, group.triangles));
+    if (group.pressure != 0) {
+      load->mutable_pressure()->set_value(model_.units.pascal * group.pressure);
+      return;
+    }
     for (const double component : group.traction) load->mutable_traction()->add_vector(model_.units.pascal * component);
   }
 
@@ -326,7 +338,7 @@ class LoadMaker {
       const Vec3 normal = (x(1) - x(0)).cross(x(2) - x(0)).stableNormalized();
       std::array<std::int64_t, 3> key;
       for (int c = 0; c < 3; ++c) key[c] = std::llround(kSame * normal[c]);
-      const auto place = by_normal.try_emplace(key, Group{-pressure * normal, {}}).first;
+      const auto place = by_normal.try_emplace(key, Group{-pressure * normal, 0, {}}).first;
       place->second.triangles.push_back(triangle);
       if (groups.size() + by_normal.size() > kMaxGroups) break;
     }

@@ -125,6 +125,20 @@ TEST_F(ExampleTest, FirstMuscle) {
   EXPECT_NEAR(Final(summary, "muscle/volume_ratio"), 1, 0.003);
 }
 
+// The springs stretch with the mean shortening of the end, which is somewhat less than that of its middle.
+TEST_F(ExampleTest, PressedMuscle) {
+  const std::string out = folder_ / "out";
+  RunExample("pressed_muscle", {"--out", out});
+  const std::vector<double> force = SeriesOf(folder_ / "out/series.csv", "muscle/reaction/origin/z");
+  const std::vector<double> shortening = SeriesOf(folder_ / "out/series.csv", "probe/insertion/z");
+  ASSERT_EQ(force.size(), 5u);
+  for (const int frame : {1, 2, 3, 4}) {
+    EXPECT_LT(force[frame] / (2000 * shortening[frame]), 1) << frame;
+    EXPECT_GT(force[frame] / (2000 * shortening[frame]), 0.9) << frame;
+  }
+  EXPECT_LT(std::abs(force[4]), 0.95 * std::abs(force[2])) << "the cuff";
+}
+
 TEST_F(ExampleTest, VoxelCantilever) {
   const json summary = RunExample("voxel_cantilever");
   // F L^3 / (3 E I) + F L / (5/6 G A), less about 1 % for the clamped end and 16 bricks across.

@@ -427,9 +427,48 @@ TEST(FebioLoadTest, PressureActsAgainstTheFacetsNormals) {
   EXPECT_THAT(body.loads(1).traction().vector(), ElementsAre(0, 0, 0.5e6));
   EXPECT_NE(body.loads(0).region(), body.loads(1).region());
   EXPECT_EQ(NoticesOf(imported), "");
+}
+
+// Without <linear> it follows the surface, against the normals of the facets.
+TEST(FebioLoadTest, PressureFollowsTheSurface) {
+  Pieces pieces;
   pieces.loads = "<surface_load type=\"pressure\" surface=\"f\"><pressure>0.5</pressure></surface_load>";
-  EXPECT_THAT(NoticesOf(Import(pieces)),
-              HasSubstr("changed model.feb:1: Loads/surface_load `pressure`/pressure: keeps"));
+  const std::string sets = pieces.sets;
+  pieces.sets = sets + "<Surface name=\"f\"><tri3 id=\"1\">1,3,2</tri3><tri3 id=\"2\">1,4,3</tri3></Surface>";
+  ImportedScene imported = Import(pieces);
+  ASSERT_EQ(imported.scene.bodies(0).loads_size(), 1);
+  EXPECT_EQ(imported.scene.bodies(0).loads(0).pressure().value(), 0.5e6);
+  EXPECT_EQ(NoticesOf(imported), "");
+  // The second facet faces inwards.
+  pieces.sets = sets + "<Surface name=\"f\"><tri3 id=\"1\">1,3,2</tri3><tri3 id=\"2\">1,3,4</tri3></Surface>";
+  imported = Import(pieces);
+  const v1::Body& body = imported.scene.bodies(0);
+  ASSERT_EQ(body.loads_size(), 2);
+  EXPECT_EQ(body.loads(0).pressure().value() + body.loads(1).pressure().value(), 0);
+  EXPECT_NE(body.loads(0).region(), body.loads(1).region());
+}
+
+// The coefficients are FEBio's own.
+TEST(FebioMaterialTest, OgdenAndYeohOfUpToThreeTerms) {
+  Pieces pieces;
+  pieces.material =
+      "<material id=\"1\" name=\"m\" type=\"Ogden\"><c1>0.02</c1><m1>2.5</m1><c2>0.01</c2><m2>-2</m2><k>80</k>"
+      "</material>";
+  const v1::Ogden ogden = Import(pieces).scene.bodies(0).material().ogden();
+  EXPECT_NEAR(ogden.c1(), 2e4, 1e-9);
+  EXPECT_EQ(ogden.m1(), 2.5);
+  EXPECT_NEAR(ogden.c2(), 1e4, 1e-9);
+  EXPECT_EQ(ogden.m2(), -2);
+  EXPECT_EQ(ogden.c3(), 0);
+  EXPECT_NEAR(ogden.bulk_modulus(), 8e7, 1e-6);
+  pieces.material =
+      "<material id=\"1\" name=\"m\" type=\"Yeoh\"><c1>0.02</c1><c2>-0.001</c2><c3>0.003</c3><k>80</k></material>";
+  const v1::Yeoh yeoh = Import(pieces).scene.bodies(0).material().yeoh();
+  EXPECT_NEAR(yeoh.c1(), 2e4, 1e-9);
+  EXPECT_NEAR(yeoh.c2(), -1e3, 1e-9);
+  EXPECT_NEAR(yeoh.c3(), 3e3, 1e-9);
+  pieces.material = "<material id=\"1\" name=\"m\" type=\"Yeoh\"><c1>0.02</c1><c4>0.003</c4><k>80</k></material>";
+  EXPECT_THAT(Refusal(pieces), HasSubstr("is a term beyond the third"));
 }
 
 // A pressure with a number for each facet, as a map or as a formula of one.

@@ -46,7 +46,7 @@ const std::vector<Mistake>& Mistakes() {
        ""},
       {"StepIsNoNumber", "<step_size>0.1<", "<step_size>fast<", "<step_size>", "Control/step_size", "`fast`", ""},
       {"Analysis", "STATIC", "MODAL", "<analysis>", "Control/analysis", "`modal`", "static and dynamic"},
-      {"UnknownMaterial", "type=\"Mooney-Rivlin\"", "type=\"Ogden\"", "<material", "material `rubber`", "`Ogden`",
+      {"UnknownMaterial", "type=\"Mooney-Rivlin\"", "type=\"Gent\"", "<material", "material `rubber`", "`Gent`",
        "Mooney-Rivlin"},
       {"MuscleMaterial", "type=\"Mooney-Rivlin\"", "type=\"muscle material\"", "<material", "material `rubber`",
        "has no matrix", "uncoupled solid mixture"},
