@@ -20,6 +20,12 @@ void Compare(const SteppedRun& run, const std::string& what, double ours, double
   EXPECT_NEAR(ours, reference, part * std::abs(reference)) << what;
 }
 
+// Moment of the support at x = 0 about the middle of its face at rest, along y [N mm].
+double MomentOf(SteppedRun& run) {
+  const Reaction reaction = run.solver.ReactionsWithMoments(run.state).at(0);
+  return 1e3 * (reaction.moment - Vec3(0, 0.0005, 0.0005).cross(reaction.force)).y();
+}
+
 double TipOf(const SteppedRun& run) { return 1e3 * run.DisplacementAt(kCantileverTip)[2]; }
 
 TEST(FebioStaticTest, NeoHookeanCantilever) {
@@ -27,6 +33,7 @@ TEST(FebioStaticTest, NeoHookeanCantilever) {
   ASSERT_TRUE(run.To(1));
   EXPECT_EQ(run.FreeComponents(), 3000u);
   Compare(run, "a: tip [mm]", TipOf(run), -3.498, 0.005);
+  Compare(run, "a: moment [N mm], the same mesh", MomentOf(run), -9.2436603, 2e-4);
 }
 
 TEST(FebioStaticTest, StretchedCubeWithFreeSides) {
