@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -20,6 +21,7 @@
 #include "client/cli/job_source.h"
 #include "client/cli/outputs.h"
 #include "client/cli/units.h"
+#include "client/export/architecture.h"
 #include "client/export/csv.h"
 #include "client/export/read_series.h"
 #include "client/export/sample.h"
@@ -34,15 +36,20 @@ constexpr const char* kSampleExamples =
   fascicle sample 3f2a --points electrodes.csv --frames all --deformed
   fascicle sample 3f2a --region insertion --frames all --out insertion.csv    mean, extremes and integral
   fascicle sample out --region muscle/belly --json                 frames in a folder that `run --out` or `export` wrote
+  fascicle sample out --sections 0,0,1:20 --plot sections.png      areas of cross-sections along an axis
+  fascicle sample out --fibres --frames all --deformed             volume, length of fibres, pennation, PCSA
 
 Points are those of the bodies at rest; with --deformed they are points of space. Nodal fields are interpolated within
 the element that contains a point, fields of elements are that element's. Outside of all bodies cells are empty.
+Fibres are traced through the elements from points that represent equal parts of the volume. The physiological
+cross-section (PCSA) adds up each fibre's part of the volume times the cosine of its pennation over its length.
 A region is sampled over the elements inside of it, weighted by volume, or else over its faces, weighted by area.
 )";
 
 struct SampleOptions {
   std::string source;
-  std::string line, points, region;
+  std::string line, points, region, sections, line_of_action;
+  bool fibres = false;
   std::string frames = "last";
   std::vector<std::string> fields;
   std::string unit = "m";
@@ -347,9 +354,100 @@ int SampleOneRegion(const SampleOptions& options, const Context& context) {
   return kDone;
 }
 
+// An axis and a number of places: X,Y,Z:N.
+std::pair<Vec3, int> AxisAndCount(const std::string& text) {
+  constexpr double kMostSections = 10'000;
+  const std::vector<std::string> parts = SplitAt(':', text);
+  const std::optional<Vec3> axis = parts.size() == 2 ? PointIn(parts[0]) : std::nullopt;
+  const std::optional<double> count = parts.size() == 2 ? NumberIn(parts[1]) : std::nullopt;
+  if (!axis || !(axis->norm() > 0) || !count || !(*count >= 1) || !(*count <= kMostSections) ||
+      *count != std::floor(*count)) {
+    throw CommandError::Invalid("--sections: expects X,Y,Z:N, an axis and 1 to 10000 places, such as 0,0,1:20");
+  }
+  return {*axis, static_cast<int>(*count)};
+}
+
+int SampleSections(const SampleOptions& options, const Context& context) {
+  const auto [axis, count] = AxisAndCount(options.sections);
+  std::vector<CsvColumn> columns = {{"frame", {}}, {"time [s]", {}}};
+  std::vector<PlotPanel> panels;
+  ForSnapshots(options, context, [&, axis = axis, count = count](const Snapshot& snapshot) {
+    Json json = {{"frame", snapshot.frame}, {"time", snapshot.time}, {"bodies", Json::array()}};
+    for (std::size_t b = 0; b < snapshot.bodies.size(); ++b) {
+      const std::string& name = snapshot.bodies[b].shape.name;
+      const CrossSectionAreas cut = CrossSectionAreasOf(snapshot.bodies[b], axis, count, options.deformed);
+      if (panels.size() == b) {
+        panels.push_back({name, "position along the axis [m]", "cross-section [m^2]", {}});
+        columns.push_back({name + " position [m]", {}});
+        columns.push_back({name + " area [m^2]", {}});
+      }
+      panels[b].lines.push_back({TimeText(snapshot.time), cut.places, cut.areas});
+      std::vector<double>&places = columns[2 + 2 * b].values, &areas = columns[3 + 2 * b].values;
+      places.insert(places.end(), cut.places.begin(), cut.places.end());
+      areas.insert(areas.end(), cut.areas.begin(), cut.areas.end());
+      json["bodies"].push_back({{"body", name}, {"positions", cut.places}, {"areas", cut.areas}});
+    }
+    columns[0].values.insert(columns[0].values.end(), static_cast<std::size_t>(count),
+                             static_cast<double>(snapshot.frame));
+    columns[1].values.insert(columns[1].values.end(), static_cast<std::size_t>(count), snapshot.time);
+    if (context.json) PrintJson(json);
+  });
+  WriteTable(options, context, columns, panels);
+  return kDone;
+}
+
+std::optional<Vec3> LineOfAction(const SampleOptions& options) {
+  if (options.line_of_action.empty()) return std::nullopt;
+  const std::optional<Vec3> line = PointIn(options.line_of_action);
+  if (line && line->norm() > 0) return line;
+  throw CommandError::Invalid("--line-of-action: expects a direction X,Y,Z");
+}
+
+int SampleFibres(const SampleOptions& options, const Context& context) {
+  const std::optional<Vec3> line = LineOfAction(options);
+  std::vector<CsvColumn> columns = {{"frame", {}}, {"time [s]", {}}};
+  std::map<std::string, PlotPanel> panels;
+  ForSnapshots(options, context, [&](const Snapshot& snapshot) {
+    const bool is_first = columns[0].values.empty();
+    std::vector<double> row = {static_cast<double>(snapshot.frame), snapshot.time};
+    for (const BodySnapshot& body : snapshot.bodies) {
+      const std::optional<FibreArchitecture> fibres = FibreArchitectureOf(body, line, options.deformed);
+      if (!fibres) continue;
+      const std::string& name = body.shape.name;
+      const std::pair<const char*, double> values[] = {
+          {"volume [m^3]", fibres->volume},       {"fibre length [m]", fibres->length},
+          {"shortest [m]", fibres->shortest},     {"longest [m]", fibres->longest},
+          {"pennation [rad]", fibres->pennation}, {"PCSA [m^2]", fibres->cross_section}};
+      Json json = {{"frame", snapshot.frame}, {"time", snapshot.time}, {"body", name}, {"fibres", fibres->fibres}};
+      for (const auto& [heading, value] : values) {
+        if (is_first) columns.push_back({name + " " + heading, {}});
+        row.push_back(value);
+        PlotPanel& panel = panels.try_emplace(heading, PlotPanel{"", "time [s]", heading, {}}).first->second;
+        if (is_first) panel.lines.push_back({name, {}, {}});
+        auto line_of = std::find_if(panel.lines.begin(), panel.lines.end(), [&](auto& l) { return l.name == name; });
+        line_of->x.push_back(snapshot.time);
+        line_of->y.push_back(value);
+        json[std::string(heading, std::string(heading).find(" ["))] = value;
+      }
+      if (context.json) PrintJson(json);
+    }
+    if (row.size() == 2) throw CommandError::Invalid("--fibres: no body has tetrahedra with fibres");
+    for (std::size_t k = 0; k < row.size(); ++k) columns[k].values.push_back(row[k]);
+  });
+  std::vector<PlotPanel> list;
+  for (auto& [heading, panel] : panels) list.push_back(std::move(panel));
+  WriteTable(options, context, columns, list);
+  return kDone;
+}
+
 int Sample(const SampleOptions& options, const Context& context) {
-  const int ways = (options.line.empty() ? 0 : 1) + (options.points.empty() ? 0 : 1) + (options.region.empty() ? 0 : 1);
-  if (ways != 1) throw CommandError::Invalid("give one of --line, --points and --region");
+  const bool ways[] = {!options.line.empty(), !options.points.empty(), !options.region.empty(),
+                       !options.sections.empty(), options.fibres};
+  if (std::count(std::begin(ways), std::end(ways), true) != 1) {
+    throw CommandError::Invalid("give one of --line, --points, --region, --sections and --fibres");
+  }
+  if (!options.sections.empty()) return SampleSections(options, context);
+  if (options.fibres) return SampleFibres(options, context);
   return options.region.empty() ? SamplePoints(options, context) : SampleOneRegion(options, context);
 }
 
@@ -365,6 +463,12 @@ void AddSample(CLI::App& app, Context& context) {
       ->type_name("FILE.csv");
   command->add_option("--region", options->region, "Mean, extremes and integral over a region")
       ->type_name("[BODY/]NAME");
+  command->add_option("--sections", options->sections, "Areas of N cross-sections along an axis")->type_name("X,Y,Z:N");
+  command->add_flag("--fibres", options->fibres, "Volume, length of fibres, pennation and PCSA of each body");
+  command
+      ->add_option("--line-of-action", options->line_of_action,
+                   "Line of action for --fibres; the body's longest axis by default")
+      ->type_name("X,Y,Z");
   command->add_option("--frames", options->frames, "Frames: `last`, `all`, or indices separated by commas")
       ->type_name("I,J,...");
   command->add_option("--fields", options->fields, "Fields by name, with * and ?; all by default; may be repeated")

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "client/export/element_sides.h"
 #include "core/base/component_names.h"
 
 namespace fascicle::client {
@@ -123,15 +124,6 @@ double Area(std::span<const std::uint32_t> nodes, const std::vector<Vec3>& x) {
     sum += 0.5 * (x[nodes[i]] - x[nodes[0]]).cross(x[nodes[i + 1]] - x[nodes[0]]);
   }
   return sum.norm();
-}
-
-// The sides of elements, as corners in order around them.
-std::vector<std::vector<std::uint32_t>> SidesOf(const std::array<std::uint32_t, 4>& t) {
-  return {{t[0], t[2], t[1]}, {t[0], t[1], t[3]}, {t[1], t[2], t[3]}, {t[0], t[3], t[2]}};
-}
-std::vector<std::vector<std::uint32_t>> SidesOf(const std::array<std::uint32_t, 8>& b) {
-  return {{b[0], b[4], b[6], b[2]}, {b[1], b[3], b[7], b[5]}, {b[0], b[1], b[5], b[4]},
-          {b[2], b[6], b[7], b[3]}, {b[0], b[2], b[3], b[1]}, {b[4], b[5], b[7], b[6]}};
 }
 
 using Flags = std::vector<bool>;

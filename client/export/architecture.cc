@@ -1,0 +1,262 @@
+#include "client/export/architecture.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "client/export/element_sides.h"
+
+namespace fascicle::client {
+namespace {
+
+constexpr std::size_t kMostFibres = 2000;
+constexpr std::size_t kNoElement = std::numeric_limits<std::size_t>::max();
+
+using CornerNodes = std::array<std::uint32_t, 4>;
+using Polygon = std::vector<std::uint32_t>;
+
+// Sides that belong to one element only.
+template <class Elements>
+std::vector<Polygon> OuterSides(const Elements& elements) {
+  std::map<Polygon, std::pair<int, Polygon>> sides;
+  for (const auto& element : elements) {
+    for (Polygon& side : SidesOf(element)) {
+      Polygon key = side;
+      std::sort(key.begin(), key.end());
+      auto& [count, polygon] = sides[key];
+      ++count;
+      polygon = std::move(side);
+    }
+  }
+  std::vector<Polygon> outer;
+  for (auto& [key, side] : sides) {
+    if (side.first == 1) outer.push_back(std::move(side.second));
+  }
+  return outer;
+}
+
+std::vector<Polygon> SurfaceOf(const BodyShape& shape) {
+  std::vector<Polygon> surface;
+  for (const auto& t : shape.triangles) surface.push_back({t[0], t[1], t[2]});
+  for (std::vector<Polygon>& part : std::array{OuterSides(shape.tetrahedra), OuterSides(shape.bricks)}) {
+    surface.insert(surface.end(), part.begin(), part.end());
+  }
+  return surface;
+}
+
+// Adds the part of a triangle's cut with the plane normal . x = place to twice the area: its outline runs around the
+// cross-section, with the inside on its left.
+void AddCut(const std::array<Vec3, 3>& triangle, const Vec3& normal, double place, Vec3& twice_area) {
+  std::vector<Vec3> ends;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Vec3 &a = triangle[c], &b = triangle[(c + 1) % 3];
+    const double from = normal.dot(a) - place, to = normal.dot(b) - place;
+    if ((from < 0) == (to < 0)) continue;
+    ends.push_back(a + from / (from - to) * (b - a));
+  }
+  if (ends.size() != 2) return;
+  const Vec3 outward = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+  if ((ends[1] - ends[0]).dot(normal.cross(outward)) < 0) std::swap(ends[0], ends[1]);
+  twice_area += ends[0].cross(ends[1]);
+}
+
+double AreaOfCut(const std::vector<Polygon>& surface, const std::vector<Vec3>& x, const Vec3& normal, double place) {
+  Vec3 twice_area = Vec3::Zero();
+  for (const Polygon& side : surface) {
+    for (std::size_t i = 1; i + 1 < side.size(); ++i) {
+      AddCut({x[side[0]], x[side[i]], x[side[i + 1]]}, normal, place, twice_area);
+    }
+  }
+  return 0.5 * normal.dot(twice_area);
+}
+
+Mat3 EdgesOf(const CornerNodes& tet, const std::vector<Vec3>& x) {
+  Mat3 edges;
+  for (int c = 0; c < 3; ++c) edges.col(c) = x[tet[static_cast<std::size_t>(c) + 1]] - x[tet[0]];
+  return edges;
+}
+
+// Traces fibres through the tetrahedra of a body at rest.
+class FibreTracer {
+ public:
+  FibreTracer(const BodySnapshot& body, bool deformed) : shape_(body.shape) {
+    const std::size_t count = shape_.tetrahedra.size();
+    inverse_.reserve(count);
+    stretch_.reserve(count);
+    for (std::size_t t = 0; t < count; ++t) {
+      inverse_.push_back(EdgesOf(shape_.tetrahedra[t], shape_.positions).inverse());
+      const Mat3 F = EdgesOf(shape_.tetrahedra[t], body.positions) * inverse_[t];
+      stretch_.push_back(deformed ? (F * shape_.fibres[t]).norm() : 1);
+    }
+    FindNeighbours();
+  }
+
+  // The length of the fibre through the middle of a tetrahedron [m].
+  double LengthThrough(std::size_t tet) const {
+    Vec3 middle = Vec3::Zero();
+    for (const std::uint32_t node : shape_.tetrahedra[tet]) middle += shape_.positions[node] / 4;
+    return LengthFrom(tet, middle, shape_.fibres[tet]) + LengthFrom(tet, middle, -shape_.fibres[tet]);
+  }
+
+ private:
+  struct Exit {
+    double distance = 0;
+    std::size_t corner = 0;  // opposite to the side
+  };
+
+  // Neighbours opposite to each corner.
+  void FindNeighbours() {
+    neighbours_.assign(shape_.tetrahedra.size(), {kNoElement, kNoElement, kNoElement, kNoElement});
+    std::map<std::array<std::uint32_t, 3>, std::pair<std::size_t, std::size_t>> open;  // side to element and corner
+    for (std::size_t t = 0; t < shape_.tetrahedra.size(); ++t) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        std::array<std::uint32_t, 3> side;
+        for (std::size_t k = 0; k < 3; ++k) side[k] = shape_.tetrahedra[t][(c + 1 + k) % 4];
+        std::sort(side.begin(), side.end());
+        const auto [place, is_new] = open.try_emplace(side, t, c);
+        if (is_new) continue;
+        neighbours_[t][c] = place->second.first;
+        neighbours_[place->second.first][place->second.second] = t;
+        open.erase(place);
+      }
+    }
+  }
+
+  // Where a ray leaves a tetrahedron.
+  Exit ExitOf(std::size_t tet, const Vec3& point, const Vec3& direction) const {
+    const Vec3 L = inverse_[tet] * (point - shape_.positions[shape_.tetrahedra[tet][0]]);
+    const Vec3 rate = inverse_[tet] * direction;
+    const double at[4] = {1 - L.sum(), L[0], L[1], L[2]}, rates[4] = {-rate.sum(), rate[0], rate[1], rate[2]};
+    Exit exit{INFINITY, 0};
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (!(rates[c] < 0)) continue;
+      const double distance = std::max(at[c], 0.0) / -rates[c];
+      if (distance < exit.distance) exit = {distance, c};
+    }
+    return exit;
+  }
+
+  double LengthFrom(std::size_t tet, Vec3 point, Vec3 direction) const {
+    double length = 0;
+    std::size_t before = kNoElement;
+    for (std::size_t step = 0; step < shape_.tetrahedra.size() && tet != kNoElement; ++step) {
+      const Vec3& fibre = shape_.fibres[tet];
+      Vec3 along = fibre.dot(direction) < 0 ? Vec3(-fibre) : fibre;
+      Exit exit = ExitOf(tet, point, along);
+      // Where the fibres of two elements meet at their common side, the path keeps its direction.
+      if (neighbours_[tet][exit.corner] == before && before != kNoElement) {
+        along = direction;
+        exit = ExitOf(tet, point, along);
+      }
+      if (!std::isfinite(exit.distance)) break;
+      length += stretch_[tet] * exit.distance;
+      point += exit.distance * along;
+      direction = along;
+      before = tet;
+      tet = neighbours_[tet][exit.corner];
+    }
+    return length;
+  }
+
+  const BodyShape& shape_;
+  std::vector<Mat3> inverse_;
+  std::vector<double> stretch_;  // of the fibre in each tetrahedron
+  std::vector<std::array<std::size_t, 4>> neighbours_;
+};
+
+// The volume of each element [m^3]: of its straight edges at rest, times the field `volume_ratio` if the frame has it.
+// Frames hold the corners of quadratic elements only, whose bent edges change the volume.
+std::vector<double> VolumesOf(const BodySnapshot& body, bool deformed) {
+  const auto ratio = std::find_if(body.fields.begin(), body.fields.end(), [](const BodyField& field) {
+    return field.name == "volume_ratio" && !field.at_nodes;
+  });
+  const bool has_ratio = deformed && ratio != body.fields.end();
+  const std::vector<Vec3>& x = deformed && !has_ratio ? body.positions : body.shape.positions;
+  std::vector<double> volumes;
+  for (std::size_t t = 0; t < body.shape.tetrahedra.size(); ++t) {
+    const double volume = EdgesOf(body.shape.tetrahedra[t], x).determinant() / 6;
+    volumes.push_back(has_ratio ? volume * ratio->values[t] : volume);
+  }
+  return volumes;
+}
+
+// The longest principal axis of the nodes.
+Vec3 LongestAxis(const std::vector<Vec3>& x) {
+  Vec3 centre = Vec3::Zero();
+  for (const Vec3& point : x) centre += point / static_cast<double>(x.size());
+  Mat3 covariance = Mat3::Zero();
+  for (const Vec3& point : x) covariance += (point - centre) * (point - centre).transpose();
+  return Eigen::SelfAdjointEigenSolver<Mat3>(covariance).eigenvectors().col(2);
+}
+
+// Tetrahedra in the middle of at most kMostFibres equal parts of the volume.
+std::vector<std::size_t> Representatives(const std::vector<double>& volumes) {
+  double whole = 0, sum = 0;
+  for (const double volume : volumes) whole += volume;
+  const std::size_t count = std::min(kMostFibres, volumes.size());
+  std::vector<std::size_t> chosen;
+  for (std::size_t t = 0; t < volumes.size(); ++t) {
+    sum += volumes[t];
+    while (chosen.size() < count && sum >= whole * (static_cast<double>(chosen.size()) + 0.5) / count) {
+      chosen.push_back(t);
+    }
+  }
+  return chosen;
+}
+
+}  // namespace
+
+CrossSectionAreas CrossSectionAreasOf(const BodySnapshot& body, const Vec3& axis, int count, bool deformed) {
+  const std::vector<Vec3>& x = deformed ? body.positions : body.shape.positions;
+  const std::vector<Polygon> surface = SurfaceOf(body.shape);
+  const Vec3 normal = axis.normalized();
+  double low = INFINITY, high = -INFINITY;
+  for (const Vec3& point : x) {
+    low = std::min(low, normal.dot(point));
+    high = std::max(high, normal.dot(point));
+  }
+  CrossSectionAreas result;
+  for (int i = 0; i < count; ++i) {
+    result.places.push_back(low + (i + 0.5) / count * (high - low));
+    result.areas.push_back(AreaOfCut(surface, x, normal, result.places.back()));
+  }
+  return result;
+}
+
+std::optional<FibreArchitecture> FibreArchitectureOf(const BodySnapshot& body,
+                                                     const std::optional<Vec3>& line_of_action, bool deformed) {
+  const BodyShape& shape = body.shape;
+  if (shape.fibres.empty() || shape.tetrahedra.empty()) return std::nullopt;
+  const std::vector<Vec3>& x = deformed ? body.positions : shape.positions;
+  const Vec3 line = line_of_action ? line_of_action->normalized() : LongestAxis(x);
+  FibreArchitecture result;
+  for (const double volume : VolumesOf(body, deformed)) result.volume += volume;
+  const FibreTracer tracer(body, deformed);
+  result.shortest = INFINITY;
+  double cosine_over_length = 0;
+  const std::vector<std::size_t> chosen = Representatives(VolumesOf(body, false));
+  for (const std::size_t t : chosen) {
+    const Mat3 F = EdgesOf(shape.tetrahedra[t], x) * EdgesOf(shape.tetrahedra[t], shape.positions).inverse();
+    const double cosine = std::min(1.0, std::abs(line.dot((F * shape.fibres[t]).normalized())));
+    const double length = tracer.LengthThrough(t);
+    result.length += length;
+    result.shortest = std::min(result.shortest, length);
+    result.longest = std::max(result.longest, length);
+    result.pennation += std::acos(cosine);
+    cosine_over_length += cosine / length;
+  }
+  result.fibres = chosen.size();
+  const auto count = static_cast<double>(chosen.size());
+  result.length /= count;
+  result.pennation /= count;
+  result.cross_section = result.volume * cosine_over_length / count;
+  return result;
+}
+
+}  // namespace fascicle::client
