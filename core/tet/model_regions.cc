@@ -80,31 +80,37 @@ void TetModelBuilder::AddLoads(const TetBody& body) {
   }
 }
 
+// The faces of a region with all of their nodes.
+std::vector<PressureFace> TetModelBuilder::FacesOf(const Region& region, const TetBody& body) const {
+  const auto first = static_cast<std::int32_t>(body.node_begin);
+  std::vector<PressureFace> faces;
+  for (const Triangle& t : region.triangles) {
+    PressureFace& face = faces.emplace_back();
+    for (int c = 0; c < 3; ++c) {
+      face.nodes[c] = first + t[c];
+      if (model_.order() == ElementOrder::kQuadratic) {
+        face.nodes[3 + c] = MiddleOf(first + t[c], first + t[(c + 1) % 3]);
+      }
+    }
+  }
+  return faces;
+}
+
 void TetModelBuilder::AddPositionLoad(const Load& load, const TetBody& body) {
   const Region& region = body.source->regions[load.region];
   PositionLoads& loads = model_.position_loads_;
   if (const auto* pressure = std::get_if<Pressure>(&load.kind)) {
-    PressureLoad& entry = loads.pressures.emplace_back();
-    entry.load = model_.loads_.size();
-    entry.pressure = pressure->value;
-    const auto first = static_cast<std::int32_t>(body.node_begin);
-    for (const Triangle& t : region.triangles) {
-      PressureFace& face = entry.faces.emplace_back();
-      for (int c = 0; c < 3; ++c) {
-        face.nodes[c] = first + t[c];
-        if (model_.order() == ElementOrder::kQuadratic) {
-          face.nodes[3 + c] = MiddleOf(first + t[c], first + t[(c + 1) % 3]);
-        }
-      }
-    }
+    loads.pressures.push_back({model_.loads_.size(), pressure->value, FacesOf(region, body)});
   }
   if (const auto* springs = std::get_if<Springs>(&load.kind)) {
     SpringLoad& entry = loads.springs.emplace_back();
     entry.load = model_.loads_.size();
     entry.largest_scale = *std::max_element(load.scale.values.begin(), load.scale.values.end());
+    entry.entries = SpringsOnFaces(model_.order(), FacesOf(region, body), model_.rest_positions_, springs->stiffness);
+    if (!entry.entries.empty()) return;
     const std::vector<std::int32_t> nodes = NodesOfRegion(region, body);
     for (const std::int32_t n : nodes) {
-      entry.springs.push_back({n, springs->stiffness / static_cast<double>(nodes.size())});
+      entry.entries.push_back({n, n, springs->stiffness / static_cast<double>(nodes.size())});
     }
   }
 }

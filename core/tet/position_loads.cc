@@ -34,12 +34,12 @@ std::array<FacePoint<6>, 6> QuadraticFacePoints() {
           QuadraticFacePoint(1 - 2 * kB, kB, kWeightB), QuadraticFacePoint(kB, 1 - 2 * kB, kWeightB)};
 }
 
-// Calls visit(points of a face) for the model's elements.
+// Calls visit(points of a face) for faces of the given order.
 template <class Visit>
-void WithFacePoints(const TetModel& model, const Visit& visit) {
+void WithFacePoints(ElementOrder order, const Visit& visit) {
   static const auto linear = LinearFacePoints();
   static const auto quadratic = QuadraticFacePoints();
-  model.order() == ElementOrder::kLinear ? visit(linear) : visit(quadratic);
+  order == ElementOrder::kLinear ? visit(linear) : visit(quadratic);
 }
 
 template <int kNodes>
@@ -79,11 +79,40 @@ void AddPressureStiffness(double pressure, const PressureFace& face, const FaceP
   }
 }
 
+// The integral of N_a N_b over a linear face is not that of its one point: A/12, and A/6 for a = b.
+double Shared(const FacePoint<3>&, int a, int b) { return (a == b ? 2 : 1) / 24.0; }
+double Shared(const FacePoint<6>& point, int a, int b) { return point.weight * point.N[a] * point.N[b]; }
+
+template <int kNodes>
+void AddSprings(const PressureFace& face, const FacePoint<kNodes>& point, const NodalVector& X, const Vec3& stiffness,
+                double& area, std::vector<SpringEntry>& entries) {
+  const double twice_area = TangentOf<kNodes>(point.d1, face, X).cross(TangentOf<kNodes>(point.d2, face, X)).norm();
+  area += point.weight * twice_area;
+  for (int a = 0; a < kNodes; ++a) {
+    for (int b = 0; b < kNodes; ++b) {
+      entries.push_back({face.nodes[a], face.nodes[b], Shared(point, a, b) * twice_area * stiffness});
+    }
+  }
+}
+
 }  // namespace
+
+std::vector<SpringEntry> SpringsOnFaces(ElementOrder order, std::span<const PressureFace> faces, const NodalVector& X,
+                                        const Vec3& stiffness) {
+  std::vector<SpringEntry> entries;
+  double area = 0;
+  WithFacePoints(order, [&](const auto& points) {
+    for (const PressureFace& face : faces) {
+      for (const auto& point : points) AddSprings(face, point, X, stiffness, area, entries);
+    }
+  });
+  for (SpringEntry& entry : entries) entry.stiffness /= area;
+  return entries;
+}
 
 void AddPositionLoads(const TetModel& model, std::span<const double> load_scales, const NodalVector& x,
                       NodalVector& force) {
-  WithFacePoints(model, [&](const auto& points) {
+  WithFacePoints(model.order(), [&](const auto& points) {
     for (const PressureLoad& load : model.position_loads().pressures) {
       const double pressure = load_scales[load.load] * load.pressure;
       for (const PressureFace& face : load.faces) {
@@ -92,8 +121,8 @@ void AddPositionLoads(const TetModel& model, std::span<const double> load_scales
     }
   });
   for (const SpringLoad& load : model.position_loads().springs) {
-    for (const auto& [node, stiffness] : load.springs) {
-      force[node] -= load_scales[load.load] * stiffness.cwiseProduct(x[node] - model.rest_positions()[node]);
+    for (const auto& [row, column, stiffness] : load.entries) {
+      force[row] -= load_scales[load.load] * stiffness.cwiseProduct(x[column] - model.rest_positions()[column]);
     }
   }
 }
@@ -105,7 +134,7 @@ void LoadExpansion::Multiply(const NodalVector& x, NodalVector& product) const {
 
 LoadExpansion ExpandPositionLoads(const TetModel& model, std::span<const double> load_scales, const NodalVector& c) {
   LoadExpansion expansion{c, {}};
-  WithFacePoints(model, [&](const auto& points) {
+  WithFacePoints(model.order(), [&](const auto& points) {
     for (const PressureLoad& load : model.position_loads().pressures) {
       const double pressure = load_scales[load.load] * load.pressure;
       for (const PressureFace& face : load.faces) {
@@ -114,8 +143,8 @@ LoadExpansion ExpandPositionLoads(const TetModel& model, std::span<const double>
     }
   });
   for (const SpringLoad& load : model.position_loads().springs) {
-    for (const auto& [node, stiffness] : load.springs) {
-      expansion.stiffness.push_back({node, node, Mat3((load_scales[load.load] * stiffness).asDiagonal())});
+    for (const auto& [row, column, stiffness] : load.entries) {
+      expansion.stiffness.push_back({row, column, Mat3((load_scales[load.load] * stiffness).asDiagonal())});
     }
   }
   return expansion;
@@ -123,8 +152,8 @@ LoadExpansion ExpandPositionLoads(const TetModel& model, std::span<const double>
 
 void AddSpringStiffness(const TetModel& model, const NodalVector& p, NodalVector& product) {
   for (const SpringLoad& load : model.position_loads().springs) {
-    for (const auto& [node, stiffness] : load.springs) {
-      product[node] += load.largest_scale * stiffness.cwiseProduct(p[node]);
+    for (const auto& [row, column, stiffness] : load.entries) {
+      product[row] += load.largest_scale * stiffness.cwiseProduct(p[column]);
     }
   }
 }

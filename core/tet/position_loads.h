@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/linalg/nodal_vector.h"
+#include "core/scene/method.h"
 
 namespace fascicle {
 
@@ -14,7 +15,7 @@ class TetModel;
 
 // Loads whose forces depend on the positions:
 //   pressure   f_a = -p times the integral of N_a (x,1 x x,2) over the deformed faces [Bonet & Wood 2008, 8.5]
-//   springs    f_n = -k_n (x_n - X_n)
+//   springs    f_a = -sum over b of k_ab (x_b - X_b)
 // Both are multiplied by the scale of their load.
 
 // A face of the surface: three corners and, for quadratic elements, the nodes between corners 0 and 1, 1 and 2, 2 and
@@ -27,15 +28,22 @@ struct PressureLoad {
   double pressure = 0;   // at scale 1 [Pa]
   std::vector<PressureFace> faces;
 };
-struct NodeSpring {
-  std::int32_t node = 0;
-  Vec3 stiffness = Vec3::Zero();  // along x, y, z, at scale 1 [N/m]
+// A component k_ab of the stiffness of springs.
+struct SpringEntry {
+  std::int32_t row = 0, column = 0;  // nodes a and b
+  Vec3 stiffness = Vec3::Zero();     // along x, y, z, at scale 1 [N/m]
 };
 struct SpringLoad {
   std::size_t load = 0;
-  double largest_scale = 0;  // at any time
-  std::vector<NodeSpring> springs;
+  double largest_scale = 0;          // at any time
+  std::vector<SpringEntry> entries;  // several may have the same place
 };
+// The entries of springs in equal parts of the area at rest: k_ab = k/A times the integral of N_a N_b. In equal parts
+// on nodes, they would pull the corners out of the plane, since corners of quadratic faces have no part of a constant
+// traction.
+//   X  rest positions [m];  stiffness  k along x, y, z [N/m]
+std::vector<SpringEntry> SpringsOnFaces(ElementOrder order, std::span<const PressureFace> faces, const NodalVector& X,
+                                        const Vec3& stiffness);
 struct PositionLoads {
   std::vector<PressureLoad> pressures;
   std::vector<SpringLoad> springs;

@@ -135,7 +135,8 @@ TEST(BodyForceTest, StretchesABarAsTheClosedFormSays) {
   }
 }
 
-// A block on springs that nothing else holds: the mean displacement of the nodes with springs is F/k on every axis.
+// A block on springs that nothing else holds, pulled by a traction on the same face: it moves by F/k on every axis, as
+// a whole.
 TEST(SpringsTest, HoldABlock) {
   for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
     Body body = BoxBody(Vec3(0.01, 0.01, 0.02), {2, 2, 4}, NeoHookean(std::array{1e6, 0.3}));
@@ -144,7 +145,7 @@ TEST(SpringsTest, HoldABlock) {
     springs.kind = Springs{Vec3(50, 60, 200)};
     Load pull;
     pull.region = kZ0;
-    pull.kind = NodalForce{Vec3(0.01, -0.02, 0.04)};
+    pull.kind = Traction{Vec3(0.01, -0.02, 0.04) / 1e-4};
     pull.scale = Ramp(1);
     body.loads = {springs, pull};
     Scene scene = StaticScene(std::move(body), element);
@@ -153,11 +154,28 @@ TEST(SpringsTest, HoldABlock) {
     EXPECT_TRUE(problems.empty()) << problems.ToString();
     SteppedRun run(std::move(scene));
     ASSERT_TRUE(run.To(1));
-    Vec3 mean = Vec3::Zero();
-    const auto& held = run.model.position_loads().springs[0].springs;
-    for (const NodeSpring& spring : held) mean += run.Displacement(static_cast<std::size_t>(spring.node));
-    mean /= static_cast<double>(held.size());
-    EXPECT_LT((mean - Vec3(0.01 / 50, -0.02 / 60, 0.04 / 200)).norm(), 1e-10);
+    for (std::size_t n = 0; n < run.model.nodes(); ++n) {
+      EXPECT_LT((run.Displacement(n) - Vec3(0.01 / 50, -0.02 / 60, 0.04 / 200)).norm(), 1e-9);
+    }
+  }
+}
+
+// On a region without faces, here the nodes of an edge, they are in equal parts on the nodes.
+TEST(SpringsTest, HoldNodes) {
+  Body body = BoxBody(Vec3(0.01, 0.01, 0.02), {2, 2, 4}, NeoHookean(std::array{1e6, 0.3}));
+  body.constraints = {Fix(kZ0)};
+  body.regions.push_back(SelectRegion(body.tet().mesh, BoundaryTriangles(body.tet().mesh), "edge",
+                                      BoxSelector{Vec3(0.0099, -1, 0.0199), Vec3(1, 1, 1)}));
+  Load springs;
+  springs.region = 6;
+  springs.kind = Springs{Vec3(300, 0, 0)};
+  body.loads = {springs};
+  const Scene scene = StaticScene(std::move(body), ElementOrder::kQuadratic);
+  const TetModel model(scene);
+  ASSERT_EQ(model.position_loads().springs[0].entries.size(), 5u);
+  for (const SpringEntry& entry : model.position_loads().springs[0].entries) {
+    EXPECT_EQ(entry.row, entry.column);
+    EXPECT_EQ(entry.stiffness, Vec3(60, 0, 0));
   }
 }
 
