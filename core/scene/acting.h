@@ -69,7 +69,8 @@ inline constexpr auto kFieldNames<BodyForce> = FieldNames("density");
 
 // Springs that pull a region to its rest position.
 struct Springs {
-  Vec3 stiffness = Vec3::Zero();  // along x, y, z [N/m], in equal parts of the region's area, or on its nodes if it has no faces
+  Vec3 stiffness =
+      Vec3::Zero();  // along x, y, z [N/m], in equal parts of the region's area, or on its nodes if it has no faces
 };
 template <>
 inline constexpr auto kFieldNames<Springs> = FieldNames("stiffness");
