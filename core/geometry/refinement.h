@@ -17,10 +17,10 @@ namespace fascicle {
 inline constexpr std::size_t kChildren = 8;
 
 struct RefinedTetrahedra {
-  // The nodes of the coarse mesh in their order, then a node in the middle of every edge. The parts of tetrahedron t
+  // The nodes of the coarse mesh in their order, then a mid-edge node for every edge. The parts of tetrahedron t
   // are tetrahedra 8 t to 8 t + 7. Tags are those of the parents; a node between two tagged nodes has their tag.
   TetMesh mesh;
-  // The ends of the edge in whose middle each new node is.
+  // The ends of the edge of each mid-edge node.
   std::vector<std::array<std::int32_t, 2>> ends;
 };
 

@@ -135,7 +135,7 @@ TEST(BodyForceTest, StretchesABarAsTheClosedFormSays) {
   }
 }
 
-// A block on springs that nothing else holds, pulled by a traction on the same face: it moves by F/k on every axis, as
+// A block on springs without supports, pulled by a traction on the same face: it moves by F/k on every axis, as
 // a whole.
 TEST(SpringsTest, HoldABlock) {
   for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
