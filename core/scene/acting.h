@@ -75,6 +75,18 @@ struct Springs {
 template <>
 inline constexpr auto kFieldNames<Springs> = FieldNames("stiffness");
 
+// A spring along the line between the middles of two regions: the means of their positions over their area, or over
+// their nodes if they have no faces.
+struct LineSpring {
+  std::int32_t body = 0, region = 0;  // the other end: indices into Scene::bodies and Body::regions
+  double stiffness = 0;               // [N/m]
+  std::optional<double> rest_length;  // [m]; the distance at rest when absent
+  bool tension_only = false;          // whether it goes slack when it is shorter, as a ligament does
+};
+template <>
+inline constexpr auto kFieldNames<LineSpring> = FieldNames("body", "region", "stiffness", "rest_length",
+                                                           "tension_only");
+
 template <>
 inline constexpr auto kFieldNames<SternMuscle> = FieldNames("origin_distance", "insertion_distance", "peak_force",
                                                             "optimal_angle", "contractile_fraction", "hill_curvature",
@@ -92,7 +104,7 @@ inline constexpr auto kFieldNames<SternPull> = FieldNames("", "");
 
 struct Load {
   std::int32_t region = 0;  // index into Body::regions
-  std::variant<Traction, NodalForce, Pressure, BodyForce, Springs> kind;
+  std::variant<Traction, NodalForce, Pressure, BodyForce, Springs, LineSpring> kind;
   Curve scale = Curve::Constant(1);
   std::optional<SternPull> stern;  // replaces the scale of a unit force; a series in the output
 };

@@ -12,6 +12,7 @@ LoadedPart PartOf(const NodalForce&) { return LoadedPart::kNodes; }
 LoadedPart PartOf(const Pressure&) { return LoadedPart::kFaces; }
 LoadedPart PartOf(const BodyForce&) { return LoadedPart::kElements; }
 LoadedPart PartOf(const Springs&) { return LoadedPart::kNodes; }
+LoadedPart PartOf(const LineSpring&) { return LoadedPart::kNodes; }
 
 Forces ForcesOf(const Traction& traction, const LoadedRegion& region) {
   Forces forces;
@@ -48,6 +49,7 @@ Forces ForcesOf(const BodyForce& force, const LoadedRegion& region) {
 }
 
 Forces ForcesOf(const Springs&, const LoadedRegion&) { return {}; }
+Forces ForcesOf(const LineSpring&, const LoadedRegion&) { return {}; }
 
 using Volumes = std::map<std::int32_t, double>;
 
@@ -94,7 +96,8 @@ LoadedPart LoadedPartOf(const Load& load) {
 }
 
 bool DependsOnPositions(const Load& load) {
-  return std::holds_alternative<Pressure>(load.kind) || std::holds_alternative<Springs>(load.kind);
+  return std::holds_alternative<Pressure>(load.kind) || std::holds_alternative<Springs>(load.kind) ||
+         std::holds_alternative<LineSpring>(load.kind);
 }
 
 std::map<std::int32_t, Vec3> NodalForcesOf(const Load& load, const LoadedRegion& region) {

@@ -39,7 +39,8 @@ LoadedRegion LoadedRegionOf(const Region& region, const Body& body);
 enum class LoadedPart { kNodes, kFaces, kElements };
 LoadedPart LoadedPartOf(const Load& load);
 
-// Whether the force depends on the present positions. NodalForcesOf is then its value at rest.
+// Whether the force depends on the present positions. NodalForcesOf is then the value at rest of a pressure, and
+// nothing for springs.
 bool DependsOnPositions(const Load& load);
 
 // The force of a load on each node at scale 1 [N]; ordered by node, so that sums are reproducible.

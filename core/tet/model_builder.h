@@ -57,6 +57,7 @@ class TetModelBuilder {
   void AddVolumes(const Region& region, const TetBody& body, LoadedRegion& loaded) const;
   void AddLoads(const TetBody& body);
   std::vector<PressureFace> FacesOf(const Region& region, const TetBody& body) const;
+  MeanPosition MeanOf(const Region& region, const TetBody& body) const;
   void AddPositionLoad(const Load& load, const TetBody& body);
   void AddSupports(std::int32_t body_index);
   void AddContactNodes(const TetBody& body);

@@ -96,11 +96,43 @@ std::vector<PressureFace> TetModelBuilder::FacesOf(const Region& region, const T
   return faces;
 }
 
+// The mean position of a region over its area, or over its nodes if it has no faces.
+MeanPosition TetModelBuilder::MeanOf(const Region& region, const TetBody& body) const {
+  const LoadedRegion loaded = LoadedRegionIn(region, body);
+  std::map<std::int32_t, double> weights;
+  double sum = 0;
+  for (const LoadedRegion::Face& face : loaded.faces) {
+    for (int c = 0; c < face.count; ++c) weights[face.nodes[c]] += face.area.norm() / face.count;
+    sum += face.area.norm();
+  }
+  if (weights.empty()) {
+    for (const std::int32_t n : loaded.nodes) weights[n] = 1;
+    sum = static_cast<double>(loaded.nodes.size());
+  }
+  MeanPosition mean;
+  for (const auto& [node, weight] : weights) {
+    mean.nodes.push_back(node);
+    mean.weights.push_back(weight / sum);
+  }
+  return mean;
+}
+
 void TetModelBuilder::AddPositionLoad(const Load& load, const TetBody& body) {
   const Region& region = body.source->regions[load.region];
   PositionLoads& loads = model_.position_loads_;
   if (const auto* pressure = std::get_if<Pressure>(&load.kind)) {
     loads.pressures.push_back({model_.loads_.size(), pressure->value, FacesOf(region, body)});
+  }
+  if (const auto* spring = std::get_if<LineSpring>(&load.kind)) {
+    const TetBody& other = model_.bodies_[spring->body];
+    LineSpringLoad& entry = loads.line_springs.emplace_back();
+    entry.load = model_.loads_.size();
+    entry.ends = {MeanOf(region, body), MeanOf(other.source->regions[spring->region], other)};
+    entry.stiffness = spring->stiffness;
+    entry.tension_only = spring->tension_only;
+    entry.largest_scale = *std::max_element(load.scale.values.begin(), load.scale.values.end());
+    entry.rest_length =
+        spring->rest_length.value_or(DistanceBetween(entry.ends[0], entry.ends[1], model_.rest_positions_));
   }
   if (const auto* springs = std::get_if<Springs>(&load.kind)) {
     SpringLoad& entry = loads.springs.emplace_back();

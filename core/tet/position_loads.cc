@@ -95,7 +95,57 @@ void AddSprings(const PressureFace& face, const FacePoint<kNodes>& point, const 
   }
 }
 
+Vec3 PositionOf(const MeanPosition& mean, const NodalVector& x) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < mean.nodes.size(); ++i) sum += mean.weights[i] * x[mean.nodes[i]];
+  return sum;
+}
+
+// A line spring at positions x.
+struct Stretched {
+  Stretched(const LineSpringLoad& load, double scale, const NodalVector& x) {
+    const Vec3 line = PositionOf(load.ends[1], x) - PositionOf(load.ends[0], x);
+    length = line.norm();
+    direction = line / length;
+    const bool is_slack = load.tension_only && length < load.rest_length;
+    slope = is_slack ? 0 : scale * load.stiffness;
+    tension = slope * (length - load.rest_length);
+  }
+  // The derivative of the tension vector with respect to the line.
+  Mat3 Stiffness() const {
+    const Mat3 along = direction * direction.transpose();
+    return slope * along + tension / length * (Mat3::Identity() - along);
+  }
+
+  Vec3 direction;  // from the first end to the second
+  double length = 0, tension = 0, slope = 0;
+};
+
+void AddLineSpringForce(const LineSpringLoad& load, double scale, const NodalVector& x, NodalVector& force) {
+  const Stretched spring(load, scale, x);
+  for (const int end : {0, 1}) {
+    const Vec3 pull = (end == 0 ? spring.tension : -spring.tension) * spring.direction;
+    for (std::size_t i = 0; i < load.ends[end].nodes.size(); ++i) {
+      force[load.ends[end].nodes[i]] += load.ends[end].weights[i] * pull;
+    }
+  }
+}
+
+// Calls visit(node, signed weight) for the nodes of both ends.
+template <class Visit>
+void ForEnds(const LineSpringLoad& load, const Visit& visit) {
+  for (const int end : {0, 1}) {
+    for (std::size_t i = 0; i < load.ends[end].nodes.size(); ++i) {
+      visit(load.ends[end].nodes[i], end == 0 ? -load.ends[end].weights[i] : load.ends[end].weights[i]);
+    }
+  }
+}
+
 }  // namespace
+
+double DistanceBetween(const MeanPosition& a, const MeanPosition& b, const NodalVector& x) {
+  return (PositionOf(b, x) - PositionOf(a, x)).norm();
+}
 
 std::vector<SpringEntry> SpringsOnFaces(ElementOrder order, std::span<const PressureFace> faces, const NodalVector& X,
                                         const Vec3& stiffness) {
@@ -125,6 +175,9 @@ void AddPositionLoads(const TetModel& model, std::span<const double> load_scales
       force[row] -= load_scales[load.load] * stiffness.cwiseProduct(x[column] - model.rest_positions()[column]);
     }
   }
+  for (const LineSpringLoad& load : model.position_loads().line_springs) {
+    AddLineSpringForce(load, load_scales[load.load], x, force);
+  }
 }
 
 void LoadExpansion::Multiply(const NodalVector& x, NodalVector& product) const {
@@ -147,6 +200,14 @@ LoadExpansion ExpandPositionLoads(const TetModel& model, std::span<const double>
       expansion.stiffness.push_back({row, column, Mat3((load_scales[load.load] * stiffness).asDiagonal())});
     }
   }
+  for (const LineSpringLoad& load : model.position_loads().line_springs) {
+    const Mat3 stiffness = Stretched(load, load_scales[load.load], c).Stiffness();
+    ForEnds(load, [&](std::int32_t row, double a) {
+      ForEnds(load, [&](std::int32_t column, double b) {
+        expansion.stiffness.push_back({row, column, a * b * stiffness});
+      });
+    });
+  }
   return expansion;
 }
 
@@ -156,6 +217,16 @@ void AddSpringStiffness(const TetModel& model, const NodalVector& p, NodalVector
       product[row] += load.largest_scale * stiffness.cwiseProduct(p[column]);
     }
   }
+  for (const LineSpringLoad& load : model.position_loads().line_springs) {
+    const Vec3 pull = load.largest_scale * load.stiffness * (PositionOf(load.ends[1], p) - PositionOf(load.ends[0], p));
+    ForEnds(load, [&](std::int32_t node, double weight) { product[node] += weight * pull; });
+  }
+}
+
+std::vector<std::int32_t> NodesOf(const LineSpringLoad& load) {
+  std::vector<std::int32_t> nodes;
+  ForEnds(load, [&](std::int32_t node, double) { nodes.push_back(node); });
+  return nodes;
 }
 
 }  // namespace fascicle

@@ -16,7 +16,8 @@ class TetModel;
 // Loads whose forces depend on the positions:
 //   pressure   f_a = -p times the integral of N_a (x,1 x x,2) over the deformed faces [Bonet & Wood 2008, 8.5]
 //   springs    f_a = -sum over b of k_ab (x_b - X_b)
-// Both are multiplied by the scale of their load.
+//   line       f_a = +- w_a k (L - L_0) e, between two means of positions sum w_a x_a at a distance L along e
+// All are multiplied by the scale of their load.
 
 // A face of the surface: three corners and, for quadratic elements, the nodes between corners 0 and 1, 1 and 2, 2 and
 // 0; counter-clockwise seen from outside.
@@ -44,11 +45,26 @@ struct SpringLoad {
 //   X  rest positions [m];  stiffness  k along x, y, z [N/m]
 std::vector<SpringEntry> SpringsOnFaces(ElementOrder order, std::span<const PressureFace> faces, const NodalVector& X,
                                         const Vec3& stiffness);
+// A mean of positions: the sum of weights times positions. Weights add up to 1.
+struct MeanPosition {
+  std::vector<std::int32_t> nodes;
+  std::vector<double> weights;  // positive
+};
+double DistanceBetween(const MeanPosition& a, const MeanPosition& b, const NodalVector& x);
+
+struct LineSpringLoad {
+  std::size_t load = 0;
+  std::array<MeanPosition, 2> ends;
+  double stiffness = 0, rest_length = 0;  // [N/m], [m]
+  bool tension_only = false;
+  double largest_scale = 0;
+};
 struct PositionLoads {
   std::vector<PressureLoad> pressures;
   std::vector<SpringLoad> springs;
+  std::vector<LineSpringLoad> line_springs;
 
-  bool empty() const { return pressures.empty() && springs.empty(); }
+  bool empty() const { return pressures.empty() && springs.empty() && line_springs.empty(); }
 };
 
 // Adds the forces of all such loads to every node [N].
@@ -69,6 +85,9 @@ struct LoadExpansion {
   void Multiply(const NodalVector& x, NodalVector& product) const;
 };
 LoadExpansion ExpandPositionLoads(const TetModel& model, std::span<const double> load_scales, const NodalVector& c);
+
+// The nodes that a line spring couples with each other.
+std::vector<std::int32_t> NodesOf(const LineSpringLoad& load);
 
 // product += K p for the springs at their largest scale: an upper bound for the stable step.
 void AddSpringStiffness(const TetModel& model, const NodalVector& p, NodalVector& product);

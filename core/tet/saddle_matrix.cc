@@ -58,10 +58,23 @@ template <class Element>
 void SaddleAssembly::FindPattern(const std::stop_token& stop) {
   constexpr int kNodes = Element::kNodes;
   const VolumePatches& patches = model_.patches();
-  matrix_.pattern = PatternOfElements(model_.nodes(), model_.tetrahedra(), [&](std::size_t e) {
+  const auto of_element = [&](std::size_t e) {
     ThrowIfStopped(stop);
     return model_.NodesOf<Element>(e);
-  });
+  };
+  const std::vector<LineSpringLoad>& lines = model_.position_loads().line_springs;
+  if (lines.empty()) {
+    matrix_.pattern = PatternOfElements(model_.nodes(), model_.tetrahedra(), of_element);
+  } else {
+    // A line spring couples its nodes as if they were those of one element.
+    std::vector<std::vector<std::int32_t>> coupled;
+    for (const LineSpringLoad& line : lines) coupled.push_back(fascicle::NodesOf(line));
+    matrix_.pattern = PatternOfElements(model_.nodes(), model_.tetrahedra() + coupled.size(), [&](std::size_t e) {
+      if (e >= model_.tetrahedra()) return coupled[e - model_.tetrahedra()];
+      const auto nodes = of_element(e);
+      return std::vector<std::int32_t>(nodes.begin(), nodes.end());
+    });
+  }
   layout_.emplace(model_, matrix_.pattern, stop);
   matrix_.A.resize(matrix_.pattern.blocks());
 

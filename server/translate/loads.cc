@@ -59,6 +59,14 @@ std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_p
       case v1::Load::kSprings:
         translated.kind = Springs{ToVec3(load.springs().stiffness())};
         break;
+      case v1::Load::kLineSpring: {
+        LineSpring spring;
+        spring.stiffness = load.line_spring().stiffness();
+        if (load.line_spring().has_rest_length()) spring.rest_length = load.line_spring().rest_length();
+        spring.tension_only = load.line_spring().tension_only();
+        translated.kind = spring;
+        break;
+      }
       case v1::Load::KIND_NOT_SET:
         break;  // reported by the rules
     }
@@ -67,6 +75,32 @@ std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_p
     result.push_back(std::move(translated));
   }
   return result;
+}
+
+void FindEndsOfLineSprings(const v1::Scene& scene, const Names& body_names, std::vector<Body>& bodies,
+                           Problems& problems) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const v1::Body& wire = scene.bodies(static_cast<int>(b));
+    // Without problems, loads correspond to those of the message. Otherwise the scene is not used.
+    const bool correspond = bodies[b].loads.size() == static_cast<std::size_t>(wire.loads_size());
+    for (int k = 0; k < wire.loads_size(); ++k) {
+      if (!wire.loads(k).has_line_spring()) continue;
+      const v1::LineSpring& spring = wire.loads(k).line_spring();
+      const std::string path =
+          JoinPath(JoinPath(IndexPath("bodies", b), IndexPath("loads", static_cast<std::size_t>(k))), "line_spring");
+      std::optional<std::size_t> other = b;
+      if (!spring.body().empty()) other = body_names.Find(spring.body(), JoinPath(path, "body"), problems);
+      if (!other) continue;
+      Names regions("region");
+      Problems reported;  // malformed names are reported with the body
+      for (const Region& region : bodies[*other].regions) regions.Add(region.name, "", reported);
+      const auto region = regions.Find(spring.region(), JoinPath(path, "region"), problems);
+      if (!region || !correspond) continue;
+      auto& translated = std::get<LineSpring>(bodies[b].loads[static_cast<std::size_t>(k)].kind);
+      translated.body = static_cast<std::int32_t>(*other);
+      translated.region = static_cast<std::int32_t>(*region);
+    }
+  }
 }
 
 Gravity TranslateGravity(const v1::Scene& scene, Problems& problems) {

@@ -16,6 +16,9 @@ std::vector<Constraint> TranslateConstraints(const v1::Body& body, const std::st
                                              Problems& problems);
 std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_path, const Names& regions,
                                  Problems& problems);
+// Sets the other ends of the bodies' line springs, once all bodies are known.
+void FindEndsOfLineSprings(const v1::Scene& scene, const Names& body_names, std::vector<Body>& bodies,
+                           Problems& problems);
 Gravity TranslateGravity(const v1::Scene& scene, Problems& problems);
 std::vector<Floor> TranslateFloors(const v1::Scene& scene, Problems& problems);
 std::vector<PlaneForceField> TranslatePlaneForceFields(const v1::Scene& scene, Problems& problems);

@@ -89,6 +89,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     AddCurvedEdgesNote(result->tet, path, body.body);
     result->bodies.push_back(std::move(body.body));
   }
+  FindEndsOfLineSprings(filled, names, result->bodies, found);
   result->output = TranslateOutput(filled, result->method, result->bodies, names, limits.max_frame_bytes, found);
   AddUnusedFieldNotes(scene, result->bodies);
 

@@ -179,6 +179,106 @@ TEST(SpringsTest, HoldNodes) {
   }
 }
 
+// Two bars, each fixed at its far end, with a line spring between the ends that face each other, 10 mm apart: three
+// springs in series. The bars' stiffness is E A / l as their sides are free and Poisson's ratio is 0.
+Scene TwoBars(ElementOrder element, Stepping stepping, double rest_length, bool tension_only) {
+  const auto bar = [](const char* name, double x) {
+    TetMesh mesh = MakeBox(Vec3(x, 0, 0), Vec3(0.02, 0.01, 0.01), {3, 2, 2});
+    Body body = MakeBody(name, std::move(mesh), LinearElastic(std::array{1e4, 0.0}));
+    body.damping.mass_proportional = 20;
+    return body;
+  };
+  Body left = bar("left", 0), right = bar("right", 0.03);
+  left.constraints = {Fix(kX0, {true, false, false}), Fix(kY0, {false, true, false}), Fix(kZ0, {false, false, true})};
+  right.constraints = {Fix(kX1, {true, false, false}), Fix(kY0, {false, true, false}), Fix(kZ0, {false, false, true})};
+  Load spring;
+  spring.region = kX1;
+  LineSpring line;
+  line.body = 1;
+  line.region = kX0;
+  line.stiffness = 30;
+  line.rest_length = rest_length;
+  line.tension_only = tension_only;
+  spring.kind = line;
+  left.loads = {spring};
+  Scene scene = StaticScene(std::move(left), element);
+  right.tet().fibres = scene.bodies[0].tet().fibres;
+  scene.bodies.push_back(std::move(right));
+  scene.tet.stepping = stepping;
+  scene.duration = 2;
+  return scene;
+}
+
+TEST(LineSpringTest, PullsTwoBodiesTogether) {
+  const double bar = 1e4 * 1e-4 / 0.02, series = 1 / (2 / bar + 1 / 30.0);
+  for (const double rest_length : {0.006, 0.012}) {
+    const double force = series * (0.01 - rest_length);
+    for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
+      SteppedRun run(TwoBars(element, Stepping::kQuasiStatic, rest_length, false));
+      ASSERT_TRUE(run.To(2));
+      EXPECT_NEAR(run.Reaction(0).x(), -force, 1e-8);
+      EXPECT_NEAR(run.DisplacementAt(Vec3(0.02, 0, 0)).x(), force / bar, 1e-9);
+      EXPECT_NEAR(run.DisplacementAt(Vec3(0.03, 0.01, 0)).x(), -force / bar, 1e-9);
+      EXPECT_LT(run.solver.EquilibriumResidual(run.state), 1e-6);
+    }
+  }
+  SteppedRun moving(TwoBars(ElementOrder::kLinear, Stepping::kExplicit, 0.006, false));
+  ASSERT_TRUE(moving.To(2));
+  EXPECT_NEAR(moving.DisplacementAt(Vec3(0.02, 0, 0)).x(), series * 0.004 / bar, 1e-6);
+}
+
+TEST(LineSpringTest, IsSlackIfOnlyTensionIsAskedFor) {
+  SteppedRun run(TwoBars(ElementOrder::kQuadratic, Stepping::kQuasiStatic, 0.012, true));
+  ASSERT_TRUE(run.To(2));
+  EXPECT_NEAR(run.Reaction(0).x(), 0, 1e-12);
+}
+
+// A bar on a pin at one end, pulled up by a line spring fixed at a small block above: the spring's direction turns with
+// the bar, and the moments about the pin balance.
+TEST(LineSpringTest, TurnsWithItsEnds) {
+  Body bar = BoxBody(Vec3(0.04, 0.005, 0.005), {8, 1, 1}, NeoHookean(std::array{1e7, 0.3}));
+  bar.regions.push_back(SelectRegion(bar.tet().mesh, BoundaryTriangles(bar.tet().mesh), "pin",
+                                     BoxSelector{Vec3(-1, -1, -1), Vec3(1e-6, 1, 1e-6)}));
+  bar.constraints = {{6, {true, true, true}, {}}};
+  Load spring, weight;
+  spring.region = kX1;
+  LineSpring line;
+  line.body = 1;
+  line.region = kZ0;
+  line.stiffness = 2;
+  line.rest_length = 0.005;
+  spring.kind = line;
+  weight.region = kX1;
+  weight.kind = Traction{Vec3(0, 0, -0.03) / 2.5e-5};
+  weight.scale = Ramp(1);
+  bar.loads = {spring, weight};
+  Body anchor = MakeBody("anchor", MakeBox(Vec3(0.02, 0, 0.03), Vec3(0.005, 0.005, 0.005), {1, 1, 1}),
+                         NeoHookean(std::array{1e7, 0.3}));
+  anchor.constraints = {Fix(kZ1)};
+  Scene scene = StaticScene(std::move(bar), ElementOrder::kQuadratic);
+  anchor.tet().fibres = ConstantFibres(anchor.tet().mesh, Vec3::UnitX());
+  scene.bodies.push_back(std::move(anchor));
+  SteppedRun run(std::move(scene));
+  ASSERT_TRUE(run.To(1));
+  const LineSpringLoad& load = run.model.position_loads().line_springs[0];
+  const auto middle = [&](int end) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < load.ends[end].nodes.size(); ++i) {
+      sum += load.ends[end].weights[i] * run.state.positions[static_cast<std::size_t>(load.ends[end].nodes[i])];
+    }
+    return sum;
+  };
+  const Vec3 rise = middle(0) - Vec3(0.04, 0.0025, 0.0025);
+  std::printf("bar on a pin: its end moves by (%.3f, %.3f) mm; %lld iterations\n", 1e3 * rise.x(), 1e3 * rise.z(),
+              static_cast<long long>(run.state.iterations));
+  EXPECT_GT(rise.norm(), 0.002);
+  const Vec3 along = middle(1) - middle(0);
+  const Vec3 pull = 2 * (along.norm() - 0.005) * along.normalized();
+  const Vec3 moment = middle(0).cross(pull + Vec3(0, 0, -0.03));
+  EXPECT_LT(std::abs(moment.y()), 1e-6 * middle(0).norm() * pull.norm()) << "about the pin";
+  EXPECT_LT((run.Reaction(0) + pull + Vec3(0, 0, -0.03)).norm(), 1e-7);
+}
+
 // Explicit steps, damped, end in the equilibrium that quasi-static steps find.
 TEST(PositionLoadsTest, ExplicitStepsEndInTheSameEquilibrium) {
   Body body = BoxBody(Vec3(0.02, 0.01, 0.005), {4, 2, 1}, NeoHookean(std::array{2e4, 0.3}));

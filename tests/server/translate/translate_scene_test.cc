@@ -153,6 +153,58 @@ TEST(TranslateScene, CarriesEverythingElse) {
   EXPECT_EQ(std::get<NodalForce>(body.loads[1].kind).total, Vec3(4, 5, 6));
 }
 
+TEST(TranslateScene, LoadsThatDependOnPositions) {
+  v1::Scene wire = BoxScene();
+  *wire.add_bodies() = wire.bodies(0);
+  wire.mutable_bodies(1)->set_name("other");
+  google::protobuf::TextFormat::MergeFromString(R"(
+    loads { region: "top" pressure { value: 5e3 } scale { times: [0, 1] values: [0, 1] } }
+    loads { region: "top" springs { stiffness: [0, 0, 20] } }
+    loads { region: "bottom" line_spring { region: "top" stiffness: 30 rest_length: 0.01 } }
+    loads { region: "top" line_spring { body: "other" region: "bottom" stiffness: 40 tension_only: true } })",
+                                                wire.mutable_bodies(0));
+  const auto scene = Translate(wire);
+  ASSERT_NE(scene, nullptr);
+  const std::vector<Load>& loads = scene->bodies[0].loads;
+  ASSERT_EQ(loads.size(), 4u);
+  EXPECT_EQ(std::get<Pressure>(loads[0].kind).value, 5e3);
+  EXPECT_EQ(std::get<Springs>(loads[1].kind).stiffness, Vec3(0, 0, 20));
+  const auto& own = std::get<LineSpring>(loads[2].kind);
+  EXPECT_EQ(std::pair(own.body, own.region), (std::pair<std::int32_t, std::int32_t>{0, 1}));
+  EXPECT_EQ(own.rest_length, 0.01);
+  EXPECT_FALSE(own.tension_only);
+  const auto& other = std::get<LineSpring>(loads[3].kind);
+  EXPECT_EQ(std::pair(other.body, other.region), (std::pair<std::int32_t, std::int32_t>{1, 0}));
+  EXPECT_FALSE(other.rest_length.has_value());
+  EXPECT_TRUE(other.tension_only);
+}
+
+TEST(TranslateScene, LoadsThatCanNotAct) {
+  const auto with = [](const std::string& loads, const std::string& rest = "") {
+    v1::Scene wire = BoxScene();
+    google::protobuf::TextFormat::MergeFromString(loads, wire.mutable_bodies(0));
+    google::protobuf::TextFormat::MergeFromString(rest, &wire);
+    return ProblemsOf(wire);
+  };
+  const std::string path = "bodies[0].loads[0]";
+  EXPECT_THAT(At(with(R"(loads { region: "top" body_force { density: [1, 0, 0] } })"), path + ".region"),
+              HasSubstr("needs elements, but region `top` contains none"));
+  EXPECT_THAT(At(with(R"(loads { region: "top" springs { stiffness: [0, 0, 0] } })"), path + ".springs.stiffness"),
+              HasSubstr("one above"));
+  EXPECT_THAT(At(with(R"(loads { region: "top" springs { stiffness: [0, 0, 9] } scale { times: 0 values: -1 } })"),
+                 path + ".scale"),
+              HasSubstr("negative stiffness"));
+  EXPECT_THAT(
+      At(with(R"(loads { region: "top" line_spring { region: "botom" stiffness: 1 } })"), path + ".line_spring.region"),
+      HasSubstr("bottom"));
+  EXPECT_THAT(
+      At(with(R"(loads { region: "top" line_spring { region: "top" stiffness: 1 } })"), path + ".line_spring.region"),
+      HasSubstr("the same region"));
+  EXPECT_THAT(
+      At(with(R"(loads { region: "top" pressure { value: 1 } })", "eulerian { cell_size: 0.004 }"), path + ".pressure"),
+      HasSubstr("the eulerian method has"));
+}
+
 TEST(TranslateScene, SteppingChoosesTheElementUnlessTheSceneDoes) {
   v1::Scene wire = BoxScene();
   const auto method = [&] {
