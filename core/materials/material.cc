@@ -39,6 +39,7 @@ template class LawFunctions<Yeoh>;
 template class LawFunctions<Ogden>;
 template class LawFunctions<FungFibre>;
 template class LawFunctions<HolzapfelGasserOgden>;
+template class LawFunctions<TabulatedMuscle>;
 
 namespace {
 

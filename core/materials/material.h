@@ -16,6 +16,7 @@
 #include "core/materials/neo_hookean.h"
 #include "core/materials/ogden.h"
 #include "core/materials/st_venant_kirchhoff.h"
+#include "core/materials/tabulated_muscle.h"
 #include "core/materials/tendon.h"
 #include "core/materials/trans_iso_mooney_rivlin.h"
 #include "core/materials/yeoh.h"
@@ -25,7 +26,7 @@ namespace fascicle {
 // The closed list of laws. A new law is a header, an entry here, an instantiation in material.cc and a message of the
 // same name in scene.proto. Range checks, the test battery and `fascicle materials` follow from this list.
 using Material = std::variant<LinearElastic, StVenantKirchhoff, CorotatedLinear, NeoHookean, MooneyRivlin, Muscle,
-                              Tendon, TransIsoMooneyRivlin, Yeoh, Ogden, FungFibre, HolzapfelGasserOgden>;
+                              Tendon, TransIsoMooneyRivlin, Yeoh, Ogden, FungFibre, HolzapfelGasserOgden, TabulatedMuscle>;
 
 // The static members of a law, independent of its type.
 struct LawInfo {

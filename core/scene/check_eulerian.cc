@@ -7,8 +7,15 @@ namespace fascicle::scene_checks {
 namespace {
 
 bool DependsOnSpeed(const Material& material) {
-  const auto* muscle = std::get_if<Muscle>(&material);
-  return muscle != nullptr && muscle->DependsOnRate();
+  return std::visit(
+      [](const auto& law) {
+        if constexpr (requires { law.DependsOnRate(); }) {
+          return law.DependsOnRate();
+        } else {
+          return false;
+        }
+      },
+      material);
 }
 
 void CheckPlasticity(const Plasticity& plasticity, const std::string& path, Problems& problems) {

@@ -55,17 +55,26 @@ class Fingerprint {
     std::visit([this](const auto& kind) { Put(kind); }, value);
   }
 
-  // A law holds nothing but numbers, which follow from its parameters.
+  // A law holds nothing but numbers, which follow from its parameters, or refers to some.
   template <class Law>
   requires requires { Law::kNeedsFibres; }
   void Put(const Law& law) {
-    static_assert(std::is_trivially_copyable_v<Law> && sizeof(Law) % sizeof(double) == 0);
-    PutBytes(law);
+    if constexpr (requires { law.curves(); }) {
+      PutNumbers(law.numbers());
+      PutNumbers(law.curves());
+    } else {
+      PutNumbers(law);
+    }
   }
 
   Digest Finish() { return sha_.Finish(); }
 
  private:
+  template <class Numbers>
+  void PutNumbers(const Numbers& numbers) {
+    static_assert(std::is_trivially_copyable_v<Numbers> && sizeof(Numbers) % sizeof(double) == 0);
+    PutBytes(numbers);
+  }
   template <class Value>
   void PutBytes(const Value& value) {
     sha_.Update(std::as_bytes(std::span(&value, 1)));

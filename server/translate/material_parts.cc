@@ -37,8 +37,12 @@ std::optional<std::vector<std::size_t>> ReadColumns(std::string_view line, const
 }
 
 // A material for each element, from a file whose first line names the parameters given by the others.
-std::vector<Material> ReadMaterials(std::string_view text, const LawInfo& law, std::vector<double> values,
-                                    std::size_t elements, Problems& problems) {
+std::vector<Material> ReadMaterials(std::string_view text, const v1::Material& wire, std::size_t elements,
+                                    Problems& problems) {
+  const LawInfo& law = *LawOf(wire);
+  std::vector<double> values = ParametersOf(wire);
+  Problems of_law;  // reported with the body's material
+  const auto make = MakerOf(wire, {}, of_law);
   TextLines lines(text);
   if (!lines.Next()) {
     problems.Add({}, "is empty", "its first line names parameters of " + std::string(law.name));
@@ -62,7 +66,7 @@ std::vector<Material> ReadMaterials(std::string_view text, const LawInfo& law, s
       problems.Add({}, where + parameter.name + " is " + Text(line[k]) + ", outside the range " + RangeText(parameter),
                    std::string("unit ") + parameter.unit);
     }
-    if (problems.empty() && count < elements) materials.push_back(law.make(values));
+    if (problems.empty() && count < elements) materials.push_back(make(values));
   }
   CheckLineCount(count, elements, "elements", problems);
   return materials;
@@ -76,7 +80,7 @@ std::vector<Material> TranslateElementParameters(const BodySource& source, std::
   const LawInfo* law = LawOf(wire.material());
   if (!bytes || !elements || law == nullptr || !ObeysRules(wire.material())) return {};
   Problems own;
-  std::vector<Material> materials = ReadMaterials(*bytes, *law, ParametersOf(wire.material()), *elements, own);
+  std::vector<Material> materials = ReadMaterials(*bytes, wire.material(), *elements, own);
   problems.Append(path, own);
   return own.empty() ? materials : std::vector<Material>();
 }

@@ -1,6 +1,8 @@
 #include "server/translate/materials.h"
 
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "server/translate/values.h"
 
@@ -17,6 +19,46 @@ double Parameter(const google::protobuf::Message& law, const std::string& name) 
   const auto* field = law.GetDescriptor()->FindFieldByName(name);
   if (field == nullptr) throw std::logic_error("scene.proto lacks " + law.GetTypeName() + "." + name);
   return law.GetReflection()->GetDouble(law, field);
+}
+
+template <class Numbers, class Values>
+CurveTable TableOf(const Numbers& at, const Values& values) {
+  return {{at.begin(), at.end()}, {values.begin(), values.end()}};
+}
+
+MuscleCurves PublishedSet(const v1::TabulatedMuscle& wire) {
+  switch (wire.curves()) {
+    case v1::PUBLISHED_CURVES_DE_GROOTE_2016:
+      return CurvesOf(PublishedCurves::kDeGroote2016);
+    case v1::PUBLISHED_CURVES_ALMONACID_2024:
+      return CurvesOf(PublishedCurves::kAlmonacid2024);
+    default:
+      return CurvesOf(PublishedCurves::kThelen2003);
+  }
+}
+
+MuscleCurves TranslateCurves(const v1::TabulatedMuscle& wire, const std::string& path, Problems& problems) {
+  MuscleCurves curves = PublishedSet(wire);
+  if (wire.curve_stress() == v1::CURVE_STRESS_FORCE) curves.stress = CurveStress::kForce;
+  if (wire.curve_stress() == v1::CURVE_STRESS_CAUCHY) curves.stress = CurveStress::kCauchy;
+  const auto replace = [&](const char* field, auto curve_of, const CurveTable& table, PointCurve& curve) {
+    Problems own;
+    curve = curve_of(table, curve, own);
+    problems.Append(JoinPath(path, field), own);
+  };
+  if (wire.has_active_length()) {
+    const auto& w = wire.active_length();
+    replace("active_length", ActiveLengthCurve, TableOf(w.lengths(), w.values()), curves.active_length);
+  }
+  if (wire.has_passive_length()) {
+    const auto& w = wire.passive_length();
+    replace("passive_length", PassiveLengthCurve, TableOf(w.lengths(), w.values()), curves.passive_length);
+  }
+  if (wire.has_force_velocity()) {
+    const auto& w = wire.force_velocity();
+    replace("force_velocity", VelocityCurve, TableOf(w.velocities(), w.values()), curves.force_velocity);
+  }
+  return curves;
 }
 
 }  // namespace
@@ -38,6 +80,14 @@ std::vector<double> ParametersOf(const v1::Material& material) {
   return values;
 }
 
+std::function<Material(std::span<const double>)> MakerOf(const v1::Material& material, const std::string& path,
+                                                         Problems& problems) {
+  if (!material.has_tabulated_muscle()) return LawOf(material)->make;
+  const std::string of_law = JoinPath(path, "tabulated_muscle");
+  auto curves = std::make_shared<const MuscleCurves>(TranslateCurves(material.tabulated_muscle(), of_law, problems));
+  return [curves = std::move(curves)](std::span<const double> values) { return TabulatedMuscle(values, curves); };
+}
+
 Material TranslateMaterial(const v1::Material* material, const std::string& owner_path, Problems& problems) {
   const Material neutral = Body().material;
   if (material == nullptr) {
@@ -48,7 +98,7 @@ Material TranslateMaterial(const v1::Material* material, const std::string& owne
   }
   const LawInfo* law = LawOf(*material);
   if (law == nullptr || !ObeysRules(*material)) return neutral;
-  return law->make(ParametersOf(*material));
+  return MakerOf(*material, JoinPath(owner_path, "material"), problems)(ParametersOf(*material));
 }
 
 Damping TranslateDamping(const v1::Body& body) {

@@ -1,6 +1,8 @@
 #ifndef FASCICLE_SERVER_TRANSLATE_MATERIALS_H_
 #define FASCICLE_SERVER_TRANSLATE_MATERIALS_H_
 
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,12 @@ const LawInfo* LawOf(const v1::Material& material);
 // The values of the law's parameters in their order, defaults filled in. The message must have a law and obey the
 // rules.
 std::vector<double> ParametersOf(const v1::Material& material);
+
+// Makes the law of a material message from other values of its parameters; what is not a number is that of the message.
+// The message must have a law and obey the rules. Problems of a law's curves are reported at `path`, that of the
+// message.
+std::function<Material(std::span<const double>)> MakerOf(const v1::Material& material, const std::string& path,
+                                                         Problems& problems);
 
 // The material of a body or of a part of it; `material` is null, which is a problem, if there is none. A soft isotropic
 // material replaces an invalid one in later checks.

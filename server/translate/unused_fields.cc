@@ -27,15 +27,27 @@ void AddNotes(const Message& message, const std::string& path, std::initializer_
   }
 }
 
+void AddNotesOnMaterial(const v1::Material& material, const std::string& path, const std::string& why,
+                        std::vector<std::string>& notes) {
+  AddNotes(material.muscle(), JoinPath(path, "muscle"), {"max_velocity"}, why, notes);
+  AddNotes(material.tabulated_muscle(), JoinPath(path, "tabulated_muscle"), {"max_velocity"}, why, notes);
+}
+
+// Of a law with a force-velocity curve that no velocity scales.
+void AddNotesOnCurves(const v1::Material& material, const std::string& path, std::vector<std::string>& notes) {
+  if (material.tabulated_muscle().max_velocity() != 0) return;
+  AddNotes(material.tabulated_muscle(), JoinPath(path, "tabulated_muscle"), {"force_velocity"},
+           "without max_velocity", notes);
+}
+
 void AddNotesOnMotion(const v1::Body& body, const std::string& path, const std::string& why,
                       std::vector<std::string>& notes) {
   AddNotes(body.damping(), JoinPath(path, "damping"), {"mass_proportional", "stiffness_proportional", "viscosity"}, why,
            notes);
-  AddNotes(body.material().muscle(), JoinPath(path, "material.muscle"), {"max_velocity"}, why, notes);
+  AddNotesOnMaterial(body.material(), JoinPath(path, "material"), why, notes);
   for (int i = 0; i < body.region_materials_size(); ++i) {
     const std::string part = JoinPath(path, IndexPath("region_materials", static_cast<std::size_t>(i)));
-    AddNotes(body.region_materials(i).material().muscle(), JoinPath(part, "material.muscle"), {"max_velocity"}, why,
-             notes);
+    AddNotesOnMaterial(body.region_materials(i).material(), JoinPath(part, "material"), why, notes);
   }
 }
 
@@ -60,6 +72,15 @@ void AddNotesOnMethod(const v1::Scene& scene, std::vector<std::string>& notes) {
 void AddUnusedFieldNotes(const v1::Scene& scene, std::vector<Body>& bodies) {
   if (bodies.empty()) return;
   AddNotesOnMethod(scene, bodies.front().notes);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const v1::Body& body = scene.bodies(static_cast<int>(i));
+    const std::string path = IndexPath("bodies", i);
+    AddNotesOnCurves(body.material(), JoinPath(path, "material"), bodies[i].notes);
+    for (int k = 0; k < body.region_materials_size(); ++k) {
+      const std::string part = JoinPath(path, IndexPath("region_materials", static_cast<std::size_t>(k)));
+      AddNotesOnCurves(body.region_materials(k).material(), JoinPath(part, "material"), bodies[i].notes);
+    }
+  }
   const bool quasi_static = scene.tet().stepping() == v1::STEPPING_QUASI_STATIC;
   const bool is_static = scene.has_voxel() && scene.voxel().stepping() != v1::VOXEL_STEPPING_DYNAMIC;
   if (!quasi_static && !is_static) return;

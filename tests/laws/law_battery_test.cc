@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,7 +37,9 @@ constexpr Term kOptionalTerms[] = {{"trans_iso_mooney_rivlin", "active_stress", 
                                    {"ogden", "m2", 5},
                                    {"ogden", "c3", 2e3},
                                    {"ogden", "m3", -2},
-                                   {"holzapfel_gasser_ogden", "kappa", 0.08}};
+                                   {"holzapfel_gasser_ogden", "kappa", 0.08},
+                                   {"tabulated_muscle", "c2", -10},
+                                   {"tabulated_muscle", "c3", 20}};
 
 // Set 0: the defaults. Others: the distance to the lower end of the range, or to zero where that is no scale, changed
 // by up to 40 %, and with terms that are absent by default.
@@ -60,12 +63,33 @@ std::vector<double> ParameterValues(const LawInfo& law, int set) {
     // Fibres whose stress depends on their rate.
     if (set == 3) values[8] = kMaxVelocity;
   }
+  if (std::string_view(law.name) == "tabulated_muscle") {
+    // Passive fibres are slack at rest.
+    values[5] = set == 1 ? 1 : 1.2;
+    if (set == 3) values[6] = kMaxVelocity;
+  }
   return values;
 }
 
-// Isochoric fibre stretches at which a curve has a kink.
-std::vector<double> Kinks(std::string_view law, const std::vector<double>& values) {
+// The curves of the sets of parameters of the tabulated muscle.
+std::shared_ptr<const MuscleCurves> CurvesOfSet(int set) {
+  constexpr std::array kSets = {PublishedCurves::kThelen2003, PublishedCurves::kDeGroote2016,
+                                PublishedCurves::kAlmonacid2024, PublishedCurves::kAlmonacid2024};
+  return std::make_shared<const MuscleCurves>(CurvesOf(kSets.at(static_cast<std::size_t>(set))));
+}
+
+Material MaterialOf(const LawInfo& law, int set, const std::vector<double>& values) {
+  if (std::string_view(law.name) == "tabulated_muscle") return TabulatedMuscle(values, CurvesOfSet(set));
+  return law.make(values);
+}
+
+// Isochoric fibre stretches at which a curve has a kink, or its curvature jumps.
+std::vector<double> Kinks(std::string_view law, int set, const std::vector<double>& values) {
   std::vector<double> kinks;
+  if (law == "tabulated_muscle") {
+    for (const double r : CurvesOfSet(set)->active_length.at()) kinks.push_back(r * values[5]);
+    for (const double r : CurvesOfSet(set)->passive_length.at()) kinks.push_back(r * values[5]);
+  }
   if (law == "muscle") {
     for (const double r : {0.4, 0.6, 1.0, 1.4, 1.6, values[7]}) kinks.push_back(r * values[4]);
   }
@@ -108,8 +132,8 @@ class LawBattery : public ::testing::TestWithParam<Case> {
  protected:
   LawBattery()
       : values_(ParameterValues(*GetParam().law, GetParam().set)),
-        kinks_(Kinks(GetParam().law->name, values_)),
-        material_(GetParam().law->make(values_)) {}
+        kinks_(Kinks(GetParam().law->name, GetParam().set, values_)),
+        material_(MaterialOf(*GetParam().law, GetParam().set, values_)) {}
 
   // The largest of check(law, sample) over all samples and activations.
   template <class Check>
@@ -141,7 +165,13 @@ class LawBattery : public ::testing::TestWithParam<Case> {
       sample.fibre.previous_stretch = stretch * sampler.Uniform(0.6, 1.4);
       sample.fibre.inverse_step = kMaxVelocity * sampler.Uniform(1, 4);
       std::vector<double> kinks = kinks_;
-      if (values_.size() > 8 && values_[8] > 0) {
+      const bool is_tabulated = std::string_view(GetParam().law->name) == "tabulated_muscle";
+      if (is_tabulated && values_[6] > 0) {
+        for (const double v : CurvesOfSet(GetParam().set)->force_velocity.at()) {
+          kinks.push_back(sample.fibre.previous_stretch + v * values_[5] * values_[6] / sample.fibre.inverse_step);
+        }
+      }
+      if (std::string_view(GetParam().law->name) == "muscle" && values_[8] > 0) {
         const double last_pull = sample.fibre.previous_stretch - values_[4] * values_[8] / sample.fibre.inverse_step;
         kinks.insert(kinks.end(), {sample.fibre.previous_stretch, last_pull});
       }

@@ -61,7 +61,8 @@ inline std::vector<Material> EveryLaw() {
           Yeoh(std::array{3e3, -2e2, 5e2, 2e4}),
           Ogden(std::array{4e3, 1.3, 3e2, 5.0, 2e3, -2.0, 2e4}),
           FungFibre(std::array{2e3, 1e3, 1e2, 4.0, 2e4}),
-          HolzapfelGasserOgden(std::array{6e3, 50.0, 20.0, 0.1, 0.6, 0.0, 0.3, 1.0, 2e4})};
+          HolzapfelGasserOgden(std::array{6e3, 50.0, 20.0, 0.1, 0.6, 0.0, 0.3, 1.0, 2e4}),
+          TabulatedMuscle(std::array{2e3, -1e2, 3e2, 2e4, 1e4, 1.1, 0.0})};
 }
 inline constexpr int kLaws = std::variant_size_v<Material>;
 
