@@ -25,8 +25,9 @@ namespace fascicle {
 
 // The closed list of laws. A new law is a header, an entry here, an instantiation in material.cc and a message of the
 // same name in scene.proto. Range checks, the test battery and `fascicle materials` follow from this list.
-using Material = std::variant<LinearElastic, StVenantKirchhoff, CorotatedLinear, NeoHookean, MooneyRivlin, Muscle,
-                              Tendon, TransIsoMooneyRivlin, Yeoh, Ogden, FungFibre, HolzapfelGasserOgden, TabulatedMuscle>;
+using Material =
+    std::variant<LinearElastic, StVenantKirchhoff, CorotatedLinear, NeoHookean, MooneyRivlin, Muscle, Tendon,
+                 TransIsoMooneyRivlin, Yeoh, Ogden, FungFibre, HolzapfelGasserOgden, TabulatedMuscle>;
 
 // The static members of a law, independent of its type.
 struct LawInfo {

@@ -18,14 +18,19 @@ struct Point {
   double value, slope;
 };
 
-// The cubic through `points` points of f over [low, high], with its slopes; zero slope at the first point, and at the
-// last one unless a line follows.
+std::vector<double> Uniform(double low, double high, int points) {
+  std::vector<double> at;
+  for (int i = 0; i < points; ++i) at.push_back(low + (high - low) * i / (points - 1));
+  return at;
+}
+
+// The cubic through points of f, with its slopes; zero slope at the first point, and at the last one unless a line
+// follows.
 template <class Function>
-PointCurve Sampled(const Function& f, double low, double high, int points, PointCurve::Beyond beyond) {
-  std::vector<double> at, values, slopes;
-  for (int i = 0; i < points; ++i) {
-    at.push_back(low + (high - low) * i / (points - 1));
-    const Point p = f(at.back());
+PointCurve Sampled(const Function& f, const std::vector<double>& at, PointCurve::Beyond beyond) {
+  std::vector<double> values, slopes;
+  for (const double x : at) {
+    const Point p = f(x);
     values.push_back(p.value);
     slopes.push_back(p.slope);
   }
@@ -40,7 +45,7 @@ PointCurve ExponentialPassive(double shape, double strain) {
   const auto f = [&](double r) {
     return Point{std::expm1(rate * (r - 1)) / std::expm1(shape), rate * std::exp(rate * (r - 1)) / std::expm1(shape)};
   };
-  return Sampled(f, 1, 1 + strain, PointCurve::kMostPoints, PointCurve::Beyond::kLine);
+  return Sampled(f, Uniform(1, 1 + strain, PointCurve::kMostPoints), PointCurve::Beyond::kLine);
 }
 
 MuscleCurves Thelen() {
@@ -58,28 +63,23 @@ MuscleCurves Thelen() {
     const double c = (2 + 2 / kHill) / (kPlateau - 1);  // v = (F - 1)/(c (plateau - F))
     return Point{(1 + c * v * kPlateau) / (1 + c * v), c * (kPlateau - 1) / ((1 + c * v) * (1 + c * v))};
   };
-  std::vector<double> at, values, slopes;
-  for (const double v : {-1.0, -0.9, -0.8, -0.7, -0.6, -0.5, -0.4, -0.32, -0.25, -0.19, -0.14, -0.1,
-                         -0.065, -0.03, 0.0, 0.005, 0.011, 0.018, 0.027, 0.038, 0.052, 0.07, 0.094, 0.125,
-                         0.17, 0.22, 0.29, 0.4, 0.6, 1.0, 1.8, 4.0}) {
-    const Point p = velocity(v);
-    at.push_back(v);
-    values.push_back(p.value);
-    slopes.push_back(p.slope);
-  }
-  slopes.front() = slopes.back() = 0;
-  return {Sampled(active, 0.1, 2.4, PointCurve::kMostPoints, PointCurve::Beyond::kConstant),
-          ExponentialPassive(5, 0.6), PointCurve(at, values, slopes), CurveStress::kForce};
+  const std::vector<double> velocities = {-1.0,  -0.9,   -0.8,  -0.7, -0.6,  -0.5,  -0.4,  -0.32, -0.25, -0.19, -0.14,
+                                          -0.1,  -0.065, -0.03, 0.0,  0.005, 0.011, 0.018, 0.027, 0.038, 0.052, 0.07,
+                                          0.094, 0.125,  0.17,  0.22, 0.29,  0.4,   0.6,   1.0,   1.8,   4.0};
+  // The curve is not flat at short lengths: a short first piece rounds it off.
+  std::vector<double> lengths = Uniform(0.12, 2.4, PointCurve::kMostPoints - 1);
+  lengths.insert(lengths.begin(), 0.1);
+  return {Sampled(active, lengths, PointCurve::Beyond::kConstant), ExponentialPassive(5, 0.6),
+          Sampled(velocity, velocities, PointCurve::Beyond::kConstant), CurveStress::kForce};
 }
 
 MuscleCurves DeGroote() {
   struct Gaussian {
     double height, centre, width, width_slope;
   };
-  constexpr Gaussian kGaussians[] = {
-      {0.8150671134243542, 1.055033428970575, 0.162384573599574, 0.063303448465465},
-      {0.433004984392647, 0.716775413397760, -0.029947116970696, 0.200356847296188},
-      {0.1, 1.0, 0.353553390593274, 0}};
+  constexpr Gaussian kGaussians[] = {{0.8150671134243542, 1.055033428970575, 0.162384573599574, 0.063303448465465},
+                                     {0.433004984392647, 0.716775413397760, -0.029947116970696, 0.200356847296188},
+                                     {0.1, 1.0, 0.353553390593274, 0}};
   const auto active = [&](double r) {
     Point sum = {0, 0};
     for (const Gaussian& g : kGaussians) {
@@ -96,9 +96,10 @@ MuscleCurves DeGroote() {
     const double z = kD2 * v + kD3;
     return Point{v == 0 ? 1 : kD1 * std::asinh(z) + kD4, kD1 * kD2 / std::sqrt(z * z + 1)};
   };
-  return {Sampled(active, 0.3, 1.9, PointCurve::kMostPoints, PointCurve::Beyond::kConstant),
+  return {Sampled(active, Uniform(0.3, 1.9, PointCurve::kMostPoints), PointCurve::Beyond::kConstant),
           ExponentialPassive(4, 0.6),
-          Sampled(velocity, -1, 1, PointCurve::kMostPoints, PointCurve::Beyond::kConstant), CurveStress::kForce};
+          Sampled(velocity, Uniform(-1, 1, PointCurve::kMostPoints), PointCurve::Beyond::kConstant),
+          CurveStress::kForce};
 }
 
 MuscleCurves Almonacid() {
@@ -128,7 +129,7 @@ MuscleCurves Almonacid() {
   constexpr std::array kLengths = {1.0, 1.25, 1.5, 1.65};
   constexpr std::array kStresses = {0.0, 0.1471153017268245, 0.6561181989622077, 1.1};
   constexpr std::array kStressSlopes = {0.0, 1.176922413814596, 2.8951007640684696, 3.023323249768765};
-  return {Sampled(active, kLow, kHigh, PointCurve::kMostPoints, PointCurve::Beyond::kConstant),
+  return {Sampled(active, Uniform(kLow, kHigh, PointCurve::kMostPoints), PointCurve::Beyond::kConstant),
           PointCurve(kLengths, kStresses, kStressSlopes), PointCurve(kVelocities, kForces, kForceSlopes),
           CurveStress::kCauchy};
 }
@@ -151,7 +152,8 @@ void CheckPositions(const CurveTable& table, const char* positions, double low, 
                  "2 to " + std::to_string(PointCurve::kMostPoints) + " points");
   }
   if (table.values.size() != n) {
-    problems.Add("values", "has " + std::to_string(table.values.size()) + " values for " + std::to_string(n) + " points",
+    problems.Add("values",
+                 "has " + std::to_string(table.values.size()) + " values for " + std::to_string(n) + " points",
                  "one value for each point");
   }
   for (std::size_t i = 0; i < n; ++i) {
@@ -166,8 +168,8 @@ void CheckPositions(const CurveTable& table, const char* positions, double low, 
       problems.Add(IndexPath(positions, i), "is " + NumberText(x) + " after " + NumberText(table.at[i - 1]),
                    "positions must increase strictly");
     } else if (!(x - table.at[i - 1] >= kLeastDistance)) {
-      problems.Add(IndexPath(positions, i), "makes the curve jump: it is only " + NumberText(x - table.at[i - 1]) +
-                                                " after the point before",
+      problems.Add(IndexPath(positions, i),
+                   "makes the curve jump: it is only " + NumberText(x - table.at[i - 1]) + " after the point before",
                    "the stress must be continuous: points are at least " + NumberText(kLeastDistance) + " apart");
     }
   }

@@ -54,8 +54,7 @@ PointCurve::PointCurve(std::span<const double> at, std::span<const double> value
 }
 
 // Hermite's form: value and slope at both ends of each piece.
-void PointCurve::SetPieces(std::span<const double> at, std::span<const double> values,
-                           std::span<const double> slopes) {
+void PointCurve::SetPieces(std::span<const double> at, std::span<const double> values, std::span<const double> slopes) {
   points_ = static_cast<std::int64_t>(at.size());
   from_[0] = at[0];
   c_[0][0] = values[0];

@@ -95,10 +95,10 @@ class TabulatedMuscle : public LawFunctions<TabulatedMuscle> {
 
   // All that the law consists of.
   struct Numbers {
-    double c1, c2, c3, bulk;    // [Pa]
-    double peak_stress;         // smax [Pa]
-    double length_per_stretch;  // 1 / lo
-    double max_velocity;        // vmax [1/s]
+    double c1, c2, c3, bulk;                         // [Pa]
+    double peak_stress;                              // smax [Pa]
+    double length_per_stretch;                       // 1 / lo
+    double max_velocity;                             // vmax [1/s]
     double active_at_rest = 0, passive_at_rest = 0;  // integrals of the curves up to lambda = 1
   };
   const Numbers& numbers() const { return numbers_; }

@@ -55,6 +55,7 @@ struct Body {
   Shape shape;
   double density = 1060;  // at rest [kg/m^3]
   Material material = NeoHookean(std::array{1e4, 0.3});
+  PronySeries viscoelasticity;  // of the material; see core/materials/prony.h
   Damping damping;
   Curve activation = Curve::Constant(0);  // in [0, 1]
   std::optional<Excitation> excitation;   // from which the activation follows, in place of the curve
@@ -78,8 +79,9 @@ struct Body {
   }
 };
 template <>
-inline constexpr auto kFieldNames<Body> = FieldNames("name", "", "density", "material", "damping", "activation",
-                                                     "excitation", "regions", "constraints", "loads", "notes");
+inline constexpr auto kFieldNames<Body> = FieldNames("name", "", "density", "material", "viscoelasticity", "damping",
+                                                     "activation", "excitation", "regions", "constraints", "loads",
+                                                     "notes");
 
 }  // namespace fascicle
 

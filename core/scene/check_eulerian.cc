@@ -56,6 +56,7 @@ void CheckEulerianBody(const Body& body, const std::string& path, Problems& prob
     problems.Add(JoinPath(path, "damping"), "the eulerian method has mass-proportional damping only",
                  "use mass_proportional only");
   }
+  RefuseViscoelasticity(body, "eulerian", path, problems);
   if (DependsOnSpeed(body.material)) {
     problems.Add(JoinPath(path, "material"), "the eulerian method does not support the rate of fibres",
                  "omit max_velocity, or use the tet method");

@@ -60,6 +60,7 @@ void CheckVoxel(const Scene& scene, Problems& problems) {
     if (!std::holds_alternative<VoxelShape>(scene.bodies[i].shape)) continue;
     const std::string path = IndexPath("bodies", i);
     CheckLaws(scene.bodies[i], path, problems);
+    RefuseViscoelasticity(scene.bodies[i], "voxel", path, problems);
     CheckLeftOut(scene.bodies[i], path, problems);
     CheckAxes(scene.bodies[i], path, problems);
   }

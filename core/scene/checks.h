@@ -8,7 +8,7 @@ namespace fascicle::scene_checks {
 
 // At least one body; each has the shape of the method, not empty, a positive density and a unique name.
 void CheckBodies(const Scene& scene, Problems& problems);
-// Materials of the parts of a body: every element has an existing one.
+// Materials of the parts of a body: every element has an existing one. Viscoelasticity of all of them.
 void CheckMaterials(const Scene& scene, Problems& problems);
 // Activations within [0, 1], of bodies and of their parts; activation scales.
 void CheckActivations(const Scene& scene, Problems& problems);
@@ -29,14 +29,17 @@ void CheckFloors(const Scene& scene, Problems& problems);
 // Probes refer to existing nodes; number of frames; duration.
 void CheckOutput(const Scene& scene, Problems& problems);
 
+// Reports that a body of a method other than tet is viscoelastic.
+void RefuseViscoelasticity(const Body& body, const std::string& method, const std::string& path, Problems& problems);
+
 // The remaining checks report what a method does not support, and settings that only the method has.
-// tet: single precision requires explicit or mixed stepping.
+// tet: single precision requires explicit or mixed stepping and elastic materials.
 void CheckTet(const Scene& scene, Problems& problems);
-// voxel: the two supported laws, activation, floors, damping, and single axes of supports on images that are not
-// aligned with the world.
+// voxel: the two supported laws, viscoelasticity, activation, floors, damping, and single axes of supports on images
+// that are not aligned with the world.
 void CheckVoxel(const Scene& scene, Problems& problems);
-// eulerian: regions by tag, single axes, floors, damping, laws that depend on the rate; plasticity and plane force
-// fields, also in scenes of other methods.
+// eulerian: regions by tag, single axes, floors, damping, viscoelasticity, laws that depend on the rate; plasticity and
+// plane force fields, also in scenes of other methods.
 void CheckEulerian(const Scene& scene, Problems& problems);
 
 }  // namespace fascicle::scene_checks

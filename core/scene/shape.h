@@ -11,6 +11,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/materials/material.h"
+#include "core/materials/prony.h"
 #include "core/muscle/fibre_field.h"
 #include "core/scene/fields.h"
 
@@ -42,18 +43,25 @@ struct Parts {
 template <class Value>
 inline constexpr auto kFieldNames<Parts<Value>> = FieldNames("", "of");
 
+template <>
+inline constexpr auto kFieldNames<PronyTerm> = FieldNames("strength", "time");
+template <>
+inline constexpr auto kFieldNames<PronySeries> = FieldNames("terms");
+
 // Tetrahedra, for the tet method.
 struct TetShape {
   TetMesh mesh;
   FibreField fibres;  // one for each tetrahedron, or none
   Parts<Material> materials;
+  std::vector<PronySeries> viscoelasticity;  // of each of materials.more; empty: these are elastic
   Parts<Curve> activations;
   std::vector<double> activation_scale;    // fraction of the activation that reaches each tetrahedron [0, 1]; empty: 1
   std::vector<Vec3> initial_displacement;  // of each node at time 0 [m], may tangle the mesh; empty: none
 };
 template <>
-inline constexpr auto kFieldNames<TetShape> = FieldNames("mesh", "fibres", "region_materials", "region_activations",
-                                                         "activation_scale", "initial_displacement");
+inline constexpr auto kFieldNames<TetShape> = FieldNames("mesh", "fibres", "region_materials", "viscoelasticity",
+                                                         "region_activations", "activation_scale",
+                                                         "initial_displacement");
 
 // Bricks, the solid voxels of a grid, for the voxel method.
 struct VoxelShape {

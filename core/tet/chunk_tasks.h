@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_TET_CHUNK_TASKS_H_
 #define FASCICLE_CORE_TET_CHUNK_TASKS_H_
 
+#include "core/tet/branches.h"
 #include "core/tet/forces.h"
 
 // Functions shared by the loops over chunks.
@@ -42,10 +43,21 @@ ChunkTask<S> TaskOf(const TetModel& model, const Chunk& chunk, const Sharing& sh
   return task;
 }
 
-// The fibre arguments of the laws of a task.
+// The law that a viscoelastic chunk's branches follow.
+inline const void* BranchLawOf(const TetModel& model, const Chunk& chunk) {
+  return std::visit([&](const auto& laws) -> const void* { return &laws[chunk.law]; },
+                    model.groups()[chunk.group].branch_laws);
+}
+
+// The arguments of the laws of a chunk's task besides the deformation.
 template <class S>
-void SetDrive(const TetModel& model, const FibreDrive& drive, ChunkTask<S>& task) {
+void SetDrive(const TetModel& model, const FibreDrive& drive, const Chunk& chunk, ChunkTask<S>& task) {
   task.activation = drive.activation.data();
+  if (drive.branches != nullptr && chunk.branch_point != Chunk::kElastic) {
+    task.branch_law = BranchLawOf(model, chunk);
+    task.branch_factor = drive.branches->factor[static_cast<std::size_t>(&chunk - model.chunks().chunks.data())];
+    task.branch_stress = &drive.branches->stress[kBranchTensor * chunk.branch_point];
+  }
   if (drive.inverse_step == 0 || !model.depends_on_rate()) return;
   task.previous = Numbers(*drive.previous);
   task.inverse_step = drive.inverse_step;

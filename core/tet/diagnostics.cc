@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/tet/branches.h"
 #include "core/tet/floor_contact.h"
 #include "core/tet/points.h"
 
@@ -18,6 +19,11 @@ struct NodalForces {
   NodalForces(const TetModel& model, const TetState& state, const Controls& controls, ThreadTeam& team) {
     ForceWorkspace workspace;
     FibreDrive drive{controls.activations};
+    BranchDrive branches;
+    if (model.branch_points() > 0) {
+      SetStateDrive(model, state.branches, team, branches);
+      drive.branches = &branches;
+    }
     NodalVector previous;
     if (model.depends_on_rate() && state.time_step > 0) {
       previous = state.positions;

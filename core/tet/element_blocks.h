@@ -33,6 +33,9 @@ struct alignas(64) BlockFibres {
   std::int32_t activation[kBlock];  // index of the activation curve
 };
 
+// Numbers of a symmetric tensor at one point of a block's elements: component by component, xx, yy, zz, xy, yz, zx.
+inline constexpr std::size_t kBranchTensor = 6 * kBlock;
+
 template <class S>
 struct BlockArrays {
   std::vector<RestPoint<S>> points;    // point q of block b is points[points of an element * b + q]
@@ -40,10 +43,14 @@ struct BlockArrays {
 };
 
 struct Chunk {
+  static constexpr std::size_t kElastic = SIZE_MAX;
+
   std::int32_t group = 0, law = 0;
   std::size_t tet_begin = 0, tet_end = 0;
   std::size_t block_begin = 0, block_end = 0;
   std::size_t node_begin = 0, node_end = 0;  // in ElementChunks::nodes
+  // The first of its points among those of viscoelastic blocks, block by block; kElastic without Maxwell branches.
+  std::size_t branch_point = kElastic;
 };
 
 // Target of sums over chunks at places (nodes, patches) that several chunks may share. If only one chunk contributes to

@@ -15,7 +15,7 @@ ChunkTask<double> MatrixTaskOf(const TetModel& model, const IncrementalPotential
   ChunkTask<double> task = TaskOf<double>(model, chunk, model.chunks().node_sums);
   const TetBody& body = model.bodies()[model.groups()[chunk.group].body];
   task.x = Numbers(x);
-  SetDrive(model, potential.drive, task);
+  SetDrive(model, potential.drive, chunk, task);
   if (!model.patches().empty()) task.pressure = acting.data();
   if (potential.viscous_rate != 0 && body.HasStrainDamping()) {
     task.mu = body.damping_mu * potential.viscous_rate;

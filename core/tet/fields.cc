@@ -6,6 +6,7 @@
 #include <array>
 
 #include "core/scene/probe_place.h"
+#include "core/tet/branches.h"
 #include "core/tet/diagnostics.h"
 #include "core/tet/points.h"
 
@@ -19,15 +20,19 @@ struct FieldInputs {
   FibreDrive drive;
   Vec3 line_of_action;
   ForceWorkspace patches;
+  BranchDrive branches;  // at the state
 
-  FieldInputs(const TetModel& m, FieldSource from, const NodalVector& positions, const Controls& now, ThreadTeam& team)
+  FieldInputs(const TetModel& m, FieldSource from, const TetState& state, const Controls& now, ThreadTeam& team)
       : model(m),
-        x(positions),
+        x(state.positions),
         drive(now.activations),
         line_of_action(m.scene().output.line_of_action.value_or(Vec3::UnitX())) {
     if (from != FieldSource::kDeformation) UpdatePatches(model, x, team, patches);
+    if (model.branch_points() > 0) SetStateDrive(model, state.branches, team, branches);
   }
 };
+
+bool HasBranches(const FieldInputs& inputs) { return inputs.model.branch_points() > 0; }
 
 // The elastic energy of the patches per volume of an element at barycentric coordinates L [J/m^3].
 double PatchEnergyDensity(const FieldInputs& inputs, std::size_t e, const std::array<double, 4>& L) {
@@ -50,10 +55,10 @@ double PressureAt(const FieldInputs& inputs, std::size_t e, const std::array<dou
   return sum;
 }
 
-// A point of an element, from its deformation gradient.
+// A point of an element, from its deformation gradient. branch_stress: that of Maxwell branches there [Pa].
 template <class Element, FieldSource kFrom, class Law>
 MaterialPoint PointOf(const FieldInputs& inputs, const Law& law, std::size_t e, const Mat3& F,
-                      const std::array<double, 4>& L) {
+                      const std::array<double, 4>& L, const Mat3& branch_stress) {
   MaterialPoint point;
   point.F = F;
   point.J = Determinant(F);
@@ -62,11 +67,11 @@ MaterialPoint PointOf(const FieldInputs& inputs, const Law& law, std::size_t e, 
   if constexpr (kFrom == FieldSource::kStress || kFrom == FieldSource::kFibreStress) {
     FibreState fibre = FibreAt<Element>(inputs.model, e, inputs.drive, 0);
     const double pressure = PressureAt(inputs, e, L);
-    const Mat3 P = law.Stress(F, fibre);
+    const Mat3 P = law.Stress(F, fibre) + F * branch_stress;
     point.sigma = P * F.transpose() / point.J + pressure * Mat3::Identity();
     if constexpr (kFrom == FieldSource::kFibreStress) {
       fibre.activation = 0;
-      const Mat3 passive = law.Stress(F, fibre);
+      const Mat3 passive = law.Stress(F, fibre) + F * branch_stress;
       point.passive_sigma = passive * F.transpose() / point.J + pressure * Mat3::Identity();
     }
   }
@@ -108,7 +113,8 @@ std::vector<double> OverElements(const FieldInputs& inputs, std::size_t body_ind
         double* const of_element = &values[components * static_cast<std::size_t>(model.source_tetrahedron()[e])];
         for (int q = 0; q < Element::kPoints; ++q) {
           const Mat3 F = GradientAt<Element>(model, e, positions, q);
-          const MaterialPoint point = PointOf<Element, kFrom>(inputs, law, e, F, QuadraturePoint<Element>(q));
+          const Mat3 branches = HasBranches(inputs) ? BranchStressAt(model, inputs.branches, e, q) : Mat3(Mat3::Zero());
+          const MaterialPoint point = PointOf<Element, kFrom>(inputs, law, e, F, QuadraturePoint<Element>(q), branches);
           std::array<double, kMostComponents> at_point;
           PutField(field, point, at_point.data());
           for (std::size_t c = 0; c < components; ++c) of_element[c] += Element::kPointWeight * at_point[c];
@@ -152,7 +158,13 @@ NodalVector NodalForceOf(const TetModel& model, OutputField field, const TetStat
   if (field == OutputField::kReactionForce) return ReactionForces(model, state, controls.now, controls.later, team);
   ForceWorkspace workspace;
   NodalVector forces;
-  ElasticForce(model, FibreDrive{controls.now.activations}, state.positions, team, workspace, forces);
+  FibreDrive drive{controls.now.activations};
+  BranchDrive branches;
+  if (model.branch_points() > 0) {
+    SetStateDrive(model, state.branches, team, branches);
+    drive.branches = &branches;
+  }
+  ElasticForce(model, drive, state.positions, team, workspace, forces);
   return forces;
 }
 
@@ -215,7 +227,9 @@ std::vector<double> AtPlace(const FieldInputs& inputs, const TetPlace& place, Ou
         EdgesAt<Element>(model, place, inputs.x) * EdgesAt<Element>(model, place, model.rest_positions()).inverse();
     std::visit(
         [&](const auto& laws) {
-          PutField(field, PointOf<Element, kFrom>(inputs, laws[model.law_of()[e]], e, F, place.L), values.data());
+          const Mat3 branches = HasBranches(inputs) ? MeanBranchStress(model, inputs.branches, e) : Mat3(Mat3::Zero());
+          const auto& law = laws[model.law_of()[e]];
+          PutField(field, PointOf<Element, kFrom>(inputs, law, e, F, place.L, branches), values.data());
         },
         group->laws);
   });
@@ -233,7 +247,7 @@ std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body_index,
   if (from == FieldSource::kNodalForce) {
     return AtNodes(body, OnMeshNodes(model, body, NodalForceOf(model, field, state, controls, team)));
   }
-  const FieldInputs inputs(model, from, state.positions, controls.now, team);
+  const FieldInputs inputs(model, from, state, controls.now, team);
   return WithSource(from, [&]<FieldSource kFrom>() {
     return FromMeans(field, OverElements<kFrom>(inputs, body_index, InfoOf(field).mean_of, team));
   });
@@ -248,7 +262,7 @@ std::vector<double> FieldValuesAt(const TetModel& model, const Probe& probe, Out
         model.VisitElement([&]<class Element>(Element) { return ValueAt<Element>(model, place, state.velocities); });
     return {v.begin(), v.end()};
   }
-  const FieldInputs inputs(model, from, state.positions, now, team);
+  const FieldInputs inputs(model, from, state, now, team);
   return WithSource(from, [&]<FieldSource kFrom>() { return AtPlace<kFrom>(inputs, place, field); });
 }
 

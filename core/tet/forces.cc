@@ -25,7 +25,7 @@ ChunkTask<S> TaskOf(const TetModel& model, const Chunk& chunk, const Action& act
   task.x = Numbers(*action.x);
   task.with_energy = action.with_energy;
   if (action.elastic) {
-    SetDrive(model, *action.drive, task);
+    SetDrive(model, *action.drive, chunk, task);
     if (!model.patches().empty()) task.pressure = workspace.pressure.data();
   } else {
     task.law = nullptr;

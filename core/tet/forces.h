@@ -14,7 +14,9 @@
 //   x, v   positions [m] and velocities [m/s] of all nodes
 namespace fascicle {
 
-// Arguments of the fibre terms besides the stretch.
+struct BranchDrive;
+
+// Arguments of the laws besides the deformation.
 struct FibreDrive {
   // Isometric fibres, converted from any array of activations. NOLINTBEGIN(google-explicit-constructor)
   template <class Activations>
@@ -28,6 +30,7 @@ struct FibreDrive {
   std::span<const double> activation;     // Controls::activations [1]
   const NodalVector* previous = nullptr;  // positions one step ago [m], for laws that depend on rate; null: isometric
   double inverse_step = 0;                // inverse of that step's length [1/s]
+  const BranchDrive* branches = nullptr;  // stresses of Maxwell branches; null: none
 };
 
 // Scratch memory of the functions below; reused by later calls.

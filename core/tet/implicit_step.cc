@@ -123,7 +123,9 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
   NodalVector target = now.positions;
   PrescribePositions(model_, step.next, target);
 
-  potential_.drive = is_static ? FibreDrive{step.next.activations} : DriveOf(now, step);
+  potential_.drive = DriveOf(now, step);
+  // Fibres of a state of rest are isometric.
+  if (is_static) potential_.drive.inverse_step = 0;
   potential_.load = &external_next_;
   potential_.previous = &now.positions;
   potential_.viscous_rate = is_static || !model_.has_strain_damping() ? 0 : 1 / dt;

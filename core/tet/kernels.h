@@ -30,6 +30,11 @@ struct ChunkTask {
   // strain below.
   const double* previous = nullptr;
   double inverse_step = 0;
+  // Maxwell branches add branch_factor times the passive stress of `branch_law`, a law of the same kind, and the second
+  // Piola-Kirchhoff stresses `branch_stress` [Pa], kBranchTensor numbers for each point of each block. Null: none.
+  const void* branch_law = nullptr;
+  double branch_factor = 0;
+  const double* branch_stress = nullptr;
   // Viscous stress 2 mu E + lambda tr(E) I. E is the strain rate for velocities v, or the change of strain since
   // `previous` if v is null. Both moduli zero: no viscous stress.
   double mu = 0, lambda = 0;
@@ -72,6 +77,9 @@ struct ElementKernels {
   void (*stiffness_product)(const ChunkTask<S>&);
   // Adds the elements' blocks to the chunk's.
   void (*stiffness)(const ChunkTask<S>&, const ChunkBlocks&);
+  // The second Piola-Kirchhoff stress of branch_law without activation [Pa] and the Green strain at each point of each
+  // block: two tensors of kBranchTensor numbers. Null in single precision.
+  void (*branch_states)(const ChunkTask<S>&, double* values);
 };
 
 // U' = k ln(theta)/theta for each of `count` patches; not finite where theta <= 0.

@@ -47,6 +47,10 @@ struct TetGroup {
   std::size_t body = 0;
   std::size_t tet_begin = 0, tet_end = 0;
   LawTable laws;  // the law of an element is laws[law_of()[element]]
+  // For each law: its Maxwell branches, and the law without the volume term, which they follow. Empty if all of them
+  // are elastic.
+  std::vector<PronySeries> series;
+  LawTable branch_laws;
 };
 
 // A load as nodal forces at scale 1; without nodes if it is one of TetModel::position_loads().
@@ -180,6 +184,9 @@ class TetModel {
   bool has_strain_damping() const { return has_strain_damping_; }
   // Whether any law depends on the rate of its fibres.
   bool depends_on_rate() const { return depends_on_rate_; }
+  // Number of points of viscoelastic blocks, and of numbers that the state has of each: see branches.h.
+  std::size_t branch_points() const { return branch_points_; }
+  std::size_t branch_numbers() const { return (2 + most_branches_) * kBranchTensor; }
 
  private:
   friend class TetModelBuilder;
@@ -207,6 +214,7 @@ class TetModel {
   bool has_mass_damping_ = false;
   bool has_strain_damping_ = false;
   bool depends_on_rate_ = false;
+  std::size_t branch_points_ = 0, most_branches_ = 0;
 };
 
 }  // namespace fascicle

@@ -34,16 +34,29 @@ const Material& MaterialOf(const Body& body, std::size_t tet) {
   return k == 0 ? body.material : materials.more[k - 1];
 }
 
+// The Maxwell branches of a part of a body.
+const PronySeries& SeriesOf(const Body& body, std::int32_t part) {
+  static const PronySeries kElastic;
+  if (part == 0) return body.viscoelasticity;
+  const std::vector<PronySeries>& of_parts = body.tet().viscoelasticity;
+  return of_parts.empty() ? kElastic : of_parts[static_cast<std::size_t>(part) - 1];
+}
+
 // The part of the volume modulus that remains with the elements when the rest acts on patches. Up to a Poisson's ratio
 // of 0.3, which does not lock, all of it. Beyond, a multiple of the stresses that may crush a single element: its shear
-// modulus and the active stress of its fibres at rest, which may be a hundred times larger. Quadratic elements tolerate
-// a ten times larger multiple before they stiffen, and need it, because each of their points may be crushed separately.
+// modulus, with Maxwell branches the instantaneous one, and the active stress of its fibres at rest, which may be a
+// hundred times larger. Quadratic elements tolerate a ten times larger multiple before they stiffen, and need it,
+// because each of their points may be crushed separately.
 template <class Law>
-double ElementVolumeModulus(const Law& law, ElementOrder order) {
+double ElementVolumeModulus(const Law& law, const PronySeries& series, ElementOrder order) {
   constexpr double kDoesNotLock = 1.5;
   const double kept = order == ElementOrder::kLinear ? 0.3 : 3;
-  const double modulus = law.VolumeModulus(), shear = law.ShearModulus();
+  const double modulus = law.VolumeModulus();
+  double shear = law.ShearModulus();
   if (modulus <= kDoesNotLock * (1 + 1e-12) * shear) return modulus;
+  double instantaneous = 1;
+  for (const PronyTerm& term : series.terms) instantaneous += term.strength;
+  shear *= instantaneous;
   const double active_stress = law.Stress(Mat3::Identity(), FibreState{Vec3::UnitX(), 1}).norm();
   return std::min(modulus, kept * (shear + active_stress));
 }
@@ -201,7 +214,9 @@ void TetModelBuilder::FillGroup(const Body& body, TetGroup& group) {
   std::vector<double> given(group.tet_end - group.tet_begin, 0.0);
   const auto fill = [&]<class Law>(const Law&) {
     std::map<const Material*, std::int32_t> places;
-    std::vector<Law> laws;
+    std::vector<Law> laws, branch_laws;
+    std::vector<PronySeries> series;
+    bool viscoelastic = false;
     std::vector<double> given_by_law;
     for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
       HeedStop();
@@ -212,6 +227,9 @@ void TetModelBuilder::FillGroup(const Body& body, TetGroup& group) {
         const double whole = law.VolumeModulus();
         const double kept = nodal ? ElementVolumeModulus(law, model_.order()) : whole;
         laws.push_back(law.WithVolumeModulus(kept));
+        branch_laws.push_back(law.WithVolumeModulus(0));
+        series.push_back(SeriesOf(body, PartOf(body.tet().materials, model_.source_tetrahedron_[e])));
+        viscoelastic |= !series.back().terms.empty();
         given_by_law.push_back(whole - kept);
         model_.depends_on_rate_ |= DependsOnRate(law);
       }
@@ -219,6 +237,9 @@ void TetModelBuilder::FillGroup(const Body& body, TetGroup& group) {
       given[e - group.tet_begin] = given_by_law[place->second];
     }
     group.laws = std::move(laws);
+    if (!viscoelastic) return;
+    group.series = std::move(series);
+    group.branch_laws = std::move(branch_laws);
   };
   std::visit(fill, MaterialOf(body, model_.source_tetrahedron_[group.tet_begin]));
   AddPatches(group, given);

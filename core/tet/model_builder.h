@@ -47,6 +47,7 @@ class TetModelBuilder {
                       std::span<std::int32_t> sorted);
   template <class Element>
   void AddLocalNumbers(const Chunk& chunk, std::span<const std::int32_t> local_of);
+  void AddBranches(Chunk& chunk);
   void SetChunks();
   template <class S>
   BlockArrays<S> MakeBlocks() const;

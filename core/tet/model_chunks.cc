@@ -56,6 +56,15 @@ void TetModelBuilder::AddLocalNumbers(const Chunk& chunk, std::span<const std::i
   }
 }
 
+// Counts the points of a chunk with Maxwell branches.
+void TetModelBuilder::AddBranches(Chunk& chunk) {
+  const std::vector<PronySeries>& series = model_.groups_[chunk.group].series;
+  if (series.empty() || series[chunk.law].terms.empty()) return;
+  chunk.branch_point = model_.branch_points_;
+  model_.branch_points_ += model_.points_per_element() * (chunk.block_end - chunk.block_begin);
+  model_.most_branches_ = std::max(model_.most_branches_, series[chunk.law].terms.size());
+}
+
 // Lists the nodes of each chunk, ascending.
 void TetModelBuilder::SetChunks() {
   model_.VisitElement([&]<class Element>(Element) {
@@ -81,6 +90,7 @@ void TetModelBuilder::SetChunks() {
       }
       chunk.node_end = model_.chunks_.nodes.size();
       FASCICLE_CHECK(chunk.node_end - chunk.node_begin <= kChunkNodes, "a chunk respects its limits");
+      AddBranches(chunk);
       const auto first = model_.chunks_.nodes.begin() + static_cast<std::ptrdiff_t>(chunk.node_begin);
       std::sort(first, model_.chunks_.nodes.end());
       for (std::size_t i = chunk.node_begin; i < chunk.node_end; ++i) {

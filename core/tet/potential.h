@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_TET_POTENTIAL_H_
 
 #include "core/materials/tensor_algebra.h"
+#include "core/tet/branches.h"
 #include "core/tet/points.h"
 
 namespace fascicle {
@@ -14,7 +15,8 @@ namespace fascicle {
 // centre c for each node; the viscous increment W_v = dt (mu' |dE|^2 + lambda'/2 tr(dE)^2) / dt^2, where dE is the
 // change of Green strain during the step and whose derivative is the viscous stress of ViscousStress at the mean rate
 // of the step; the energy of floors W_c (FloorEnergy); loads f, with the second-order term of those that depend on
-// positions, 1/2 (x - c) . S (x - c), see LoadExpansion. Quasi-static steps have neither m nor W_v.
+// positions, 1/2 (x - c) . S (x - c), see LoadExpansion. W includes Maxwell branches (branches.h). Quasi-static steps
+// have neither m nor W_v.
 struct IncrementalPotential {
   FibreDrive drive;
   const NodalVector* load = nullptr;         // f [N]
@@ -34,6 +36,7 @@ class PointTangent {
   PointTangent(const IncrementalPotential& potential, const TetModel& model, const TetBody& body, const Law& law,
                std::size_t tet, int q)
       : law_(law), fibre_(FibreAt<Element>(model, tet, potential.drive, q)) {
+    if (potential.drive.branches != nullptr) SetBranches(model, *potential.drive.branches, tet, q);
     if (potential.viscous_rate == 0 || !body.HasStrainDamping()) return;
     mu_ = body.damping_mu * potential.viscous_rate;
     lambda_ = body.damping_lambda * potential.viscous_rate;
@@ -44,6 +47,10 @@ class PointTangent {
   // dP/dF [Pa].
   Mat9 At(const Mat3& F) const {
     Mat9 tangent = law_.Tangent(F, fibre_);
+    if (branch_law_ != nullptr) {
+      tangent += branch_factor_ * branch_law_->Tangent(F, {fibre_.direction, 0});
+      AddRightProduct(1, branch_stress_, tangent);
+    }
     if (mu_ != 0 || lambda_ != 0) {
       const Vec9 f = Flatten(F);
       const Mat3 dE = 0.5 * (F.transpose() * F - previous_C_);
@@ -56,8 +63,19 @@ class PointTangent {
   }
 
  private:
+  void SetBranches(const TetModel& model, const BranchDrive& drive, std::size_t tet, int q) {
+    const Chunk& chunk = ChunkOf(model, tet);
+    if (chunk.branch_point == Chunk::kElastic) return;
+    branch_law_ = &std::get<std::vector<Law>>(model.groups()[chunk.group].branch_laws)[chunk.law];
+    branch_factor_ = drive.factor[static_cast<std::size_t>(&chunk - model.chunks().chunks.data())];
+    branch_stress_ = BranchStressAt(model, drive, tet, q);
+  }
+
   const Law& law_;
   FibreState fibre_;
+  const Law* branch_law_ = nullptr;
+  double branch_factor_ = 0;
+  Mat3 branch_stress_ = Mat3::Zero();
   double mu_ = 0, lambda_ = 0;  // of the viscous stress, over the step [Pa]
   Mat3 previous_C_ = Mat3::Identity();
 };

@@ -51,6 +51,7 @@ TetState TetSolver::InitialState(const Controls& start) {
                   FibreDrive{start.activations}, state);
   if (method_.stepping == Stepping::kNewmark && forces.valid) SetFirstAcceleration(start, state);
   state.stable.activation.assign(start.activations.size(), 0.0);
+  if (HasBranches()) state.branches = RelaxedBranches(model_, state.positions, team_, forces_);
   return state;
 }
 
@@ -110,8 +111,13 @@ bool TetSolver::CutStep(TetState& state, const Controls& now, double dt) {
 
 double TetSolver::StableStepAt(const TetState& state, const Controls& now) {
   const StageTimer timer(profile_, "stable step");
-  return LargestStableStep(model_, FibreDrive{now.activations}, state.positions,
-                           method_.stepping == Stepping::kExplicit, team_, forces_, stable_step_);
+  FibreDrive drive{now.activations};
+  if (HasBranches()) {
+    SetStepDrive(model_, state.branches, 0, team_, state_branches_);
+    drive.branches = &state_branches_;
+  }
+  return LargestStableStep(model_, drive, state.positions, method_.stepping == Stepping::kExplicit, team_, forces_,
+                           stable_step_);
 }
 
 bool TetSolver::IsStableStepDue(const TetState& state, const Controls& now) const {

@@ -7,6 +7,7 @@
 #include "core/base/step_problem.h"
 #include "core/linalg/conjugate_gradient.h"
 #include "core/tet/bad_elements.h"
+#include "core/tet/branches.h"
 #include "core/tet/controls.h"
 #include "core/tet/forces.h"
 #include "core/tet/newton.h"
@@ -101,6 +102,9 @@ class TetSolver {
   void AddWork(const TetState& now, const StepControls& step, TetState& next);
   void AddStaticWork(const TetState& now, const StepControls& step, double of_loads, TetState& next);
   double DynamicWorkOfSupports(const TetState& now, const StepControls& step, const TetState& next);
+  bool HasBranches() const { return model_.branch_points() > 0; }
+  // The activations and, if there are any, the branches at a state.
+  FibreDrive StateDrive(const TetState& state, std::span<const double> activations);
   NodalVector ElasticAndFloorForce(const FibreDrive& drive, const NodalVector& x);
   double ElasticEnergyAt(const FibreDrive& drive, const NodalVector& x);
 
@@ -121,6 +125,7 @@ class TetSolver {
   NodalVector right_side_, inverse_diagonal_;
   NodalVector force_before_, force_after_, mean_rate_, viscous_;  // for the work of supports
   ForceWorkspace forces_;
+  BranchDrive step_branches_, state_branches_;
   CgWorkspace cg_;
   StableStepWorkspace stable_step_;
   std::unique_ptr<NewtonSolver> newton_;  // for implicit steppings

@@ -39,7 +39,7 @@ void TetStiffness::Apply(const TetModel& model, const NodalVector& p, ThreadTeam
       ChunkTask<S> task = TaskOf<S>(model, chunk, sharing);
       task.x = Numbers(*x_);
       task.p = Numbers(p);
-      SetDrive(model, drive_, task);
+      SetDrive(model, drive_, chunk, task);
       if (!model.patches().empty()) {
         task.pressure = workspace.pressure.data();
         task.pressure_change = pressure_change_.data();

@@ -14,6 +14,7 @@ void TetState::Save(ArchiveWriter& archive) const {
   archive.PutVectors("previous_positions", previous_positions);
   archive.PutVectors("previous_velocities", previous_velocities);
   archive.PutDoubles("pressures", pressures);
+  if (!branches.empty()) archive.PutDoubles("branches", branches);
   archive.PutDouble("next_step", next_step);
   archive.PutDouble("smallest_ratio", smallest_ratio);
   archive.PutDouble("peak_kinetic", peak_kinetic);
@@ -42,6 +43,7 @@ void TetState::Load(ArchiveReader& archive) {
   archive.GetVectors("previous_positions", std::span(previous_positions));
   archive.GetVectors("previous_velocities", std::span(previous_velocities));
   archive.GetDoubles("pressures", std::span(pressures));
+  if (!branches.empty()) archive.GetDoubles("branches", std::span(branches));
   next_step = archive.GetDouble("next_step");
   smallest_ratio = archive.GetDouble("smallest_ratio");
   peak_kinetic = archive.GetDouble("peak_kinetic");

@@ -32,13 +32,14 @@ struct TetState {
   NodalVector accelerations, previous_positions, previous_velocities;
   std::vector<double> pressures;
   double next_step = 0;
-  double smallest_ratio = 1;   // least J of all elements, at most 1
-  double peak_kinetic = 0;     // largest kinetic energy of the free components at any half step so far [J]
-  double time_step = 0;        // of the last step [s]
-  double load_work = 0;        // of loads and gravity so far, by the trapezoidal rule [J]
-  double external_work = 0;    // of loads, gravity and supports so far [J]
-  double activation_work = 0;  // of activation so far, in quasi-static stepping [J]
-  double dissipated = 0;       // by damping so far [J]
+  std::vector<double> branches;  // of viscoelastic materials: see branches.h; empty without
+  double smallest_ratio = 1;     // least J of all elements, at most 1
+  double peak_kinetic = 0;       // largest kinetic energy of the free components at any half step so far [J]
+  double time_step = 0;          // of the last step [s]
+  double load_work = 0;          // of loads and gravity so far, by the trapezoidal rule [J]
+  double external_work = 0;      // of loads, gravity and supports so far [J]
+  double activation_work = 0;    // of activation so far, in quasi-static stepping [J]
+  double dissipated = 0;         // by damping so far [J]
   StableStep stable;
   std::int32_t cuts = 0;        // number of times the step is halved
   std::int64_t last_cut = 0;    // step at which `cuts` changed last

@@ -23,10 +23,16 @@ StepReport TetSolver::Attempt(const TetState& now, const Controls& controls_now,
   made.dissipated = now.dissipated;
   made.iterations = now.iterations;
   UpdateExternalForces(now, step);
+  if (HasBranches()) SetStepDrive(model_, now.branches, dt, team_, step_branches_);
   const StepReport report = IsImplicit()                              ? StepImplicit(now, step, made)
                             : method_.stepping == Stepping::kExplicit ? StepExplicit(now, step, made)
                                                                       : StepMixed(now, step, made);
-  if (report.problem == StepProblem::kNone) AddWork(now, step, made);
+  if (report.problem != StepProblem::kNone) return report;
+  if (HasBranches()) {
+    const StageTimer timer(profile_, "branches");
+    made.dissipated += AdvanceBranches(model_, now.branches, made.positions, dt, team_, forces_, made.branches);
+  }
+  AddWork(now, step, made);
   return report;
 }
 
@@ -126,7 +132,9 @@ void TetSolver::Drift(const TetState& now, const StepControls& step, TetState& n
 
 // The fibre drive at the end of a step.
 FibreDrive TetSolver::DriveOf(const TetState& now, const StepControls& step) const {
-  return {step.next.activations, &now.positions, 1 / step.dt};
+  FibreDrive drive{step.next.activations, &now.positions, 1 / step.dt};
+  if (HasBranches()) drive.branches = &step_branches_;
+  return drive;
 }
 
 ForceReport TetSolver::UpdateForce(const NodalVector* viscous_velocity, const FibreDrive& drive, TetState& next) {

@@ -79,7 +79,7 @@ void TetSolver::AddWork(const TetState& now, const StepControls& step, TetState&
 double TetSolver::DynamicWorkOfSupports(const TetState& now, const StepControls& step, const TetState& next) {
   const NodalVector *from = &now.force, *to = &next.force;
   if (IsImplicit()) {
-    force_before_ = ElasticAndFloorForce(FibreDrive{step.now.activations}, now.positions);
+    force_before_ = ElasticAndFloorForce(StateDrive(now, step.now.activations), now.positions);
     force_after_ = ElasticAndFloorForce(DriveOf(now, step), next.positions);
     from = &force_before_;
     to = &force_after_;
@@ -102,6 +102,14 @@ double TetSolver::DynamicWorkOfSupports(const TetState& now, const StepControls&
     work += 0.5 * model_.mass()[n] * (after * after - before * before) + (damping - force) * moved;
   });
   return work;
+}
+
+FibreDrive TetSolver::StateDrive(const TetState& state, std::span<const double> activations) {
+  FibreDrive drive(activations, nullptr, 0);
+  if (!HasBranches()) return drive;
+  SetStateDrive(model_, state.branches, team_, state_branches_);
+  drive.branches = &state_branches_;
+  return drive;
 }
 
 NodalVector TetSolver::ElasticAndFloorForce(const FibreDrive& drive, const NodalVector& x) {
@@ -130,6 +138,12 @@ void TetSolver::AddStaticWork(const TetState& now, const StepControls& step, dou
     if (a0 != a1) activation += weight * (ElasticEnergyAt(FibreDrive{a1}, x) - ElasticEnergyAt(FibreDrive{a0}, x));
     if (place == 0) at_start = force;
     if (place == 1) at_end = std::move(force);
+  }
+  // The work on branches is part of neither energy nor activation; external forces do it, too.
+  if (HasBranches()) {
+    at_start = ElasticAndFloorForce(StateDrive(now, a0), now.positions);
+    at_end = ElasticAndFloorForce(StateDrive(next, a1), next.positions);
+    along_path += next.dissipated - now.dissipated;
   }
   // What external forces do, by the trapezoidal rule.
   double boundary = of_loads;

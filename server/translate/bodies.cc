@@ -53,6 +53,7 @@ TranslatedBody TranslateBody(const BodySource& source, Method method, Problems& 
   body.name = wire.name();
   if (std::isfinite(wire.density()) && wire.density() > 0) body.density = wire.density();
   body.material = TranslateMaterial(wire.has_material() ? &wire.material() : nullptr, path, problems);
+  body.viscoelasticity = TranslateViscoelasticity(wire.material(), JoinPath(path, "material"), problems);
   body.damping = TranslateDamping(wire);
   Problems structure, others;
   const RegionSelectors selectors = TranslateRegions(wire, path, structure);

@@ -127,4 +127,21 @@ Parts<Material> TranslateMaterialParts(const BodySource& source, std::optional<s
   return parts;
 }
 
+std::vector<PronySeries> TranslatePartViscoelasticity(const BodySource& source, std::size_t parts, Problems& problems) {
+  const v1::Body& wire = source.wire;
+  std::vector<PronySeries> series;
+  for (int i = 0; i < wire.region_materials_size(); ++i) {
+    const std::string path = JoinPath(source.path, IndexPath("region_materials", static_cast<std::size_t>(i)));
+    const v1::Material& material = wire.region_materials(i).material();
+    series.push_back(TranslateViscoelasticity(material, JoinPath(path, "material"), problems));
+  }
+  if (series.size() > parts) return {};  // a problem has been reported
+  // Elements with their own parameters have the series of the body, whose law they share.
+  Problems of_body;  // reported with the body's material
+  series.resize(parts, TranslateViscoelasticity(wire.material(), {}, of_body));
+  const auto is_elastic = [](const PronySeries& s) { return s.terms.empty(); };
+  if (std::all_of(series.begin(), series.end(), is_elastic)) return {};
+  return series;
+}
+
 }  // namespace fascicle::server

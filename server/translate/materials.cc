@@ -101,6 +101,23 @@ Material TranslateMaterial(const v1::Material* material, const std::string& owne
   return MakerOf(*material, JoinPath(owner_path, "material"), problems)(ParametersOf(*material));
 }
 
+PronySeries TranslateViscoelasticity(const v1::Material& material, const std::string& path, Problems& problems) {
+  if (!material.has_viscoelasticity()) return {};
+  const v1::Viscoelasticity& wire = material.viscoelasticity();
+  const std::string where = JoinPath(path, "viscoelasticity");
+  if (wire.strengths_size() != wire.times_size()) {
+    problems.Add(JoinPath(where, "times"),
+                 "has " + std::to_string(wire.times_size()) + " values for " + std::to_string(wire.strengths_size()) +
+                     " strengths",
+                 "one time for each strength");
+    return {};
+  }
+  if (!ObeysRules(wire)) return {};
+  PronySeries series;
+  for (int i = 0; i < wire.times_size(); ++i) series.terms.push_back({wire.strengths(i), wire.times(i)});
+  return series;
+}
+
 Damping TranslateDamping(const v1::Body& body) {
   if (!ObeysRules(body.damping())) return {};
   return {body.damping().mass_proportional(), body.damping().stiffness_proportional(), body.damping().viscosity()};

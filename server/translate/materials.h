@@ -30,6 +30,10 @@ std::function<Material(std::span<const double>)> MakerOf(const v1::Material& mat
 // material replaces an invalid one in later checks.
 Material TranslateMaterial(const v1::Material* material, const std::string& owner_path, Problems& problems);
 
+// The Prony series of a material of a body or of a part of it; empty if it is elastic or invalid.
+//   path  of the material
+PronySeries TranslateViscoelasticity(const v1::Material& material, const std::string& path, Problems& problems);
+
 Damping TranslateDamping(const v1::Body& body);
 
 }  // namespace fascicle::server

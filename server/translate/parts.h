@@ -21,6 +21,10 @@ namespace fascicle::server {
 Parts<Material> TranslateMaterialParts(const BodySource& source, std::optional<std::size_t> elements,
                                        const NamedRegions& regions, Problems& problems);
 
+// viscoelasticity of the materials of region_materials and element_parameters, `parts` of them in the order of
+// TranslateMaterialParts; empty if all are elastic.
+std::vector<PronySeries> TranslatePartViscoelasticity(const BodySource& source, std::size_t parts, Problems& problems);
+
 // activation and excitation of the whole body.
 Curve TranslateActivation(const BodySource& source, Problems& problems);
 std::optional<Excitation> TranslateExcitation(const BodySource& source, Problems& problems);

@@ -25,6 +25,7 @@ bool TranslateTetShape(const BodySource& source, const RegionSelectors& selector
   TetShape shape;
   shape.fibres = TranslateFibres(source, tetrahedra ? &*tetrahedra : nullptr, regions, body.notes, others);
   shape.materials = TranslateMaterialParts(source, elements, regions, others);
+  shape.viscoelasticity = TranslatePartViscoelasticity(source, shape.materials.more.size(), others);
   shape.activations = TranslateActivationParts(source, elements, regions, others);
   shape.activation_scale = TranslateActivationScale(source, elements, others);
   shape.initial_displacement = TranslateInitialDisplacement(source, nodes, others);

@@ -36,8 +36,8 @@ void AddNotesOnMaterial(const v1::Material& material, const std::string& path, c
 // Of a law with a force-velocity curve that no velocity scales.
 void AddNotesOnCurves(const v1::Material& material, const std::string& path, std::vector<std::string>& notes) {
   if (material.tabulated_muscle().max_velocity() != 0) return;
-  AddNotes(material.tabulated_muscle(), JoinPath(path, "tabulated_muscle"), {"force_velocity"},
-           "without max_velocity", notes);
+  AddNotes(material.tabulated_muscle(), JoinPath(path, "tabulated_muscle"), {"force_velocity"}, "without max_velocity",
+           notes);
 }
 
 void AddNotesOnMotion(const v1::Body& body, const std::string& path, const std::string& why,

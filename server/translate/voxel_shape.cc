@@ -26,6 +26,12 @@ bool TranslateVoxelShape(const BodySource& source, const RegionSelectors& select
   }
   VoxelShape shape;
   shape.materials = TranslateMaterialParts(source, elements, {selectors.names, body.regions}, others);
+  for (int i = 0; i < source.wire.region_materials_size(); ++i) {
+    if (!source.wire.region_materials(i).material().has_viscoelasticity()) continue;
+    const std::string part = JoinPath(source.path, IndexPath("region_materials", static_cast<std::size_t>(i)));
+    others.Add(JoinPath(part, "material.viscoelasticity"), "the voxel method has no viscoelastic materials",
+               "omit it, or use the tet method");
+  }
   if (bricks) shape.mesh = std::move(*bricks);
   body.shape = std::move(shape);
   return elements.has_value();

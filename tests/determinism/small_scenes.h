@@ -97,6 +97,15 @@ inline NamedScene TetScene(const std::string& name, Stepping stepping, ElementOr
   return named;
 }
 
+// The same with viscoelastic bodies.
+inline NamedScene ViscoelasticScene(const std::string& name, Stepping stepping, ElementOrder element) {
+  NamedScene named = TetScene(name, stepping, element);
+  named.name += "_viscoelastic";
+  named.scene.bodies[0].viscoelasticity = {{{0.4, 1e-3}}};
+  named.scene.bodies[1].viscoelasticity = {{{0.3, 5e-4}, {0.5, 0.01}}};
+  return named;
+}
+
 inline NamedScene VoxelSceneOf(const std::string& name, VoxelStepping stepping, Material law) {
   return {"voxel_" + name, BentBricks(stepping, std::move(law))};
 }
@@ -118,6 +127,9 @@ inline std::vector<NamedScene> SmallScenes() {
     scenes.push_back(TetScene("bdf2", Stepping::kBdf2, element));
     scenes.push_back(TetScene("quasi_static", Stepping::kQuasiStatic, element));
   }
+  scenes.push_back(ViscoelasticScene("explicit", Stepping::kExplicit, ElementOrder::kLinear));
+  scenes.push_back(ViscoelasticScene("newmark", Stepping::kNewmark, ElementOrder::kLinear));
+  scenes.push_back(ViscoelasticScene("quasi_static", Stepping::kQuasiStatic, ElementOrder::kQuadratic));
   const Material linear = LinearElastic(std::array{1e5, 0.3}), corotated = CorotatedLinear(std::array{1e5, 0.3});
   scenes.push_back(VoxelSceneOf("static", VoxelStepping::kStatic, linear));
   scenes.push_back(VoxelSceneOf("dynamic", VoxelStepping::kDynamic, linear));

@@ -38,6 +38,7 @@ inline TetShape FullTetShape() {
   shape.mesh.further_tags = {{0, 2}};
   shape.fibres.assign(6, Vec3::UnitX());
   shape.materials = {{LinearElastic(std::array{1e4, 0.3})}, {0, 0, 0, 1, 1, 1}};
+  shape.viscoelasticity = {{{{0.5, 0.1}}}};
   shape.activations = {{Curve::Constant(0.5)}, {0, 0, 0, 1, 1, 1}};
   shape.activation_scale.assign(6, 0.5);
   shape.initial_displacement.assign(8, Vec3(0, 0, 1e-3));
@@ -60,6 +61,7 @@ inline Scene FullScene(Method method, Shape shape) {
   Body body;
   body.name = "body";
   body.shape = std::move(shape);
+  body.viscoelasticity = {{{0.2, 0.01}, {0.3, 1}}};
   body.regions = {FullRegion()};
   body.constraints = {{0, {true, true, true}, FullMotion()}};
   body.loads = {{0, Traction{Vec3(0, 0, 1)}, Curve::Constant(1), {}},

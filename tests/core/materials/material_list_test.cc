@@ -28,8 +28,8 @@ TEST(Laws, AreFoundByName) {
 }
 
 TEST(Laws, DescribeThemselves) {
-  const std::set<std::string_view> kFibrous = {"muscle", "tendon", "trans_iso_mooney_rivlin", "fung_fibre",
-                                               "holzapfel_gasser_ogden", "tabulated_muscle"};
+  const std::set<std::string_view> kFibrous = {
+      "muscle", "tendon", "trans_iso_mooney_rivlin", "fung_fibre", "holzapfel_gasser_ogden", "tabulated_muscle"};
   const std::set<std::string_view> kUnits = {"Pa", "1", "1/s", "rad"};
   for (const LawInfo& law : Laws()) {
     EXPECT_FALSE(std::string_view(law.title).empty());

@@ -7,13 +7,14 @@
 // Elements of all kinds and a state, for tests of the loops over elements.
 namespace fascicle::testing {
 
-// Every law of the list, and the muscle with a force-velocity curve.
+// Every law of the list, and the muscles with a force-velocity curve.
 inline std::vector<Material> LawsOfKernels() {
   std::vector<Material> laws = EveryLaw();
   laws.push_back(Muscle(std::array{5e2, 5e2, 1e5, 3e4, 1.2, 0.05, 6.6, 1.4, 5.0, 0.25, 1.4}));
+  laws.push_back(TabulatedMuscle(std::array{2e3, -1e2, 3e2, 1e5, 3e4, 1.1, 5.0}));
   return laws;
 }
-inline constexpr int kLawsOfKernels = kLaws + 1;
+inline constexpr int kLawsOfKernels = kLaws + 2;
 
 // Two bodies with several chunks and incomplete blocks; fibres, activation and its scale vary from element to element.
 inline Scene MixedScene(const Material& law, ElementOrder element, VolumeForm volume, int divisions) {
