@@ -41,6 +41,31 @@ void CheckFamilies(const FibreField& fibres, const Material& own, const Parts<Ma
   }
 }
 
+// The families of a law with two of them would be turned by a prestretch along the direction between them.
+bool MayBePrestretched(const Material& material) {
+  return Needs(material) && !std::holds_alternative<HolzapfelGasserOgden>(material);
+}
+
+void CheckPrestretch(const TetShape& shape, const Material& own, const std::string& path, Problems& problems) {
+  const std::string where = JoinPath(path, "prestretch");
+  if (shape.prestretch.empty()) return;
+  if (shape.prestretch.size() != shape.mesh.tetrahedra.size()) {
+    problems.Add(where, std::to_string(shape.prestretch.size()) + " values for " +
+                            std::to_string(shape.mesh.tetrahedra.size()) + " tetrahedra");
+    return;
+  }
+  for (std::size_t e = 0; e < shape.prestretch.size(); ++e) {
+    if (!(shape.prestretch[e] > 0 && std::isfinite(shape.prestretch[e]))) {
+      problems.Add(where, "the prestretch of tetrahedron " + std::to_string(e) + " is not a finite number above 0");
+      return;
+    }
+    if (shape.prestretch[e] == 1 || MayBePrestretched(MaterialAt(own, shape.materials, e))) continue;
+    problems.Add(where, "the fibres of tetrahedron " + std::to_string(e) + " can't be prestretched by its law",
+                 "only laws with one family of fibres can: give a prestretch of 1 elsewhere, by prestretch_file");
+    return;
+  }
+}
+
 //   needed  whether the body's own law needs fibres
 //   count   required number of directions, if there are any
 void CheckField(const FibreField& fibres, bool needed, std::size_t count, const std::string& path, Problems& problems) {
@@ -69,6 +94,7 @@ void CheckShape(const TetShape& shape, const Material& own, const std::string& p
   const bool needed = Needs(own) || std::any_of(more.begin(), more.end(), Needs);
   CheckField(shape.fibres, needed, shape.mesh.tetrahedra.size(), path, problems);
   CheckFamilies(shape.fibres, own, shape.materials, path, problems);
+  CheckPrestretch(shape, own, path, problems);
 }
 
 // CheckVoxel reports materials with fibres.

@@ -52,6 +52,8 @@ inline constexpr auto kFieldNames<PronySeries> = FieldNames("terms");
 struct TetShape {
   TetMesh mesh;
   FibreField fibres;  // one for each tetrahedron, or none
+  // Stretch of the fibres of each tetrahedron at rest, which multiplies that in their laws [1]; empty: 1.
+  std::vector<double> prestretch;
   Parts<Material> materials;
   std::vector<PronySeries> viscoelasticity;  // of each of materials.more; empty: these are elastic
   Parts<Curve> activations;
@@ -59,7 +61,7 @@ struct TetShape {
   std::vector<Vec3> initial_displacement;  // of each node at time 0 [m], may tangle the mesh; empty: none
 };
 template <>
-inline constexpr auto kFieldNames<TetShape> = FieldNames("mesh", "fibres", "region_materials", "viscoelasticity",
+inline constexpr auto kFieldNames<TetShape> = FieldNames("mesh", "fibres", "prestretch", "region_materials", "viscoelasticity",
                                                          "region_activations", "activation_scale",
                                                          "initial_displacement");
 

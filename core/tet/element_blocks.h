@@ -28,7 +28,7 @@ struct alignas(64) RestPoint {
 // Fibre arguments of the laws for the elements of a block.
 template <class S>
 struct alignas(64) BlockFibres {
-  S direction[3][kBlock];           // a0
+  S direction[3][kBlock];           // a0 times the prestretch
   S activation_scale[kBlock];       // factor on the activation curve for each element
   std::int32_t activation[kBlock];  // index of the activation curve
 };

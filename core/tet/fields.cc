@@ -63,6 +63,8 @@ MaterialPoint PointOf(const FieldInputs& inputs, const Law& law, std::size_t e, 
   point.F = F;
   point.J = Determinant(F);
   point.a0 = inputs.model.fibres()[e];
+  const double prestretch = inputs.model.PrestretchOf(e);
+  if (prestretch != 1) point.a0 /= prestretch;
   point.line_of_action = inputs.line_of_action;
   if constexpr (kFrom == FieldSource::kStress || kFrom == FieldSource::kFibreStress) {
     FibreState fibre = FibreAt<Element>(inputs.model, e, inputs.drive, 0);

@@ -147,7 +147,9 @@ class TetModel {
   };
   DmInverses Dm_inverse() const { return {*this}; }
   RestVolumes rest_volume() const { return {*this}; }
-  Fibres fibres() const { return {*this}; }  // a0; zero without fibres
+  Fibres fibres() const { return {*this}; }  // a0 times the prestretch; zero without fibres
+  // The fibres' stretch at rest [1].
+  double PrestretchOf(std::size_t tet) const;
   // The integral of the barycentric coordinate L_c over an element at rest [m^3].
   template <class Element>
   double CornerVolume(std::size_t tet, int c) const {

@@ -181,6 +181,7 @@ void TetModelBuilder::AddElement(const Body& body, const TetBody& entry, std::in
   model_.tetrahedra_.push_back(shifted);
   model_.source_tetrahedron_.push_back(tet);
   fibres_.push_back(shape.fibres.empty() ? Vec3(Vec3::Zero()) : shape.fibres[tet]);
+  if (!shape.prestretch.empty()) fibres_.back() *= shape.prestretch[tet];
   activation_of_.push_back(static_cast<std::int32_t>(entry.activation) + PartOf(shape.activations, tet));
   activation_scale_.push_back(shape.activation_scale.empty() ? 1 : shape.activation_scale[tet]);
   model_.VisitElement([&]<class Element>(Element) {
@@ -225,10 +226,10 @@ void TetModelBuilder::FillGroup(const Body& body, TetGroup& group) {
       if (is_new) {
         const Law& law = std::get<Law>(material);
         const double whole = law.VolumeModulus();
-        const double kept = nodal ? ElementVolumeModulus(law, model_.order()) : whole;
+        series.push_back(SeriesOf(body, PartOf(body.tet().materials, model_.source_tetrahedron_[e])));
+        const double kept = nodal ? ElementVolumeModulus(law, series.back(), model_.order()) : whole;
         laws.push_back(law.WithVolumeModulus(kept));
         branch_laws.push_back(law.WithVolumeModulus(0));
-        series.push_back(SeriesOf(body, PartOf(body.tet().materials, model_.source_tetrahedron_[e])));
         viscoelastic |= !series.back().terms.empty();
         given_by_law.push_back(whole - kept);
         model_.depends_on_rate_ |= DependsOnRate(law);

@@ -8,6 +8,8 @@
 #include "server/translate/files.h"
 #include "server/translate/kept_results.h"
 #include "server/translate/materials.h"
+#include "server/translate/number_files.h"
+#include "server/translate/parts.h"
 #include "server/translate/values.h"
 
 namespace fascicle::server {
@@ -86,6 +88,20 @@ void TranslatePennation(const v1::Pennation& wire, double unit, const std::strin
 }
 
 }  // namespace
+
+std::vector<double> TranslatePrestretch(const BodySource& source, std::optional<std::size_t> elements,
+                                        Problems& problems) {
+  const v1::Fibres& wire = source.wire.fibres();
+  if (wire.has_prestretch_file()) {
+    const NumberFile values = {"elements", elements, 1, 0.5, 2};
+    return ReadNumberFile(wire.prestretch_file(), values, JoinPath(source.path, "fibres.prestretch_file"),
+                          source.assets, problems);
+  }
+  if (!wire.has_prestretch() || wire.prestretch() == 1 || !(wire.prestretch() >= 0.5 && wire.prestretch() <= 2)) {
+    return {};
+  }
+  return std::vector<double>(elements.value_or(0), wire.prestretch());
+}
 
 void CheckFibresAreGiven(const BodySource& source, Problems& problems) {
   const LawInfo* law = LawWithFibres(source.wire);

@@ -37,6 +37,10 @@ Parts<Curve> TranslateActivationParts(const BodySource& source, std::optional<st
 std::vector<double> TranslateActivationScale(const BodySource& source, std::optional<std::size_t> elements,
                                              Problems& problems);
 
+// fibres.prestretch and prestretch_file, one value for each element; empty: 1.
+std::vector<double> TranslatePrestretch(const BodySource& source, std::optional<std::size_t> elements,
+                                        Problems& problems);
+
 // initial_displacement [m].
 std::vector<Vec3> TranslateInitialDisplacement(const BodySource& source, std::optional<std::size_t> nodes,
                                                Problems& problems);

@@ -83,6 +83,10 @@ bool TranslateSurfaceShape(const BodySource& source, const RegionSelectors& sele
   body.regions = EmptyRegions(selectors);
   body.shape = SurfaceShape();
   const v1::Body& wire = source.wire;
+  if (wire.fibres().has_prestretch_file() || (wire.fibres().has_prestretch() && wire.fibres().prestretch() != 1)) {
+    others.Add(JoinPath(source.path, "fibres.prestretch"), "fibres of the eulerian method have no prestretch",
+               "omit it, or use the tet method");
+  }
   if (wire.has_plasticity() && ObeysRules(wire.plasticity())) {
     body.surface().plasticity = Plasticity{wire.plasticity().yield_stress(), wire.plasticity().relaxation_time()};
   }

@@ -24,6 +24,7 @@ bool TranslateTetShape(const BodySource& source, const RegionSelectors& selector
   const NamedRegions regions = {selectors.names, body.regions};
   TetShape shape;
   shape.fibres = TranslateFibres(source, tetrahedra ? &*tetrahedra : nullptr, regions, body.notes, others);
+  shape.prestretch = TranslatePrestretch(source, elements, others);
   shape.materials = TranslateMaterialParts(source, elements, regions, others);
   shape.viscoelasticity = TranslatePartViscoelasticity(source, shape.materials.more.size(), others);
   shape.activations = TranslateActivationParts(source, elements, regions, others);

@@ -37,6 +37,7 @@ inline TetShape FullTetShape() {
   shape.mesh.curved_edges = {{{0, 1}, Vec3(0.5, 0, 0.1)}};
   shape.mesh.further_tags = {{0, 2}};
   shape.fibres.assign(6, Vec3::UnitX());
+  shape.prestretch.assign(6, 1.1);
   shape.materials = {{LinearElastic(std::array{1e4, 0.3})}, {0, 0, 0, 1, 1, 1}};
   shape.viscoelasticity = {{{{0.5, 0.1}}}};
   shape.activations = {{Curve::Constant(0.5)}, {0, 0, 0, 1, 1, 1}};
