@@ -40,6 +40,8 @@ template class LawFunctions<Ogden>;
 template class LawFunctions<FungFibre>;
 template class LawFunctions<HolzapfelGasserOgden>;
 template class LawFunctions<TabulatedMuscle>;
+template class LawFunctions<BlemkerMuscle>;
+template class LawFunctions<BlemkerTendon>;
 
 namespace {
 

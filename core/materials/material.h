@@ -6,6 +6,8 @@
 #include <string_view>
 #include <variant>
 
+#include "core/materials/blemker_muscle.h"
+#include "core/materials/blemker_tendon.h"
 #include "core/materials/constitutive_model.h"
 #include "core/materials/corotated_linear.h"
 #include "core/materials/fung_fibre.h"
@@ -25,9 +27,9 @@ namespace fascicle {
 
 // The closed list of laws. A new law is a header, an entry here, an instantiation in material.cc and a message of the
 // same name in scene.proto. Range checks, the test battery and `fascicle materials` follow from this list.
-using Material =
-    std::variant<LinearElastic, StVenantKirchhoff, CorotatedLinear, NeoHookean, MooneyRivlin, Muscle, Tendon,
-                 TransIsoMooneyRivlin, Yeoh, Ogden, FungFibre, HolzapfelGasserOgden, TabulatedMuscle>;
+using Material = std::variant<LinearElastic, StVenantKirchhoff, CorotatedLinear, NeoHookean, MooneyRivlin, Muscle,
+                              Tendon, TransIsoMooneyRivlin, Yeoh, Ogden, FungFibre, HolzapfelGasserOgden,
+                              TabulatedMuscle, BlemkerMuscle, BlemkerTendon>;
 
 // The static members of a law, independent of its type.
 struct LawInfo {

@@ -62,7 +62,9 @@ inline std::vector<Material> EveryLaw() {
           Ogden(std::array{4e3, 1.3, 3e2, 5.0, 2e3, -2.0, 2e4}),
           FungFibre(std::array{2e3, 1e3, 1e2, 4.0, 2e4}),
           HolzapfelGasserOgden(std::array{6e3, 50.0, 20.0, 0.1, 0.6, 0.0, 0.3, 1.0, 2e4}),
-          TabulatedMuscle(std::array{2e3, -1e2, 3e2, 2e4, 1e4, 1.1, 0.0})};
+          TabulatedMuscle(std::array{2e3, -1e2, 3e2, 2e4, 1e4, 1.1, 0.0}),
+          BlemkerMuscle(std::array{2e3, 3e3, 1e5, 3e4, 1.2, 0.05, 6.6, 1.4}),
+          BlemkerTendon(std::array{5e3, 4e3, 1e6, 2.7e4, 20.0, 1.03})};
 }
 inline constexpr int kLaws = std::variant_size_v<Material>;
 

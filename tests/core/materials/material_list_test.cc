@@ -17,7 +17,8 @@ TEST(Laws, AreThoseOfTheSceneInItsOrder) {
   for (const LawInfo& law : Laws()) names.push_back(law.name);
   EXPECT_THAT(names, ::testing::ElementsAre("linear_elastic", "st_venant_kirchhoff", "corotated_linear", "neo_hookean",
                                             "mooney_rivlin", "muscle", "tendon", "trans_iso_mooney_rivlin", "yeoh",
-                                            "ogden", "fung_fibre", "holzapfel_gasser_ogden", "tabulated_muscle"));
+                                            "ogden", "fung_fibre", "holzapfel_gasser_ogden", "tabulated_muscle",
+                                            "blemker_muscle", "blemker_tendon"));
 }
 
 TEST(Laws, AreFoundByName) {
@@ -29,7 +30,8 @@ TEST(Laws, AreFoundByName) {
 
 TEST(Laws, DescribeThemselves) {
   const std::set<std::string_view> kFibrous = {
-      "muscle", "tendon", "trans_iso_mooney_rivlin", "fung_fibre", "holzapfel_gasser_ogden", "tabulated_muscle"};
+      "muscle",           "tendon",         "trans_iso_mooney_rivlin", "fung_fibre", "holzapfel_gasser_ogden",
+      "tabulated_muscle", "blemker_muscle", "blemker_tendon"};
   const std::set<std::string_view> kUnits = {"Pa", "1", "1/s", "rad"};
   for (const LawInfo& law : Laws()) {
     EXPECT_FALSE(std::string_view(law.title).empty());
