@@ -81,7 +81,13 @@ void Refine(const BodySource& source, const RegionSelectors& selectors, Shape& s
 
 void RefineBody(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& problems) {
   if (source.refinements == 0) return;
-  if (auto* tet = std::get_if<TetShape>(&body.shape)) Refine(source, selectors, *tet, body, problems);
+  auto* tet = std::get_if<TetShape>(&body.shape);
+  if (tet != nullptr && !tet->mesh.hexahedra.empty()) {
+    problems.Add("refinements", "hexahedra of " + source.path + " are not refined",
+                 "give more divisions or a finer mesh, or use tetrahedra");
+    return;
+  }
+  if (tet != nullptr) Refine(source, selectors, *tet, body, problems);
   if (auto* voxel = std::get_if<VoxelShape>(&body.shape)) Refine(source, selectors, *voxel, body, problems);
 }
 
