@@ -11,6 +11,7 @@
 #include "core/geometry/mesh_checks.h"
 #include "core/geometry/mesh_io.h"
 #include "core/geometry/mesh_writer.h"
+#include "core/geometry/refinement.h"
 #include "core/geometry/region.h"
 #include "core/geometry/shapes.h"
 
@@ -152,6 +153,38 @@ TEST(HexahedronTest, RegionsHaveSides) {
   EXPECT_EQ(corner.elements.size(), 6u);
   for (const Triangle& t : corner.triangles) {
     for (const std::int32_t n : t) EXPECT_LE(mesh.nodes[static_cast<std::size_t>(n)].x(), 0.0201);
+  }
+}
+
+// Refined: sound, with the same volume and the parts of every tag; a trilinear map remains what it was.
+TEST(HexahedronTest, IsRefined) {
+  for (TetMesh mesh : Shapes()) {
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) mesh.tetrahedron_tags.push_back(t / 6 % 3 == 0 ? 5 : 6);
+    const HexahedralBoundary boundary = BoundaryOfHexahedra(mesh);
+    for (std::size_t i = 0; i < boundary.quads.size(); i += 2) {
+      for (const Triangle& t : boundary.triangles[i]) mesh.tagged_triangles.push_back(t);
+      mesh.triangle_tags.insert(mesh.triangle_tags.end(), 2, 7);
+    }
+    mesh.tagged_nodes = {mesh.hexahedra[0].begin(), mesh.hexahedra[0].end()};
+    mesh.node_tags.assign(8, 9);
+    const RefinedHexahedra refined = RefinedIntoHexahedra(mesh);
+    const TetMesh& fine = refined.mesh;
+    ASSERT_EQ(fine.hexahedra.size(), 8 * mesh.hexahedra.size());
+    ASSERT_EQ(fine.tetrahedra.size(), 48 * mesh.hexahedra.size());
+    ASSERT_EQ(fine.nodes.size(), mesh.nodes.size() + refined.between.size());
+    std::vector<double> of_parents(mesh.hexahedra.size()), of_parts(mesh.hexahedra.size());
+    for (std::size_t h = 0; h < fine.hexahedra.size(); ++h) {
+      for (const double v : NodeVolumes(NodesOfHexahedron(fine, h))) of_parts[h / 8] += v;
+      if (h < mesh.hexahedra.size()) {
+        for (const double v : NodeVolumes(NodesOfHexahedron(mesh, h))) of_parents[h] += v;
+      }
+      EXPECT_EQ(fine.tetrahedron_tags[6 * h], mesh.tetrahedron_tags[6 * (h / 8)]);
+    }
+    for (std::size_t h = 0; h < of_parents.size(); ++h) EXPECT_NEAR(of_parts[h], of_parents[h], 1e-12 * of_parents[h]);
+    const HexahedralBoundary surface = BoundaryOfHexahedra(fine);
+    EXPECT_EQ(surface.quads.size(), 4 * boundary.quads.size());
+    EXPECT_EQ(SelectRegion(fine, surface, "sides", TagSelector{7}).sides.size(), 4 * ((boundary.quads.size() + 1) / 2));
+    EXPECT_EQ(SelectRegion(fine, surface, "nodes", TagSelector{9}).nodes.size(), 27u);
   }
 }
 
