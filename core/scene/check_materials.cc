@@ -30,7 +30,7 @@ void CheckSeries(const PronySeries& series, const Material& material, const std:
 }
 
 void CheckShape(const TetShape& shape, const std::string& path, Problems& problems) {
-  CheckParts(shape.materials, shape.mesh.tetrahedra.size(), path, problems);
+  CheckParts(shape.materials, ElementCount(shape.mesh), path, problems);
   const std::size_t parts = shape.materials.more.size();
   if (!shape.viscoelasticity.empty() && shape.viscoelasticity.size() != parts) {
     problems.Add(path, std::to_string(shape.viscoelasticity.size()) + " viscoelasticities for " +

@@ -34,8 +34,7 @@ std::vector<double> StressesAndStrains(const TetModel& model, const Chunk& chunk
   ChunkTask<double> task = TaskOf<double>(model, chunk, model.chunks().node_sums);
   task.x = Numbers(x);
   task.branch_law = BranchLawOf(model, chunk);
-  const bool linear = model.order() == ElementOrder::kLinear;
-  (linear ? workspace.kernels->linear : workspace.kernels->quadratic).branch_states(task, values.data());
+  KernelsOf<double>(model, *workspace.kernels).branch_states(task, values.data());
   return values;
 }
 
