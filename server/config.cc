@@ -20,11 +20,11 @@ std::string DefaultDataDirectory() {
 
 constexpr const char* kFooter = R"(
 Examples:
-  fascicled                                  serve this machine on port 7300
-  fascicled --listen 127.0.0.1:0             choose a free port and print it
-  fascicled --data /srv/fascicle --workers 4 four jobs at once, data in /srv/fascicle
+  fascicled                                    serve this machine on port 7300
+  fascicled --listen 127.0.0.1:0               choose a free port and print it
+  fascicled --data /srv/fascicle --workers 4   four jobs at once, data in /srv/fascicle
   fascicled --listen 0.0.0.0:7300 --allow-remote
-                                             allow other machines, in trusted networks only
+                                               allow other machines, in trusted networks only
 
 It prints `listening on HOST:PORT` when it is ready. SIGTERM or SIGINT stop it; running jobs store a
 checkpoint and continue with the next start. A second signal ends it at once.

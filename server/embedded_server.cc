@@ -107,7 +107,7 @@ std::unique_ptr<EmbeddedServer> EmbeddedServer::Start(const ServerOptions& optio
   if (!options.allow_remote && !IsLoopback(host)) {
     throw std::runtime_error("refusing to listen on " + options.listen +
                              ": anyone who can reach this address could run jobs, and nothing is encrypted. "
-                             "Allow it explicitly, or listen on 127.0.0.1");
+                             "`fascicled --allow-remote` allows it; 127.0.0.1 is for this machine only");
   }
   if (options.workers < 0 || options.default_threads < 1) {
     throw std::runtime_error("workers must be at least 0, threads at least 1");

@@ -1,11 +1,14 @@
 #include <iostream>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include <CLI/App.hpp>
 
+#include "client/cli/builtin_examples.h"
 #include "client/cli/command.h"
+#include "core/materials/material.h"
 
 namespace fascicle::client {
 namespace {
@@ -22,12 +25,13 @@ struct Node {
   std::string chain;  // "", "materials", "materials curve"
   std::vector<const CLI::App*> commands;
   std::vector<const CLI::Option*> options;
+  std::vector<const CLI::Option*> arguments;
 };
 
 void Collect(const CLI::App& app, const std::string& chain, std::vector<Node>& nodes) {
-  Node node{chain, {}, {}};
+  Node node{chain, {}, {}, {}};
   for (const CLI::Option* option : app.get_options()) {
-    if (option->nonpositional()) node.options.push_back(option);
+    (option->nonpositional() ? node.options : node.arguments).push_back(option);
   }
   const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
   node.commands.assign(commands.begin(), commands.end());
@@ -59,6 +63,73 @@ std::string WordsOf(const Node& node, const Node& global) {
   return words;
 }
 
+// The values of a closed list, which CLI11 tells in braces: "TEXT:{front,back}".
+std::vector<std::string> ListedValues(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t open = type.find('{'), close = type.find('}');
+  if (open == std::string::npos || close == std::string::npos) return {};
+  std::vector<std::string> values;
+  std::istringstream list(type.substr(open + 1, close - open - 1));
+  for (std::string value; std::getline(list, value, ',');) values.push_back(value);
+  return values;
+}
+
+constexpr const char* kAskedJobs = "@jobs";  // asked from the server while completing
+
+// What may stand for an option or an argument; empty: files.
+std::vector<std::string> ValuesOf(const std::string& chain, const CLI::Option& option) {
+  if (std::vector<std::string> listed = ListedValues(option); !listed.empty()) return listed;
+  if (option.nonpositional()) return {};
+  const std::string name = option.get_name(true);
+  std::vector<std::string> values;
+  if (name == "JOB") return {kAskedJobs};
+  if (name == "LAW") {
+    for (const LawInfo& law : Laws()) values.emplace_back(law.name);
+  } else if (chain.starts_with("examples ")) {
+    for (const BuiltinFile& file : BuiltinExamples()) {
+      if (file.name.ends_with(".json")) values.emplace_back(file.name.substr(0, file.name.size() - 5));
+    }
+  }
+  return values;
+}
+
+std::string Joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+// Prints a function `_fascicle_values CHAIN WORD` that prints the values of an option, or those of the arguments of a
+// command where WORD is empty; it fails where there is no list.
+void PrintValues(const std::vector<Node>& nodes) {
+  std::cout << "_fascicle_values() {\n  case \"$1 $2\" in\n";
+  for (const Node& node : nodes) {
+    for (const CLI::Option* option : node.options) {
+      const std::vector<std::string> values = ValuesOf(node.chain, *option);
+      if (values.empty()) continue;
+      std::string names;
+      for (const std::string& flag : Flags(*option)) {
+        names += (names.empty() ? "'" : "|'") + node.chain + " " + flag + "'";
+      }
+      std::cout << "    " << names << ") echo '" << Joined(values) << "' ;;\n";
+    }
+    for (const CLI::Option* argument : node.arguments) {
+      const std::vector<std::string> values = ValuesOf(node.chain, *argument);
+      if (values.empty()) continue;
+      std::cout << "    '" << node.chain << " ') ";
+      if (values[0] == kAskedJobs) {
+        std::cout << "_fascicle_jobs ;;\n";
+      } else {
+        std::cout << "echo '" << Joined(values) << "' ;;\n";
+      }
+    }
+  }
+  std::cout << "    *) return 1 ;;\n  esac\n}\n"
+               "# The newest jobs of the server, if it answers soon.\n"
+               "_fascicle_jobs() {\n"
+               "  timeout 2 fascicle list --json 2>/dev/null | sed -n 's/^{\"job\":\"\\([^\"]*\\)\".*/\\1/p'\n}\n";
+}
+
 // Prints a function `_fascicle_words CHAIN` that prints the words that may follow, for bash and zsh.
 void PrintWords(const std::vector<Node>& nodes) {
   std::cout << "_fascicle_words() {\n  case \"$1\" in\n";
@@ -74,10 +145,19 @@ void PrintWords(const std::vector<Node>& nodes) {
 
 void PrintBash(const std::vector<Node>& nodes) {
   PrintWords(nodes);
+  PrintValues(nodes);
   std::cout << R"text(_fascicle() {
-  local current=${COMP_WORDS[COMP_CWORD]}
-  local chain
+  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]}
+  local chain values
   chain=$(_fascicle_chain "${COMP_WORDS[@]:1:COMP_CWORD-1}")
+  if [[ $previous == -* ]] && values=$(_fascicle_values "$chain" "$previous"); then
+    COMPREPLY=($(compgen -W "$values" -- "$current"))
+    return
+  fi
+  if [[ $current != -* ]] && values=$(_fascicle_values "$chain" ""); then
+    COMPREPLY=($(compgen -W "$values $(_fascicle_words "$chain")" -- "$current") $(compgen -d -- "$current"))
+    return
+  fi
   COMPREPLY=($(compgen -W "$(_fascicle_words "$chain")" -- "$current"))
 }
 complete -o default -F _fascicle fascicle
@@ -87,9 +167,15 @@ complete -o default -F _fascicle fascicle
 void PrintZsh(const std::vector<Node>& nodes) {
   std::cout << "#compdef fascicle\n";
   PrintWords(nodes);
+  PrintValues(nodes);
   std::cout << R"text(_fascicle() {
-  local chain
+  local chain values previous=${words[CURRENT-1]}
   chain=$(_fascicle_chain "${(@)words[2,CURRENT-1]}")
+  if [[ $previous == -* ]] && values=$(_fascicle_values "$chain" "$previous"); then
+    compadd -- ${=values}
+    return
+  fi
+  if values=$(_fascicle_values "$chain" ""); then compadd -- ${=values}; fi
   compadd -- ${=$(_fascicle_words "$chain")}
   _files
 }
@@ -102,6 +188,9 @@ std::string Quoted(const std::string& text) {
   for (const char c : text) quoted += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
   return quoted + "'";
 }
+
+constexpr const char* kJobsOfFish =
+    "(timeout 2 fascicle list --json 2>/dev/null | string replace -rf '^\\{\"job\":\"([^\"]*)\".*' '$1')";
 
 void PrintFish(const std::vector<Node>& nodes) {
   for (const Node& node : nodes) {
@@ -125,8 +214,19 @@ void PrintFish(const std::vector<Node>& nodes) {
       if (!node.chain.empty()) std::cout << " -n " << Quoted(condition);
       for (const std::string& name : option->get_lnames()) std::cout << " -l " << name;
       for (const std::string& name : option->get_snames()) std::cout << " -s " << name;
-      if (option->get_items_expected_max() > 0) std::cout << " -r";
+      const std::vector<std::string> values = ValuesOf(node.chain, *option);
+      if (!values.empty()) {
+        std::cout << " -xa " << Quoted(Joined(values));
+      } else if (option->get_items_expected_max() > 0) {
+        std::cout << " -r";
+      }
       std::cout << " -d " << Quoted(option->get_description()) << '\n';
+    }
+    for (const CLI::Option* argument : node.arguments) {
+      const std::vector<std::string> values = ValuesOf(node.chain, *argument);
+      if (values.empty()) continue;
+      const std::string words = values[0] == kAskedJobs ? kJobsOfFish : Joined(values);
+      std::cout << "complete -c fascicle -n " << Quoted(condition) << " -a " << Quoted(words) << '\n';
     }
   }
 }

@@ -18,13 +18,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kExamplesExamples = R"(  fascicle examples                                   list the examples
-  fascicle examples show tension                      print a scene
+  fascicle examples show bar_tension                  print a scene
   fascicle examples write fusiform_isometric          into fusiform_isometric.json
-  fascicle examples write --all --out scenes          all of them, with their meshes, into scenes/
+  fascicle examples write bar_twist mesh_file         several, with their meshes
+  fascicle examples write --all --out scenes          all of them into scenes/
 )";
 
 struct ExamplesOptions {
-  std::string name;
+  std::string name;                // to show
+  std::vector<std::string> names;  // to write
   std::string out = ".";
   bool all = false;
   bool force = false;
@@ -126,13 +128,10 @@ void WriteFile(const std::string& name, std::string_view content, const Examples
 }
 
 int Write(const ExamplesOptions& options, const Context& context) {
-  if (options.all == !options.name.empty()) throw CommandError::Invalid("give the name of an example, or --all");
+  if (options.all == !options.names.empty()) throw CommandError::Invalid("give the names of examples, or --all");
   std::vector<Example> examples;
-  if (options.all) {
-    examples = AllExamples();
-  } else {
-    examples.push_back(FindExample(options.name));
-  }
+  if (options.all) examples = AllExamples();
+  for (const std::string& name : options.names) examples.push_back(FindExample(name));
   std::vector<const BuiltinFile*> written;
   for (const Example& example : examples) {
     WriteFile(example.name + ".json", example.text, options, context);
@@ -166,8 +165,8 @@ void AddExamples(CLI::App& app, Context& context) {
   CLI::App* show = AddCommand(*command, "show", "Print an example", kExamplesExamples);
   show->add_option("NAME", options->name, "The example")->required();
   show->callback([options, &context] { context.action = [options] { return Show(options->name); }; });
-  CLI::App* write = AddCommand(*command, "write", "Write an example, or all, as scene files", kExamplesExamples);
-  write->add_option("NAME", options->name, "The example");
+  CLI::App* write = AddCommand(*command, "write", "Write examples as scene files", kExamplesExamples);
+  write->add_option("NAME", options->names, "The examples");
   write->add_option("--out", options->out, "Folder for the files")->type_name("DIR");
   write->add_flag("--all", options->all, "All examples");
   write->add_flag("--force", options->force, "Overwrite existing files");

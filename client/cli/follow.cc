@@ -19,7 +19,10 @@ void Sleep(std::chrono::milliseconds time, const std::stop_token& stop) {
   wake.wait_for(lock, stop, time, [] { return false; });
 }
 
-void Show(const v1::Job& job, ProgressBar& bar) { bar.Show(job.state(), job.progress(), job.queue_position()); }
+void Show(const v1::Job& job, ProgressBar& bar) {
+  bar.SetFrames(job.frame_count());
+  bar.Show(job.state(), job.progress(), job.queue_position());
+}
 
 bool HasStarted(v1::Job::State state) { return state != v1::Job::STATE_QUEUED && state != v1::Job::STATE_STARTING; }
 
@@ -83,7 +86,7 @@ Followed Follow(Client& client, const std::string& name, std::int64_t start_inde
     followed.last_frame = frame;
   };
   events.progress = [&](v1::Job::State state, const v1::Progress& progress) { bar.Show(state, progress); };
-  events.reconnecting = [&](const std::string& message) { bar.Say(message); };
+  events.reconnecting = [&](const std::string& message) { bar.Say("connection lost (" + message + "); reconnecting"); };
   std::jthread poll;
   if (bar.on_terminal()) poll = PollProgress(client, name, bar);
   Result<v1::Job> end = client.Watch(name, options, events, stop);

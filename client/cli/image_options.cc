@@ -257,7 +257,31 @@ void AddImageOptions(CLI::App& command, ImageOptions& options) {
   command.add_flag("--no-fill", options.no_fill, "Do not fill holes")->group("Selection of the body");
   command.add_option("--threads", options.threads, "Number of threads; the result does not depend on it")
       ->check(CLI::Range(1, 256));
-  command.add_option("--picture", options.picture, "Draw slices with the body's outline")->type_name("FILE.png");
+  CLI::Option* picture =
+      command.add_option("--picture", options.picture, "Draw slices with the body's outline")->type_name("FILE.png");
+  AddSliceOptions(command, options.window, options.crop);
+  for (const char* name : {"--window", "--crop"}) command.get_option(name)->needs(picture);
+}
+
+void AddSliceOptions(CLI::App& command, std::vector<double>& window, std::optional<double>& crop) {
+  command
+      .add_option(
+          "--window", window,
+          "For the picture: the value in middle grey, and how far black and white are apart; by default they are "
+          "at the 0.5 and 99.5 percentiles")
+      ->expected(2)
+      ->type_name("LEVEL WIDTH")
+      ->group("Picture");
+  command.add_option("--crop", crop, "For the picture: show the body with a margin of this width only [mm]")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("MM")
+      ->group("Picture");
+}
+
+void SetSliceOptions(const std::vector<double>& window, const std::optional<double>& crop, SlicesInput& input) {
+  if (!window.empty() && !(window[1] > 0)) throw CommandError::Invalid("--window: the width must be above 0");
+  if (!window.empty()) input.window = {window[0], window[1]};
+  if (crop) input.crop = *crop * kMillimetre;
 }
 
 GivenImage ReadGivenImage(const ImageOptions& options, const std::stop_token& stop, Problems problems) {
@@ -325,7 +349,9 @@ void DrawBody(const StagedImage& staged, const ImageOptions& options, const std:
   input.spacing = staged.image.spacing;
   input.values = staged.image.values;
   input.labels = staged.body.material;
+  input.direction = staged.image.direction;
   input.title = title;
+  SetSliceOptions(options.window, options.crop, input);
   input.names = {"body"};
   if (options.labels.size() > 1) {
     input.names.clear();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client/cli/command.h"
+#include "client/render/slices.h"
 #include "core/base/problems.h"
 #include "core/imaging/image_stage.h"
 #include "core/imaging/volume_image.h"
@@ -39,8 +40,15 @@ struct ImageOptions {
   bool no_fill = false;
   int threads = 1;
   std::string out;
+  std::string scene;
   std::string picture;
+  std::vector<double> window;  // level and width; empty: percentiles
+  std::optional<double> crop;  // [mm]
 };
+
+// Adds --window and --crop, which change pictures of slices. The values must outlive parsing.
+void AddSliceOptions(CLI::App& command, std::vector<double>& window, std::optional<double>& crop);
+void SetSliceOptions(const std::vector<double>& window, const std::optional<double>& crop, SlicesInput& input);
 
 // Adds IMAGE and all of its options. `options` must outlive parsing.
 void AddImageOptions(CLI::App& command, ImageOptions& options);

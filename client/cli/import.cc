@@ -22,7 +22,7 @@ constexpr const char* kImportExamples =
     R"(  fascicle import biceps.feb --out biceps                 biceps/scene.json, its mesh and its fibres
   fascicle import biceps.feb --out biceps --units SI      lengths in m, forces in N (FEBio has no units itself)
   fascicle import knee.feb --out knee --split-hexahedra   hexahedra, wedges and pyramids become tetrahedra
-  fascicle import knee.feb --out knee --accept-loss       without what a scene cannot have, such as springs
+  fascicle import ankle.feb --out ankle --accept-loss     without what a scene cannot have, such as springs
   fascicle run biceps/scene.json --out results
 
 Supported: tetrahedra, neo-Hookean, isotropic elastic and Mooney-Rivlin solids, their mixtures with the fibres of muscle

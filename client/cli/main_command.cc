@@ -1,10 +1,15 @@
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
 #include "client/cli/command.h"
+#include "core/base/edit_distance.h"
 #include "core/base/stop.h"
 
 namespace fascicle::client {
@@ -23,6 +28,77 @@ Exit codes:
   3  no server, or no response
   4  cancelled
 )";
+
+// The first word, if it is the name of no command.
+std::optional<std::string> UnknownCommand(const CLI::App& app, int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--server") ++i;  // its value
+    if (word.empty() || word.starts_with("-")) continue;
+    const auto has_name = [&](const CLI::App* command) { return command->get_name() == word; };
+    return app.get_subcommands(has_name).empty() ? std::optional<std::string>(word) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+// Names of other programs' commands for the same, otherwise the command that is spelled most nearly so.
+std::string NearCommand(const CLI::App& app, const std::string& wrong) {
+  static const std::map<std::string, const char*> kOtherNames = {{"status", "show` or `list"},
+                                                                 {"info", "show"},
+                                                                 {"log", "show"},
+                                                                 {"logs", "show"},
+                                                                 {"jobs", "list"},
+                                                                 {"ls", "list"},
+                                                                 {"ps", "list"},
+                                                                 {"queue", "list"},
+                                                                 {"stop", "cancel"},
+                                                                 {"kill", "cancel"},
+                                                                 {"abort", "cancel"},
+                                                                 {"rm", "delete"},
+                                                                 {"remove", "delete"},
+                                                                 {"clean", "delete"},
+                                                                 {"start", "run"},
+                                                                 {"simulate", "run"},
+                                                                 {"solve", "run"},
+                                                                 {"check", "validate"},
+                                                                 {"lint", "validate"},
+                                                                 {"convert", "import` or `mesh"},
+                                                                 {"draw", "render"},
+                                                                 {"picture", "render"},
+                                                                 {"view", "render"},
+                                                                 {"animate", "render"},
+                                                                 {"chart", "plot"},
+                                                                 {"graph", "plot"},
+                                                                 {"follow", "watch"},
+                                                                 {"attach", "watch"},
+                                                                 {"probe", "sample"},
+                                                                 {"values", "sample"},
+                                                                 {"tetrahedralize", "mesh"},
+                                                                 {"laws", "materials"},
+                                                                 {"fields", "schema"},
+                                                                 {"example", "examples"},
+                                                                 {"send", "submit"},
+                                                                 {"voxels", "voxelize"}};
+  if (const auto known = kOtherNames.find(wrong); known != kOtherNames.end()) return known->second;
+  std::string nearest;
+  std::size_t best = std::max<std::size_t>(2, wrong.size() / 3) + 1;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    const std::size_t distance = EditDistance(wrong.substr(0, 64), command->get_name());
+    if (distance >= best) continue;
+    best = distance;
+    nearest = command->get_name();
+  }
+  return nearest;
+}
+
+Error NoSuchCommand(const CLI::App& app, const std::string& wrong) {
+  const std::string near = NearCommand(app, wrong);
+  const std::string hint = near.empty() ? "" : "did you mean `" + near + "`? ";
+  return {Error::Kind::kInvalid,
+          "there is no command `" + wrong + "`; " + hint + "`fascicle --help` lists the commands",
+          "",
+          {}};
+}
 
 int Run(int argc, char** argv) {
   CLI::App app("fascicle simulates skeletal muscle and other soft tissue, here or on a server.", "fascicle");
@@ -55,6 +131,12 @@ int Run(int argc, char** argv) {
   AddSchema(app, context);
   AddExamples(app, context);
   AddCompletion(app, context);
+  if (const std::optional<std::string> wrong = UnknownCommand(app, argc, argv)) {
+    const bool json =
+        std::any_of(argv + 1, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; });
+    PrintError(NoSuchCommand(app, *wrong), json);
+    return kInvalidInput;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -241,7 +241,7 @@ int Curve(CurveOptions options, const Context& context) {
   const std::vector<double> values =
       UseMeasured(law, options, ParameterValues(law, options.settings), context, measured);
   const Material material = law.make(values);
-  PlotLine points{"measured", {}, {}};
+  PlotLine points{"measured", {}, {}, true};
   for (const MeasuredPoint& point : measured) {
     points.x.push_back(point.stretch);
     points.y.push_back(1e-3 * point.nominal_stress);
@@ -257,7 +257,7 @@ int Curve(CurveOptions options, const Context& context) {
     const std::string suffix = " at activation " + Number(activation);
     CsvColumn nominal{"nominal_stress" + suffix + " [Pa]", {}}, cauchy{"cauchy_stress" + suffix + " [Pa]", {}},
         volume{"volume_ratio" + suffix + " [1]", {}};
-    PlotLine line{"activation " + Number(activation), stretches, {}};
+    PlotLine line{"activation " + Number(activation), stretches, {}, false};
     for (const UniaxialPoint& point : UniaxialCurve(material, {activation, options.velocity}, stretches)) {
       nominal.values.push_back(point.nominal_stress);
       cauchy.values.push_back(point.cauchy_stress);

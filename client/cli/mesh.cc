@@ -173,12 +173,46 @@ void PrintReport(const MeshOptions& options, const MeshingResult& result, const 
   }
 }
 
-// A scene with a muscle between its first two regions, in equilibrium at increasing activation.
-Json SceneJson(const MeshOptions& options, const std::vector<Region>& regions) {
+Vec3 MeanNode(const TetMesh& mesh, const Region& region) {
+  Vec3 sum = Vec3::Zero();
+  for (const std::int32_t n : region.nodes) sum += mesh.nodes[static_cast<std::size_t>(n)];
+  return sum / static_cast<double>(region.nodes.size());
+}
+
+// The tendon at an attachment, as a region of a scene: what lies beyond a plane across the muscle, a little inside of
+// the attachment, but not more than 15 % of the muscle's length; at least a layer of tetrahedra. Without it, fibres
+// would end at a rigid support. `size` is the edge length of the mesh.
+Json TendonRegion(const TetMesh& mesh, double size, const Region& end, const Region& other_end) {
+  constexpr double kMost = 0.15, kBeyond = 0.03, kLayer = 1.5;  // of the length; of the size
+  const Vec3 outwards = (MeanNode(mesh, end) - MeanNode(mesh, other_end)).normalized();
+  double lowest = INFINITY, highest = -INFINITY, innermost = INFINITY;
+  for (const Vec3& node : mesh.nodes) {
+    lowest = std::min(lowest, outwards.dot(node));
+    highest = std::max(highest, outwards.dot(node));
+  }
+  for (const std::int32_t n : end.nodes) {
+    innermost = std::min(innermost, outwards.dot(mesh.nodes[static_cast<std::size_t>(n)]));
+  }
+  const double length = highest - lowest;
+  const double place = std::max(innermost - std::max(kBeyond * length, kLayer * size),
+                                highest - std::max(kMost * length, kLayer * size));
+  const Vec3 middle = MeanNode(mesh, end);
+  const Vec3 point = middle + (place - outwards.dot(middle)) * outwards;
+  const auto list = [](const Vec3& x) { return Json::array({x[0], x[1], x[2]}); };
+  return {{"name", end.name + "_tendon"}, {"plane", {{"point", list(point)}, {"normal", list(outwards)}}}};
+}
+
+// A scene with a muscle between its first two regions, with tendon at both, in equilibrium at increasing activation.
+Json SceneJson(const MeshOptions& options, const MeshingResult& result, const std::vector<Region>& regions) {
   Json list = Json::array(), constraints = Json::array();
   for (std::size_t i = 0; i < regions.size(); ++i) {
     list.push_back({{"name", regions[i].name}, {"physical_tag", i + 1}});
     if (i < 2) constraints.push_back({{"region", regions[i].name}});
+  }
+  Json tendons = Json::array();
+  for (std::size_t i = 0; i < 2; ++i) {
+    list.push_back(TendonRegion(result.mesh, result.report.size, regions[i], regions[1 - i]));
+    tendons.push_back({{"region", list.back()["name"]}, {"material", {{"tendon", Json::object()}}}});
   }
   const fs::path folder = fs::absolute(options.scene).parent_path();
   const std::string name = fs::path(options.out).stem().string();
@@ -186,6 +220,7 @@ Json SceneJson(const MeshOptions& options, const std::vector<Region>& regions) {
                {"unit", options.unit},
                {"mesh", {{"file", {{"path", fs::absolute(options.out).lexically_relative(folder).string()}}}}},
                {"material", {{"muscle", {{"optimal_stretch", 1}}}}},
+               {"region_materials", std::move(tendons)},
                {"regions", std::move(list)},
                {"fibres", {{"harmonic", {{"origin", regions[0].name}, {"insertion", regions[1].name}}}}},
                {"constraints", std::move(constraints)},
@@ -274,6 +309,14 @@ int MakeMesh(const MeshOptions& options, const Context& context) {
   if (!options.scene.empty() && requests.size() < 2) {
     problems.Add("--scene", "a muscle needs two attachments", "give --region twice: the origin, then the insertion");
   }
+  for (const RegionRequest& request : requests) {
+    const bool is_tendon =
+        !options.scene.empty() && requests.size() >= 2 &&
+        (request.name == requests[0].name + "_tendon" || request.name == requests[1].name + "_tendon");
+    if (is_tendon) {
+      problems.Add("--region " + request.name, "has the name of a tendon of the scene", "give it another name");
+    }
+  }
   FailOn(problems, options.surface);
 
   ThreadTeam team(options.threads, stop);
@@ -297,7 +340,7 @@ int MakeMesh(const MeshOptions& options, const Context& context) {
   for (const Region& region : regions) names.push_back({2, static_cast<std::int32_t>(names.size() + 1), region.name});
   names.push_back({3, static_cast<std::int32_t>(names.size() + 1), "body"});
   ReplaceFile(options.out, GmshText(result->mesh, names, stop));
-  if (!options.scene.empty()) ReplaceFile(options.scene, SceneJson(options, regions).dump(2) + "\n");
+  if (!options.scene.empty()) ReplaceFile(options.scene, SceneJson(options, *result, regions).dump(2) + "\n");
   ThrowIfStopped(stop);
   if (!options.picture.empty()) {
     DrawMesh(result->mesh, regions, MetresIn(options.unit), fs::path(options.out).stem().string(), options.picture);
@@ -362,7 +405,9 @@ void AddMesh(CLI::App& app, Context& context) {
           "another surface; may be repeated")
       ->type_name("NAME=end:X,Y,Z:LENGTH|NAME=side:X,Y,Z[:DEGREES]|NAME=near:SURFACE:DISTANCE")
       ->allow_extra_args(false);
-  command->add_option("--scene", options->scene, "Write a scene with a muscle between the first two regions")
+  command
+      ->add_option("--scene", options->scene,
+                   "Write a scene with a muscle between the first two regions, and tendon at both")
       ->type_name("FILE.json");
   command->add_option("--picture", options->picture, "Draw the mesh, coloured by its regions")->type_name("FILE.png");
   command->add_option("--label", options->label, "For an image: the label of the body");

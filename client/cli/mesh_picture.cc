@@ -42,7 +42,8 @@ void DrawMesh(const TetMesh& mesh, const std::vector<Region>& regions, double un
     field.set_unit("1");
     field.set_values(Bytes(number));
     options.colour = "physical_tag";
-    options.range = {0, static_cast<double>(regions.size())};
+    options.categories = {"elsewhere"};
+    for (const Region& region : regions) options.categories.push_back(region.name);
   }
   DrawPicture(geometry, frame, options, path);
 }

@@ -63,7 +63,7 @@ void ProgressBar::Show(v1::Job::State state, const v1::Progress& progress, int q
 
 void ProgressBar::SetFrames(std::int64_t frames) {
   const std::lock_guard lock(mutex_);
-  frames_ = frames;
+  frames_ = std::max(frames_, frames);
   Draw(false);
 }
 

@@ -14,6 +14,7 @@
 
 #include "client/cli/command.h"
 #include "client/cli/follow.h"
+#include "client/cli/image_options.h"
 #include "client/cli/job_source.h"
 #include "client/cli/outputs.h"
 #include "client/cli/stage_progress.h"
@@ -38,6 +39,7 @@ constexpr const char* kRenderExamples =
   fascicle render 3f2a --out release.gif --frames all --fps 12    an animated GIF
   fascicle render 3f2a --out cut.png --style slices --scan arm.mha
   fascicle render 3f2a --out round.gif --turntable 48 --smooth    the view rotates around the last frame
+  fascicle render 3f2a --out upright.png --up z --view front      upright; `--up y` for bodies whose height is y
 
 Styles: surface (shaded; --wireframe adds the edges, --smooth smooths voxel steps), wireframe (edges only),
 volume (rays cast through the body), slices (the outline of the deformed bodies on slices of the scan). Bodies of the
@@ -52,6 +54,8 @@ struct RenderOptions {
   std::string frames;
   std::string style = "surface";
   std::vector<std::string> scan;
+  std::vector<double> window;
+  std::optional<double> crop;
   int turntable = 0;
   double fps = 12;
   bool smooth = false;
@@ -65,6 +69,7 @@ struct RenderOptions {
   bool no_lines = false;
   std::string view = "auto";
   std::optional<double> azimuth, elevation;
+  std::string up;
   double zoom = 1;
   std::string size = "1200x900";
   std::optional<std::string> title;
@@ -81,6 +86,14 @@ const std::map<std::string, Angles>& Views() {
                                                       {"right", {0, 0}},    {"top", {-90, 90}}, {"bottom", {-90, -90}},
                                                       {"corner", {-60, 20}}};
   return views;
+}
+
+// The vertical of --up.
+const std::map<std::string, Vec3>& Verticals() {
+  static const std::map<std::string, Vec3> verticals = {{"x", Vec3::UnitX()},   {"y", Vec3::UnitY()},
+                                                        {"z", Vec3::UnitZ()},   {"-x", -Vec3::UnitX()},
+                                                        {"-y", -Vec3::UnitY()}, {"-z", -Vec3::UnitZ()}};
+  return verticals;
 }
 
 PictureSize ParseSize(const std::string& text) {
@@ -142,6 +155,7 @@ PictureOptions PictureOf(const RenderOptions& options, const v1::Job& job, const
     picture.azimuth = view->second.azimuth;
     picture.elevation = view->second.elevation;
   }
+  if (const auto up = Verticals().find(options.up); up != Verticals().end()) picture.up = up->second;
   if (options.azimuth) picture.azimuth = options.azimuth;
   if (options.elevation) picture.elevation = options.elevation;
   if (options.title) picture.title = *options.title;
@@ -187,6 +201,8 @@ void DrawOnScan(const RenderOptions& options, const v1::Geometry& geometry, cons
   }
   input.size = scan->size;
   input.spacing = scan->spacing;
+  input.direction = scan->direction;
+  SetSliceOptions(options.window, options.crop, input);
   input.values = scan->values;
   input.labels = labels;
   input.title = picture.title;
@@ -196,6 +212,9 @@ void DrawOnScan(const RenderOptions& options, const v1::Geometry& geometry, cons
 int Render(const RenderOptions& options, const Context& context) {
   if ((options.style == "slices") != !options.scan.empty()) {
     throw CommandError::Invalid("--style slices and --scan must be used together: the outline is drawn on the scan");
+  }
+  if (options.style != "slices" && (!options.window.empty() || options.crop)) {
+    throw CommandError::Invalid("--window and --crop need --style slices");
   }
   (void)ParseSize(options.size);
   if (!IsGif(options) && LowerExtension(options.out) != ".png") {
@@ -261,6 +280,7 @@ void AddRender(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"surface", "wireframe", "volume", "slices"}));
   command->add_flag("--smooth", options->smooth, "Smooth the steps between voxels");
   command->add_option("--scan", options->scan, "The image for the outlines of --style slices")->type_name("FILE...");
+  AddSliceOptions(*command, options->window, options->crop);
   command
       ->add_option("--turntable", options->turntable,
                    "Rotate the view around the body in this number of pictures (GIF)")
@@ -281,8 +301,13 @@ void AddRender(CLI::App& app, Context& context) {
   std::vector<std::string> views = {"auto"};
   for (const auto& [view, angles] : Views()) views.push_back(view);
   command->add_option("--view", options->view, "Viewpoint")->check(CLI::IsMember(views));
-  command->add_option("--azimuth", options->azimuth, "Angle of the viewpoint about z, from x to y [degree]");
-  command->add_option("--elevation", options->elevation, "Angle of the viewpoint above the xy plane [degree]")
+  std::vector<std::string> verticals;
+  for (const auto& [axis, direction] : Verticals()) verticals.push_back(axis);
+  command->add_option("--up", options->up, "The vertical of the picture; a floor's normal or z by default")
+      ->check(CLI::IsMember(verticals));
+  command->add_option("--azimuth", options->azimuth,
+                      "Angle of the viewpoint about the vertical; where that is z, from x to y [degree]");
+  command->add_option("--elevation", options->elevation, "Angle of the viewpoint above the horizontal [degree]")
       ->check(CLI::Range(-90.0, 90.0));
   command->add_option("--zoom", options->zoom, "Magnification")->check(CLI::Range(0.01, 100.0));
   command->add_option("--size", options->size, "Size of the picture [pixel]")->type_name("WxH");

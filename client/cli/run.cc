@@ -39,6 +39,7 @@ constexpr const char* kRunExamples = R"(  fascicle run scene.json               
   fascicle run scene.json --set 'bodies[0].activation.values=[0, 0.5]'
   fascicle run scene.json --json | jq .series     for programs
 
+out/largest.png is the frame with the largest displacement, where a body is nearer to its rest shape at the end.
 Ctrl-C cancels the job (exit code 4); results so far are kept.
 )";
 
@@ -94,7 +95,7 @@ class NewFolders {
   bool kept_ = false;
 };
 
-void WriteResults(const Followed& followed, const fs::path& folder) {
+void WriteResults(const Followed& followed, const LargestDisplacement& largest, const fs::path& folder) {
   if (followed.table.size() == 0) return;
   ReplaceFile(folder / "series.csv", CsvOf(followed.table));
   ReplaceFile(folder / "summary.json", SummaryJson(followed).dump(2) + "\n");
@@ -102,6 +103,11 @@ void WriteResults(const Followed& followed, const fs::path& folder) {
   if (!panels.empty() && followed.table.size() > 1) WritePlot(panels, folder / "series.png");
   DrawPicture(followed.geometry, *followed.last_frame, DefaultPicture(followed.job, *followed.last_frame),
               folder / "last.png");
+  if (const std::optional<v1::Frame>& frame = largest.frame()) {
+    DrawPicture(followed.geometry, *frame, DefaultPicture(followed.job, *frame), folder / "largest.png");
+  } else {
+    fs::remove(folder / "largest.png");  // of an earlier run
+  }
 }
 
 // A results folder keeps the job of its last run only. One whose run was killed would go on first.
@@ -164,11 +170,13 @@ int Run(const RunOptions& options, const Context& context) {
   if (folders) folders->Keep();
   const std::stop_callback cancel(interrupts.token(), [&] { (void)client.CancelJob(job.name()); });
   std::optional<VtkSeriesWriter> frames;
+  LargestDisplacement largest;
   const auto on_frame = [&](const v1::Geometry& geometry, const v1::Frame& frame) {
     if (options.digests) PrintDigest(frame, context.json);
     if (options.out.empty()) return;
     if (!frames) frames.emplace(geometry, options.out);
     frames->Add(frame);
+    largest.Add(geometry, frame);
   };
   const Followed followed = Follow(client, job.name(), 0, on_frame, {});
   const std::vector<CheckedRun> checked = options.check
@@ -188,7 +196,7 @@ int Run(const RunOptions& options, const Context& context) {
     PrintCheck(checked);
   }
   if (!options.out.empty()) {
-    WriteResults(followed, options.out);
+    WriteResults(followed, largest, options.out);
     if (!context.json) {
       std::cout << "results written to " << options.out << "; for more: fascicle plot " << options.out
                 << ", fascicle render " << options.out << " --out picture.png\n";

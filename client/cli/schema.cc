@@ -25,6 +25,7 @@ using google::protobuf::FieldDescriptor;
 
 constexpr const char* kSchemaExamples = R"(  fascicle schema                     all fields of a scene
   fascicle schema Body                one message; also by field name: `fascicle schema fusiform`
+  fascicle schema strain              a word that is no name: every field and value that mentions it
   fascicle schema --json              the same for programs, one object for each message and enum
 )";
 
@@ -156,8 +157,8 @@ Json EnumJson(const EnumDescriptor& type) {
   return {{"enum", type.name()}, {"comment", CommentOf(type)}, {"values", std::move(values)}};
 }
 
-// Keeps the types called `name`, or the type of a field called so.
-void Select(const std::string& name, Types& types) {
+// Keeps the types called `name`, or the type of a field called so. Returns false if there is none.
+bool Select(const std::string& name, Types& types) {
   std::set<const void*> wanted;
   for (const Descriptor* message : types.messages) {
     if (Lower(message->name()) == Lower(name)) wanted.insert(message);
@@ -173,19 +174,74 @@ void Select(const std::string& name, Types& types) {
                   : field->enum_type() != nullptr  ? static_cast<const void*>(field->enum_type())
                                                    : static_cast<const void*>(message));
   }
-  if (wanted.empty()) {
-    std::string known;
-    for (const Descriptor* message : types.messages) known += (known.empty() ? "" : ", ") + message->name();
-    throw CommandError::Invalid("a scene has no `" + name + "`; known names: " + known);
-  }
+  if (wanted.empty()) return false;
   std::erase_if(types.messages, [&](const Descriptor* message) { return !wanted.contains(message); });
   std::erase_if(types.enums, [&](const EnumDescriptor* type) { return !wanted.contains(type); });
+  return true;
+}
+
+// A field or a value that mentions a word, and the message or enum that it belongs to.
+struct Mention {
+  std::string of;
+  std::string name;
+  std::string comment;
+};
+
+// Whether `text` has `wanted` at the beginning of a word: "strain" is not in "constraints".
+bool HasWord(const std::string& text, const std::string& wanted) {
+  for (std::size_t at = text.find(wanted); at != std::string::npos; at = text.find(wanted, at + 1)) {
+    if (at == 0 || text[at - 1] < 'a' || text[at - 1] > 'z') return true;
+  }
+  return false;
+}
+
+// What has `word` in its name or comment, in any case; `_` counts as a blank.
+std::vector<Mention> Search(const std::string& word, const Types& types) {
+  const auto spoken = [](std::string text) {
+    std::replace(text.begin(), text.end(), '_', ' ');
+    return Lower(text);
+  };
+  const std::string wanted = spoken(word);
+  std::vector<Mention> mentions;
+  const auto add = [&](const std::string& of, const std::string& name, const std::string& comment) {
+    if (HasWord(spoken(name + "\n" + comment), wanted)) mentions.push_back({of, name, comment});
+  };
+  for (const Descriptor* message : types.messages) {
+    for (int i = 0; i < message->field_count(); ++i) {
+      add(message->name(), message->field(i)->name(), CommentOf(*message->field(i)));
+    }
+  }
+  for (const EnumDescriptor* type : types.enums) {
+    for (int i = 1; i < type->value_count(); ++i) {
+      add(type->name(), "\"" + NameOf(*type->value(i)) + "\"", CommentOf(*type->value(i)));
+    }
+  }
+  return mentions;
+}
+
+int PrintMentions(const std::string& word, const Types& types, const Context& context) {
+  const std::vector<Mention> mentions = Search(word, types);
+  if (mentions.empty()) {
+    std::string known;
+    for (const Descriptor* message : types.messages) known += (known.empty() ? "" : ", ") + message->name();
+    throw CommandError::Invalid("a scene has no `" + word + "`; known names: " + known);
+  }
+  for (const Mention& mention : mentions) {
+    if (context.json) {
+      PrintJson({{"of", mention.of}, {"name", mention.name}, {"comment", mention.comment}});
+      continue;
+    }
+    std::cout << mention.of << ": " << mention.name << '\n';
+    PrintIndented(mention.comment, "      ");
+  }
+  if (!context.json) std::cout << "\n`fascicle schema NAME` prints all of one of these.\n";
+  return kDone;
 }
 
 int Schema(const std::string& name, const Context& context) {
   Types types;
   Collect(*v1::Scene::descriptor(), types);
-  if (!name.empty()) Select(name, types);
+  if (!name.empty() && !Select(name, types)) return PrintMentions(name, types, context);
   if (context.json) {
     for (const Descriptor* message : types.messages) PrintJson(MessageJson(*message));
     for (const EnumDescriptor* type : types.enums) PrintJson(EnumJson(*type));
@@ -202,7 +258,7 @@ int Schema(const std::string& name, const Context& context) {
 void AddSchema(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "schema", "The fields of a scene: units, ranges, defaults", kSchemaExamples);
   const auto name = std::make_shared<std::string>();
-  command->add_option("NAME", *name, "One message, enum or field");
+  command->add_option("NAME", *name, "A message, an enum or a field; or a word to search for");
   command->callback([name, &context] { context.action = [name, &context] { return Schema(*name, context); }; });
 }
 

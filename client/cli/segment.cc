@@ -10,6 +10,7 @@
 
 #include "client/cli/command.h"
 #include "client/cli/image_options.h"
+#include "client/cli/image_scene.h"
 #include "client/cli/interrupts.h"
 #include "core/base/stop.h"
 #include "core/imaging/labels.h"
@@ -23,10 +24,11 @@ constexpr const char* kSegmentExamples =
     R"(  fascicle phantom arm.mha --truth truth.mha                  a synthetic arm
   fascicle segment arm.mha --filter wavelet --seed 98,119,35 --opening 0.6 --out anconeus.mha --picture anconeus.png
   fascicle segment arm.mha --seed 98,119,35 --truth truth.mha --truth-label 4     compare with the true anatomy
+  fascicle segment arm.mha --filter wavelet --seed 98,119,35 --opening 0.6 --out anconeus.mha --scene anconeus.json
   fascicle segment thigh.nii.gz --filter bias-field --filter wavelet --classes 4 --class 3 --opening 2 --picture muscles.png
   fascicle segment ct/ --thresholds 200 --class 1 --out bone.mha          a DICOM series in a folder
   fascicle segment scan.raw --raw-size 140,220,71 --raw-spacing 0.5,0.5,1 --class 1
-  fascicle segment labels.mha --label 1 --label 2 --picture both.png      an existing segmentation
+  fascicle segment labels.mha --label 1 --label 2 --keep all --picture both.png     an existing segmentation
 
 Steps in order: region, resampling, filters, classes, opening, islands, holes. Check the picture before
 you trust the result. The label image has 1 where the body is, or 1, 2, ... for the labels in their order. Ctrl-C
@@ -67,7 +69,8 @@ void PrintStatistics(const char* name, const ClassStatistics& s, const char* mar
               s.volume * 1e6, s.lowest, s.highest, s.mean, s.deviation, mark);
 }
 
-void PrintReport(const SegmentOptions& options, const StagedImage& staged, const std::optional<double>& overlap) {
+void PrintReport(const SegmentOptions& options, const StagedImage& staged, const VoxelPlace& place,
+                 const std::optional<double>& overlap) {
   const VolumeImage& image = staged.image;
   std::printf("image     %d x %d x %d voxels of %.4g x %.4g x %.4g mm\n", image.size[0], image.size[1], image.size[2],
               image.spacing[0] * 1e3, image.spacing[1] * 1e3, image.spacing[2] * 1e3);
@@ -88,14 +91,17 @@ void PrintReport(const SegmentOptions& options, const StagedImage& staged, const
                     !labels && static_cast<int>(c) == staged.wanted_class ? "   wanted" : "");
   }
   PrintStatistics("body", staged.body_statistics, "");
+  std::printf("\n");
+  PrintPlace(place);
   for (const std::string& note : staged.notes) std::printf("note  %s\n", note.c_str());
   if (overlap) std::printf("\nDice coefficient with the truth  %.4f\n", *overlap);
-  for (const std::string& file : {options.out, options.picture}) {
+  for (const std::string& file : {options.out, options.scene, options.picture}) {
     if (!file.empty()) std::cout << "written to " << file << '\n';
   }
 }
 
-Json ReportJson(const SegmentOptions& options, const StagedImage& staged, const std::optional<double>& overlap) {
+Json ReportJson(const SegmentOptions& options, const StagedImage& staged, const VoxelPlace& place,
+                const std::optional<double>& overlap) {
   Json classes = Json::array();
   for (const ClassStatistics& statistics : staged.statistics) classes.push_back(StatisticsJson(statistics));
   const VolumeImage& image = staged.image;
@@ -105,12 +111,22 @@ Json ReportJson(const SegmentOptions& options, const StagedImage& staged, const 
                  {"centres", staged.centres},
                  {staged.classes.empty() ? "labels" : "classes", std::move(classes)},
                  {"body", StatisticsJson(staged.body_statistics)}};
+  report.update(PlaceJson(place));
   if (!staged.notes.empty()) report["notes"] = staged.notes;
   if (!staged.classes.empty()) report["wanted_class"] = staged.wanted_class;
   if (overlap) report["dice"] = *overlap;
   if (!options.out.empty()) report["labels_file"] = options.out;
+  if (!options.scene.empty()) report["scene"] = options.scene;
   if (!options.picture.empty()) report["picture"] = options.picture;
   return report;
+}
+
+// So many times voxels are joined that a first run takes seconds.
+int LevelFor(const ClassStatistics& body) {
+  constexpr double kMostVoxels = 20'000;
+  int level = 0;
+  for (double voxels = static_cast<double>(body.voxels); voxels > kMostVoxels; voxels /= 8) ++level;
+  return level;
 }
 
 int Segment(const SegmentOptions& options, const Context& context) {
@@ -124,13 +140,18 @@ int Segment(const SegmentOptions& options, const Context& context) {
     throw CommandError({Error::Kind::kInvalid, "the truth can't be compared", "INVALID_IMAGE", problems});
   }
   ThrowIfStopped(stop);
+  const VoxelPlace place = PlaceOf(staged.body);
   if (!options.out.empty()) WriteLabels(MakeLabelImage(staged.body), options.out);
+  if (!options.scene.empty()) {
+    const int labels = std::max(1, static_cast<int>(options.labels.size()));
+    WriteImageScene(options.scene, options.out, place, labels, LevelFor(staged.body_statistics));
+  }
   ThrowIfStopped(stop);
   if (!options.picture.empty()) DrawBody(staged, options, TitleOf(options));
   if (context.json) {
-    PrintJson(ReportJson(options, staged, overlap));
+    PrintJson(ReportJson(options, staged, place, overlap));
   } else {
-    PrintReport(options, staged, overlap);
+    PrintReport(options, staged, place, overlap);
   }
   return kDone;
 }
@@ -141,8 +162,14 @@ void AddSegment(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "segment", "Segment a body in a scan", kSegmentExamples);
   const auto options = std::make_shared<SegmentOptions>();
   AddImageOptions(*command, *options);
-  command->add_option("--out", options->out, "Write the body as a label image: .mha, .nrrd, .nii or .nii.gz")
-      ->type_name("FILE");
+  CLI::Option* out =
+      command->add_option("--out", options->out, "Write the body as a label image: .mha, .nrrd, .nii or .nii.gz")
+          ->type_name("FILE");
+  command
+      ->add_option("--scene", options->scene,
+                   "Write a scene of that label image: fixed at one end, pulled at the other, in mm")
+      ->type_name("FILE.json")
+      ->needs(out);
   CLI::Option* truth =
       command->add_option("--truth", options->truth, "A label image to compare with: prints the Dice coefficient")
           ->type_name("FILE");

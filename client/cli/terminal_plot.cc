@@ -115,13 +115,14 @@ std::string TerminalPlot(const PlotPanel& panel, int width, int height, bool col
     const PlotLine& line = panel.lines[l];
     for (std::size_t i = 0; i < line.x.size(); ++i) {
       // Draws a line from the previous point; a point without neighbours is a dot.
-      const std::size_t from = i > 0 && std::isfinite(line.y[i - 1]) ? i - 1 : i;
+      const std::size_t from = !line.as_points && i > 0 && std::isfinite(line.y[i - 1]) ? i - 1 : i;
       if (!std::isfinite(line.x[i]) || !std::isfinite(line.y[i])) continue;
       canvas.Line(x.Part(line.x[from]), y.Part(line.y[from]), x.Part(line.x[i]), y.Part(line.y[i]),
                   static_cast<int>(l));
     }
   }
-  std::string text = (panel.title.empty() ? "" : panel.title + ": ") + panel.y_label + "\n";
+  const bool is_told = panel.title.empty() || panel.y_label.starts_with(panel.title);
+  std::string text = (is_told ? "" : panel.title + ": ") + panel.y_label + "\n";
   for (int row = 0; row < height; ++row) {
     const bool labelled = row == 0 || row == height - 1 || row == height / 2;
     const double value = y.high - (y.high - y.low) * row / (height - 1);
@@ -136,8 +137,8 @@ std::string TerminalPlot(const PlotPanel& panel, int width, int height, bool col
   text += "\n" + std::string(kLabelWidth + 2, ' ') + left + std::string(before, ' ') + panel.x_label +
           PadLeft(right, room + right.size() - std::min(room, before + panel.x_label.size())) + "\n";
   for (std::size_t l = 0; l < panel.lines.size(); ++l) {
-    text += std::string(kLabelWidth + 2, ' ') + (coloured ? BrailleCanvas::Escape(static_cast<int>(l)) : "") + "━━ " +
-            (coloured ? "\x1b[0m" : "") + panel.lines[l].name + "\n";
+    text += std::string(kLabelWidth + 2, ' ') + (coloured ? BrailleCanvas::Escape(static_cast<int>(l)) : "") +
+            (panel.lines[l].as_points ? "●● " : "━━ ") + (coloured ? "\x1b[0m" : "") + panel.lines[l].name + "\n";
   }
   return text;
 }

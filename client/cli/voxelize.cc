@@ -7,6 +7,7 @@
 
 #include "client/cli/command.h"
 #include "client/cli/image_options.h"
+#include "client/cli/image_scene.h"
 #include "client/cli/interrupts.h"
 #include "core/base/stop.h"
 #include "core/geometry/voxel_grid.h"
@@ -18,6 +19,7 @@ constexpr const char* kVoxelizeExamples =
     R"(  fascicle phantom arm.mha                                    a synthetic arm
   fascicle voxelize arm.mha --filter wavelet --seed 98,119,35 --opening 0.6       the levels of the muscle, as a table
   fascicle voxelize labels.mha --label 1 --fraction 0.25 --level 2 --out coarse.mha
+  fascicle voxelize labels.mha --label 1 --level 1 --out coarse.mha --scene coarse.json    and a first scene
   fascicle voxelize labels.mha --label 1 --level 1 --picture coarse.png
 
 The body is selected as for `fascicle segment`. A voxel of the next level joins 2 x 2 x 2 and is solid if the given
@@ -31,7 +33,7 @@ struct VoxelizeOptions : ImageOptions {
   int level = 0;
 };
 
-void PrintTable(const VoxelizeOptions& options, const std::vector<VoxelLevel>& hierarchy,
+void PrintTable(const VoxelizeOptions& options, const std::vector<VoxelLevel>& hierarchy, const VoxelPlace& place,
                 const std::vector<std::string>& notes) {
   std::printf("level  voxel size     mm                       voxels       nodes       cm^3\n");
   for (std::size_t l = 0; l < hierarchy.size(); ++l) {
@@ -44,13 +46,14 @@ void PrintTable(const VoxelizeOptions& options, const std::vector<VoxelLevel>& h
                 static_cast<double>(level.voxels) * level.grid.spacing.prod() * 1e6,
                 static_cast<int>(l) == options.level && !options.out.empty() ? "   written" : "");
   }
+  PrintPlace(place);
   for (const std::string& note : notes) std::printf("note  %s\n", note.c_str());
-  for (const std::string& file : {options.out, options.picture}) {
+  for (const std::string& file : {options.out, options.scene, options.picture}) {
     if (!file.empty()) std::cout << "written to " << file << '\n';
   }
 }
 
-Json TableJson(const VoxelizeOptions& options, const std::vector<VoxelLevel>& hierarchy,
+Json TableJson(const VoxelizeOptions& options, const std::vector<VoxelLevel>& hierarchy, const VoxelPlace& place,
                const std::vector<std::string>& notes) {
   Json levels = Json::array();
   for (const VoxelLevel& level : hierarchy) {
@@ -62,8 +65,10 @@ Json TableJson(const VoxelizeOptions& options, const std::vector<VoxelLevel>& hi
                       {"volume", static_cast<double>(level.voxels) * level.grid.spacing.prod()}});
   }
   Json report = {{"fraction", options.fraction}, {"levels", std::move(levels)}};
+  report.update(PlaceJson(place));
   if (!notes.empty()) report["notes"] = notes;
   if (!options.out.empty()) report["labels_file"] = options.out;
+  if (!options.scene.empty()) report["scene"] = options.scene;
   if (!options.picture.empty()) report["picture"] = options.picture;
   return report;
 }
@@ -97,7 +102,12 @@ int Voxelize(const VoxelizeOptions& options, const Context& context) {
   }
   const VoxelGrid& level = hierarchy[options.level].grid;
   ThrowIfStopped(stop);
+  const VoxelPlace place = PlaceOf(staged.body);
   if (!options.out.empty()) WriteLabels(MakeLabelImage(level), options.out);
+  if (!options.scene.empty()) {
+    const int labels = std::max(1, static_cast<int>(options.labels.size()));
+    WriteImageScene(options.scene, options.out, PlaceOf(level), labels, 0);
+  }
   ThrowIfStopped(stop);
   if (!options.picture.empty()) {
     ShowLevel(level, staged);
@@ -106,9 +116,9 @@ int Voxelize(const VoxelizeOptions& options, const Context& context) {
                  std::to_string(hierarchy[options.level].voxels) + " voxels");
   }
   if (context.json) {
-    PrintJson(TableJson(options, hierarchy, staged.notes));
+    PrintJson(TableJson(options, hierarchy, place, staged.notes));
   } else {
-    PrintTable(options, hierarchy, staged.notes);
+    PrintTable(options, hierarchy, place, staged.notes);
   }
   return kDone;
 }
@@ -124,8 +134,14 @@ void AddVoxelize(CLI::App& app, Context& context) {
       ->check(CLI::Range(0.01, 1.0));
   command->add_option("--level", options->level, "The level to write and draw, counted from 0, the finest")
       ->check(CLI::Range(0, 10));
-  command->add_option("--out", options->out, "Write a level as a label image: .mha, .nrrd, .nii or .nii.gz")
-      ->type_name("FILE");
+  CLI::Option* out =
+      command->add_option("--out", options->out, "Write a level as a label image: .mha, .nrrd, .nii or .nii.gz")
+          ->type_name("FILE");
+  command
+      ->add_option("--scene", options->scene,
+                   "Write a scene of that label image: fixed at one end, pulled at the other, in mm")
+      ->type_name("FILE.json")
+      ->needs(out);
   command->callback(
       [options, &context] { context.action = [options, &context] { return Voxelize(*options, context); }; });
 }

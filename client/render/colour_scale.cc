@@ -64,6 +64,38 @@ ReadableUnit MakeReadable(double largest, const std::string& unit) {
   return {1e6, "µ" + unit};
 }
 
+std::string SpokenName(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  for (const char* person : {"Mises", "Cauchy", "Green", "Piola", "Kirchhoff", "Lagrange"}) {
+    std::string lower = person;
+    lower[0] = static_cast<char>(lower[0] - 'A' + 'a');
+    for (std::size_t at = name.find(lower); at != std::string::npos; at = name.find(lower, at + 1))
+      name[at] = person[0];
+  }
+  return name;
+}
+
+ColourScale MakeCategories(int count) {
+  // After the first, distinguishable by colour-blind readers, too [Okabe and Ito].
+  constexpr std::array<std::array<double, 3>, 8> kColoursOfParts = {{{0.78, 0.66, 0.62},
+                                                                     {0.00, 0.45, 0.70},
+                                                                     {0.90, 0.62, 0.00},
+                                                                     {0.00, 0.62, 0.45},
+                                                                     {0.80, 0.47, 0.65},
+                                                                     {0.84, 0.37, 0.00},
+                                                                     {0.34, 0.71, 0.91},
+                                                                     {0.94, 0.89, 0.26}}};
+  ColourScale scale{-0.5, count - 0.5, vtkSmartPointer<vtkLookupTable>::New(), true};
+  scale.table->SetNumberOfTableValues(count);
+  for (int i = 0; i < count; ++i) {
+    // Colours repeat, but for the first one.
+    const auto& colour = kColoursOfParts[static_cast<std::size_t>(i == 0 ? 0 : 1 + (i - 1) % 7)];
+    scale.table->SetTableValue(i, colour[0], colour[1], colour[2]);
+  }
+  scale.table->SetRange(scale.lowest, scale.highest);
+  return scale;
+}
+
 ColourScale MakeColourScale(double lowest, double highest, bool keep_ends) {
   // A uniform field still needs a non-empty range.
   const double size = std::max(std::abs(lowest), std::abs(highest));
@@ -77,7 +109,7 @@ ColourScale MakeColourScale(double lowest, double highest, bool keep_ends) {
     highest = std::max(-lowest, highest);
     lowest = -highest;
   }
-  ColourScale scale{lowest, highest, both_sides ? MakeTable(kDiverging) : MakeTable(kSequential)};
+  ColourScale scale{lowest, highest, both_sides ? MakeTable(kDiverging) : MakeTable(kSequential), false};
   scale.table->SetRange(lowest, highest);
   return scale;
 }

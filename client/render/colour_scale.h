@@ -15,13 +15,19 @@ struct ReadableUnit {
 };
 ReadableUnit MakeReadable(double largest, const std::string& unit);
 
+// A name of a field or series as people write it: "von Mises stress" for von_mises_stress.
+std::string SpokenName(std::string name);
+
 // Colours over [lowest, highest]: dark blue, green, yellow; or blue, white, red around zero if the values clearly have
 // both signs.
 struct ColourScale {
   double lowest = 0;
   double highest = 1;
   vtkSmartPointer<vtkLookupTable> table;
+  bool is_list = false;  // of categories
 };
+// A colour of its own for each of the numbers 0 to count - 1; the first is that of flesh.
+ColourScale MakeCategories(int count);
 ColourScale MakeColourScale(double lowest, double highest, bool keep_ends);
 
 }  // namespace fascicle::client

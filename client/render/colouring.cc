@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <stdexcept>
 #include <tuple>
@@ -18,6 +19,7 @@ struct Quantity {
   bool found = false;
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
+  std::vector<float> values;  // of all objects in all frames
 
   void Name(const std::string& its_title, const std::string& its_unit) {
     if (found && unit != its_unit) {
@@ -30,8 +32,47 @@ struct Quantity {
   void Hold(double value) {
     lowest = std::min(lowest, value);
     highest = std::max(highest, value);
+    if (std::isfinite(value)) values.push_back(static_cast<float>(value));
   }
 };
+
+// The ends of the scale without a few values that are far off; nothing if there are none.
+std::optional<std::pair<double, double>> WithoutOutliers(Quantity& quantity) {
+  constexpr std::size_t kFewest = 200;
+  constexpr double kPart = 0.01, kLargestGrowth = 1.5;
+  if (quantity.values.size() < kFewest) return std::nullopt;
+  const auto percentile = [&](double part) {
+    const auto at =
+        quantity.values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(quantity.values.size() - 1));
+    std::nth_element(quantity.values.begin(), at, quantity.values.end());
+    return static_cast<double>(*at);
+  };
+  const double low = percentile(kPart), high = percentile(1 - kPart);
+  const double all = quantity.highest - quantity.lowest;
+  if (!(high > low) || all <= kLargestGrowth * (high - low)) return std::nullopt;
+  return std::pair(low, high);
+}
+
+// Displacements of bodies that have not moved are round-off, which would fill the scale. `bodies` are at rest.
+bool IsStill(const Quantity& quantity, const std::vector<BodyShape>& bodies) {
+  constexpr double kRoundOff = 1e-9;  // of the bodies' size
+  if (quantity.unit != "m" || !quantity.title.starts_with("displacement")) return false;
+  Vec3 low = Vec3::Constant(INFINITY), high = -low;
+  for (const BodyShape& body : bodies) {
+    for (const Vec3& x : body.positions) {
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+  }
+  return std::max(-quantity.lowest, quantity.highest) < kRoundOff * (high - low).norm();
+}
+
+std::string NoteOnOutliers(const Quantity& quantity, double factor) {
+  char text[96];
+  std::snprintf(text, sizeof text, "scale: percentiles 1 to 99\nvalues: %.4g to %.4g", quantity.lowest * factor,
+                quantity.highest * factor);
+  return text;
+}
 
 void ColourBodies(const std::vector<BodyShape>& bodies, const v1::Frame& frame, const std::string& name,
                   Colouring& colouring, Quantity& quantity) {
@@ -97,15 +138,19 @@ std::vector<Colouring> ColourFrames(const std::vector<BodyShape>& bodies, const 
     throw std::runtime_error("there is no field `" + name +
                              "` in the frame; there are: " + KnownNames(lines, frames.front()));
   }
-  if (range) std::tie(quantity.lowest, quantity.highest) = *range;
-  const double largest = std::max(std::abs(quantity.lowest), std::abs(quantity.highest));
+  const bool still = !range && IsStill(quantity, bodies);
+  if (still) std::tie(quantity.lowest, quantity.highest) = std::pair(0.0, 1e-3);
+  const std::optional<std::pair<double, double>> most = range || still ? std::nullopt : WithoutOutliers(quantity);
+  const auto [lowest, highest] = range ? *range : most ? *most : std::pair(quantity.lowest, quantity.highest);
+  const double largest = std::max(std::abs(lowest), std::abs(highest));
   const ReadableUnit readable = MakeReadable(largest, quantity.unit);
-  std::replace(quantity.title.begin(), quantity.title.end(), '_', ' ');
-  const ColourScale scale =
-      MakeColourScale(quantity.lowest * readable.factor, quantity.highest * readable.factor, range.has_value());
+  quantity.title = SpokenName(quantity.title);
+  const ColourScale scale = MakeColourScale(lowest * readable.factor, highest * readable.factor, range.has_value());
   for (Colouring& colouring : colourings) {
     Scale(readable.factor, colouring);
     colouring.scale = scale;
+    if (still) colouring.note = "nothing has moved";
+    if (most) colouring.note = NoteOnOutliers(quantity, readable.factor);
     colouring.title = quantity.title + (readable.name.empty() ? "" : " [" + readable.name + "]");
   }
   return colourings;

@@ -1,12 +1,18 @@
 #include "client/render/picture.h"
 
 #include <vtkActor.h>
+#include <vtkActor2D.h>
 #include <vtkBoundingBox.h>
+#include <vtkCamera.h>
+#include <vtkCellArray.h>
+#include <vtkDoubleArray.h>
 #include <vtkLight.h>
 #include <vtkNew.h>
+#include <vtkPoints.h>
 #include <vtkPolyDataMapper.h>
-#include <vtkPolyDataSilhouette.h>
+#include <vtkPolyDataMapper2D.h>
 #include <vtkProperty.h>
+#include <vtkProperty2D.h>
 #include <vtkRenderer.h>
 #include <vtkRendererCollection.h>
 #include <vtkScalarBarActor.h>
@@ -26,6 +32,8 @@
 #include "client/render/colouring.h"
 #include "client/render/gif_writer.h"
 #include "client/render/line_tubes.h"
+#include "client/render/rest_outline.h"
+#include "client/render/ticks.h"
 #include "client/render/view.h"
 #include "client/vtk/body_grid.h"
 
@@ -39,6 +47,7 @@ constexpr double kMuscle[3] = {0.66, 0.16, 0.16};
 constexpr int kFibreSeeds = 70;
 constexpr double kLineRadius = 0.005;  // of the diagonal of the box around everything
 constexpr int kScaleWidth = 230;       // [pixel]
+constexpr int kHeadHeight = 44;        // of the title above several panels [pixel]
 
 vtkSmartPointer<vtkActor> MakeActor(vtkPolyData* data, const Colouring& colouring) {
   vtkNew<vtkPolyDataMapper> mapper;
@@ -48,7 +57,8 @@ vtkSmartPointer<vtkActor> MakeActor(vtkPolyData* data, const Colouring& colourin
   } else {
     mapper->SetLookupTable(colouring.scale.table);
     mapper->UseLookupTableScalarRangeOn();
-    mapper->InterpolateScalarsBeforeMappingOn();
+    // Between two categories lies no third one.
+    mapper->SetInterpolateScalarsBeforeMapping(!colouring.scale.is_list);
   }
   auto actor = vtkSmartPointer<vtkActor>::New();
   actor->SetMapper(mapper);
@@ -135,23 +145,22 @@ void AddLine(const LinePath& path, const std::optional<double>& value, const Col
 
 // The outline of the rest shape as the camera sees it, over everything else.
 void AddRestOutlines(const std::vector<BodyShape>& shapes, vtkRenderer& renderer, vtkRenderer& overlay) {
+  Vec3 towards;
+  renderer.GetActiveCamera()->GetDirectionOfProjection(towards.data());
   for (const BodyShape& shape : shapes) {
-    vtkNew<vtkPolyDataSilhouette> silhouette;
     // For voxels only the silhouette, because their edges are everywhere.
     const bool voxels = IsOfVoxels(shape);
-    silhouette->SetInputData(MakeSurface(*MakeGrid(shape, shape.positions), voxels));
-    silhouette->SetCamera(renderer.GetActiveCamera());
-    silhouette->SetEnableFeatureAngle(voxels ? 0 : 60);
-    silhouette->Update();
-    overlay.AddActor(MakeLines(silhouette->GetOutput(), kInk, 1.3, 0.45));
+    const auto surface = MakeSurface(*MakeGrid(shape, shape.positions), voxels);
+    overlay.AddActor(MakeLines(MakeRestOutline(*surface, -towards, !voxels), kInk, 1.3, 0.45));
   }
 }
 
-void AddText(const std::string& text, double x, double y, int size, bool bold, vtkRenderer& renderer) {
+void AddText(const std::string& text, double x, double y, int size, bool bold, vtkRenderer& renderer,
+             const double colour[3] = kInk) {
   vtkNew<vtkTextActor> actor;
   actor->SetInput(text.c_str());
   actor->GetTextProperty()->SetFontSize(size);
-  actor->GetTextProperty()->SetColor(kInk);
+  actor->GetTextProperty()->SetColor(colour[0], colour[1], colour[2]);
   actor->GetTextProperty()->SetBold(bold);
   actor->GetTextProperty()->SetVerticalJustificationToTop();
   actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
@@ -159,14 +168,53 @@ void AddText(const std::string& text, double x, double y, int size, bool bold, v
   renderer.AddActor2D(actor);
 }
 
-// `width` is that of the renderer, before downsampling [pixel].
-void AddScale(const Colouring& colouring, double width, vtkRenderer& renderer) {
+// A filled square with its lower left corner at (x, y) [pixel drawn].
+void AddSquare(double x, double y, double side, const double colour[3], vtkRenderer& renderer) {
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(x, y, 0);
+  points->InsertNextPoint(x + side, y, 0);
+  points->InsertNextPoint(x + side, y + side, 0);
+  points->InsertNextPoint(x, y + side, 0);
+  vtkNew<vtkCellArray> faces;
+  faces->InsertNextCell({0, 1, 2, 3});
+  vtkNew<vtkPolyData> square;
+  square->SetPoints(points);
+  square->SetPolys(faces);
+  vtkNew<vtkPolyDataMapper2D> mapper;
+  mapper->SetInputData(square);
+  vtkNew<vtkActor2D> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(colour[0], colour[1], colour[2]);
+  renderer.AddActor2D(actor);
+}
+
+// The names of categories in their colours, below each other at the right.
+void AddCategories(const Colouring& colouring, const std::vector<std::string>& names, double width, double height,
+                   vtkRenderer& renderer) {
+  const double pixel = Canvas::kSampling / width, line = 26 * Canvas::kSampling / height;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    double colour[3];
+    colouring.scale.table->GetColor(static_cast<double>(i), colour);
+    const double y = 0.80 - static_cast<double>(i) * line;
+    AddSquare(width * (1 - 180 * pixel), height * (y - 0.68 * line), 14 * Canvas::kSampling, colour, renderer);
+    AddText(names[i], 1 - 158 * pixel, y, 16, false, renderer);
+  }
+}
+
+// `width` and `height` are those of the renderer, before downsampling [pixel].
+void AddScale(const Colouring& colouring, const std::vector<std::string>& categories, double width, double height,
+              vtkRenderer& renderer) {
   if (colouring.scale.table == nullptr) return;
+  if (colouring.scale.is_list) return AddCategories(colouring, categories, width, height, renderer);
   vtkNew<vtkScalarBarActor> bar;
   bar->SetLookupTable(colouring.scale.table);
-  bar->SetNumberOfLabels(6);
+  const Ticks ticks = RoundTicks(colouring.scale.lowest, colouring.scale.highest, 7);
+  vtkNew<vtkDoubleArray> places;
+  for (const double place : ticks.places) places->InsertNextValue(place);
+  bar->SetCustomLabels(places);
+  bar->SetUseCustomLabels(ticks.places.size() > 1);
   bar->SetMaximumNumberOfColors(256);
-  bar->SetLabelFormat("  %.4g");  // the spaces separate the numbers from the bar
+  bar->SetLabelFormat("  %.6g");  // the spaces separate the numbers from the bar
   bar->UnconstrainedFontSizeOn();
   bar->GetLabelTextProperty()->SetFontSize(16);
   bar->GetLabelTextProperty()->SetColor(kInk);
@@ -190,6 +238,7 @@ void AddScale(const Colouring& colouring, double width, vtkRenderer& renderer) {
   title->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   title->SetPosition(1 - 24 * pixel, 0.81);
   renderer.AddActor2D(title);
+  if (!colouring.note.empty()) AddText(colouring.note, 1 - 196 * pixel, 0.14, 13, false, renderer);
 }
 
 std::string TimeText(const v1::Frame& frame) {
@@ -204,7 +253,7 @@ struct Setting {
   std::vector<RigidShape> rigid_bodies;
   std::vector<LineInfo> lines;
   std::vector<Colouring> colourings;  // of each frame
-  std::array<double, 6> bounds;       // of everything drawn in all frames except planes, in VTK's order [m]
+  std::array<double, 6> bounds;       // of everything drawn in all frames, except planes, in VTK's order [m]
   std::optional<Vec3> up;             // outward normal of the first plane
   double line_radius = 0;             // [m]
 };
@@ -215,6 +264,9 @@ void AddPoints(const std::vector<Vec3>& points, vtkBoundingBox& box) {
 
 vtkBoundingBox BoundsOf(const Setting& setting, std::span<const v1::Frame> frames, const PictureOptions& options) {
   vtkBoundingBox box;
+  for (const BodyShape& shape : setting.shapes) {
+    if (options.rest_outline) AddPoints(shape.positions, box);
+  }
   for (const v1::Frame& frame : frames) {
     for (std::size_t i = 0; i < setting.shapes.size(); ++i) {
       AddPoints(DecodePositions(frame.bodies(static_cast<int>(i)), setting.shapes[i].positions.size()), box);
@@ -238,6 +290,9 @@ Setting MakeSetting(const v1::Geometry& geometry, std::span<const v1::Frame> fra
   setting.rigid_bodies = DecodeRigidBodies(geometry);
   setting.lines = DecodeLineInfos(geometry);
   setting.colourings = ColourFrames(setting.shapes, setting.lines, frames, options.colour, options.range);
+  for (Colouring& colouring : setting.colourings) {
+    if (!options.categories.empty()) colouring.scale = MakeCategories(static_cast<int>(options.categories.size()));
+  }
   const vtkBoundingBox box = BoundsOf(setting, frames, options);
   if (box.IsValid() == 0) throw std::runtime_error("there is nothing to draw in the frame");
   box.GetBounds(setting.bounds.data());
@@ -278,6 +333,14 @@ vtkSmartPointer<vtkRenderer> AddBackground(const Part& part, Canvas& canvas) {
   return renderer;
 }
 
+// The white band of a title above several panels.
+void AddHead(const Part& part, Canvas& canvas) {
+  vtkNew<vtkRenderer> renderer;
+  renderer->SetViewport(part.left, part.bottom, part.right, part.top);
+  renderer->SetBackground(1, 1, 1);
+  canvas.window().AddRenderer(renderer);
+}
+
 // Draws one frame into a part of the canvas. The last panel has the length bar.
 vtkSmartPointer<vtkRenderer> AddPanel(const Setting& setting, const v1::Frame& frame, std::size_t index,
                                       const PictureOptions& options, const Part& part, bool last, Canvas& canvas) {
@@ -308,7 +371,10 @@ vtkSmartPointer<vtkRenderer> AddPanel(const Setting& setting, const v1::Frame& f
   overlay->SetActiveCamera(renderer->GetActiveCamera());
   canvas.window().AddRenderer(overlay);
   if (options.rest_outline) AddRestOutlines(setting.shapes, *renderer, *overlay);
-  if (options.time) AddText(TimeText(frame), 0.025, 0.965 - 45.0 * Canvas::kSampling / height, 17, false, *renderer);
+  // Below the title of a single panel; several have their title above all of them.
+  const bool alone = part.right - part.left == 1 && part.top - part.bottom == 1;
+  const double below = (alone ? 45.0 : 0.0) * Canvas::kSampling / height;
+  if (options.time) AddText(TimeText(frame), 0.025, 0.965 - below, alone ? 17 : 15, false, *renderer);
   if (last) AddLengthBar(width, height, *renderer);
   return renderer;
 }
@@ -333,13 +399,15 @@ void AddPanels(const Setting& setting, std::span<const v1::Frame> frames, std::s
   const Colouring& colouring = setting.colourings[first_index];
   const bool beside = frames.size() > 1 && colouring.scale.table != nullptr;
   const double right = beside ? 1 - static_cast<double>(kScaleWidth) / options.size.width : 1;
-  const auto [rows, columns] =
-      LayOut(frames.size(), {static_cast<int>(right * options.size.width), options.size.height});
+  const double top =
+      frames.size() > 1 && !options.title.empty() ? 1 - static_cast<double>(kHeadHeight) / options.size.height : 1;
+  const auto [rows, columns] = LayOut(
+      frames.size(), {static_cast<int>(right * options.size.width), static_cast<int>(top * options.size.height)});
   vtkSmartPointer<vtkRenderer> of_scale;
   for (int cell = 0; cell < rows * columns; ++cell) {
     const int row = cell / columns, column = cell % columns;
-    const Part part = {right * column / columns, 1 - static_cast<double>(row + 1) / rows,
-                       right * (column + 1) / columns, 1 - static_cast<double>(row) / rows};
+    const Part part = {right * column / columns, top * (1 - static_cast<double>(row + 1) / rows),
+                       right * (column + 1) / columns, top * (1 - static_cast<double>(row) / rows)};
     const auto f = static_cast<std::size_t>(cell);
     if (f < frames.size()) {
       of_scale = AddPanel(setting, frames[f], first_index + f, options, part, f + 1 == frames.size(), canvas);
@@ -347,13 +415,15 @@ void AddPanels(const Setting& setting, std::span<const v1::Frame> frames, std::s
       AddBackground(part, canvas);
     }
   }
-  if (beside) of_scale = AddBackground({right, 0, 1, 1}, canvas);
-  AddScale(colouring, canvas.width() * (beside ? 1 - right : 1), *of_scale);
+  if (top < 1) AddHead({0, top, 1, 1}, canvas);
+  if (beside) of_scale = AddBackground({right, 0, 1, top}, canvas);
+  AddScale(colouring, options.categories, canvas.width() * (beside ? 1 - right : 1),
+           canvas.height() * (beside ? top : 1), *of_scale);
   // The title may be wider than a panel.
   vtkNew<vtkRenderer> over_all;
   over_all->SetLayer(1);
   canvas.window().AddRenderer(over_all);
-  AddText(options.title, 0.025, 0.965, 22, true, *over_all);
+  AddText(options.title, top < 1 ? 0.012 : 0.025, top < 1 ? 1 - 0.2 * (1 - top) : 0.965, 22, true, *over_all);
   AddDirections(canvas.window(), *canvas.window().GetRenderers()->GetFirstRenderer());
 }
 

@@ -7,8 +7,10 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "client/render/canvas.h"
+#include "core/base/types.h"
 #include "fascicle/v1/frame.pb.h"
 
 namespace fascicle::client {
@@ -18,8 +20,11 @@ struct PictureOptions {
   PictureSize size;
   // The quantity by which bodies and lines are coloured, see ColourFrames; empty: plain colours.
   std::string colour = "displacement";
-  // Range of the colour scale, in the field's unit; by default that of the frame.
+  // Range of the colour scale, in the field's unit; by default that of the frames, see ColourFrames.
   std::optional<std::pair<double, double>> range;
+  // Names of the values 0, 1, ... of a quantity that numbers parts: each has a colour of its own, with its name beside
+  // it in place of a scale. The first one is that of everything else. Empty: a scale.
+  std::vector<std::string> categories;
   bool surface = true;
   bool smooth = false;  // smooths the steps between voxels
   bool wireframe = false;
@@ -30,8 +35,11 @@ struct PictureOptions {
   bool fibres = false;       // as lines through a transparent surface
   bool rigid_bodies = true;
   bool lines = true;  // as tubes
-  // The viewpoint [degree]: azimuth from +x to +y, elevation from the xy plane to +z. If both are absent, long bodies
-  // are seen from the side and others from a corner; up is z, or the floor's normal.
+  // The vertical of the picture, a unit vector along an axis; absent: the floor's normal, or z.
+  std::optional<Vec3> up;
+  // The viewpoint [degree]: where up is z, azimuth from +x to +y and elevation from the xy plane to +z; otherwise the
+  // same with axes that are turned with the vertical (VerticalFrame in view.h). If both are absent, long bodies are
+  // seen from the side and others from a corner, and from a corner if `up` is given.
   std::optional<double> azimuth;
   std::optional<double> elevation;
   double zoom = 1;

@@ -9,7 +9,9 @@
 #include <vtkNew.h>
 #include <vtkPen.h>
 #include <vtkPlot.h>
+#include <vtkPlotPoints.h>
 #include <vtkRenderer.h>
+#include <vtkStringArray.h>
 #include <vtkTable.h>
 #include <vtkTextProperty.h>
 
@@ -17,6 +19,8 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+
+#include "client/render/ticks.h"
 
 namespace fascicle::client {
 namespace {
@@ -62,21 +66,42 @@ void StyleAxis(vtkAxis& axis, const std::string& label) {
   axis.GetTitleProperties()->SetFontSize(15);
   axis.GetTitleProperties()->BoldOff();
   axis.GetLabelProperties()->SetFontSize(13);
-  axis.SetNotation(vtkAxis::PRINTF_NOTATION);
-  axis.SetLabelFormat("%.6g");
   axis.GetPen()->SetWidth(Canvas::kSampling);
   axis.GetPen()->SetColor(60, 60, 60);
   axis.GetGridPen()->SetWidth(Canvas::kSampling);
   axis.GetGridPen()->SetColor(232, 232, 232);
 }
 
-// Adds a margin, and a range around a line that is constant up to round-off.
-void SetRange(const DataExtent& extent, double margin, vtkAxis& axis) {
+// Adds a margin, a range around a line that is constant up to round-off, and round ticks.
+void SetRange(const DataExtent& extent, double margin, int most_ticks, vtkAxis& axis) {
   const double size = std::max(std::abs(extent.lowest), std::abs(extent.highest));
   double half = margin * (extent.highest - extent.lowest);
   if (!(extent.highest - extent.lowest > 1e-12 * size)) half = size > 0 ? 0.05 * size : 1;
   axis.SetBehavior(vtkAxis::FIXED);
   axis.SetRange(extent.lowest - half, extent.highest + half);
+  const Ticks ticks = RoundTicks(extent.lowest - half, extent.highest + half, most_ticks);
+  vtkNew<vtkDoubleArray> places;
+  vtkNew<vtkStringArray> labels;
+  for (std::size_t i = 0; i < ticks.places.size(); ++i) {
+    places->InsertNextValue(ticks.places[i]);
+    labels->InsertNextValue(ticks.labels[i]);
+  }
+  axis.SetCustomTickPositions(places, labels);
+}
+
+// Puts the plots below each other, with the same margins.
+void Align(const std::vector<vtkSmartPointer<vtkChartXY>>& charts) {
+  int left = 0, right = charts[0]->GetPoint2()[0];
+  for (const auto& chart : charts) {
+    left = std::max(left, chart->GetPoint1()[0]);
+    right = std::min(right, chart->GetPoint2()[0]);
+  }
+  for (const auto& chart : charts) {
+    const int bottom = chart->GetPoint1()[1], top = chart->GetPoint2()[1];
+    chart->SetLayoutStrategy(vtkChart::AXES_TO_RECT);
+    chart->SetSize(vtkRectf(static_cast<float>(left), static_cast<float>(bottom), static_cast<float>(right - left),
+                            static_cast<float>(top - bottom)));
+  }
 }
 
 vtkSmartPointer<vtkChartXY> MakeChart(const PlotPanel& panel) {
@@ -89,20 +114,26 @@ vtkSmartPointer<vtkChartXY> MakeChart(const PlotPanel& panel) {
   for (std::size_t i = 0; i < panel.lines.size(); ++i) {
     const auto table = MakeTable(panel.lines[i], x_extent, y_extent);
     if (table->GetNumberOfRows() == 0) continue;
-    vtkPlot& plot = *chart->AddPlot(vtkChart::LINE);
+    vtkPlot& plot = *chart->AddPlot(panel.lines[i].as_points ? vtkChart::POINTS : vtkChart::LINE);
     plot.SetInputData(table, 0, 1);
     const auto& colour = kLineColours[i % kLineColours.size()];
     plot.SetColor(colour[0], colour[1], colour[2], 255);
     plot.SetWidth(2 * Canvas::kSampling);
+    if (auto* points = vtkPlotPoints::SafeDownCast(&plot); points != nullptr && panel.lines[i].as_points) {
+      points->SetMarkerStyle(vtkPlotPoints::CIRCLE);
+      points->SetMarkerSize(10 * Canvas::kSampling);
+    }
     plot.GetPen()->SetLineType(kStyles[i / kLineColours.size() % kStyles.size()]);
   }
   StyleAxis(*chart->GetAxis(vtkAxis::BOTTOM), panel.x_label);
-  // The simple algorithm lets long labels overlap. On the vertical axis there is space, and its ranges are tighter.
-  chart->GetAxis(vtkAxis::BOTTOM)->SetTickLabelAlgorithm(vtkAxis::TICK_WILKINSON_EXTENDED);
   StyleAxis(*chart->GetAxis(vtkAxis::LEFT), panel.y_label);
   if (x_extent.lowest <= x_extent.highest) {
-    SetRange(x_extent, 0, *chart->GetAxis(vtkAxis::BOTTOM));
-    SetRange(y_extent, 0.06, *chart->GetAxis(vtkAxis::LEFT));
+    // Marks at the ends would be cut.
+    const bool marks =
+        std::any_of(panel.lines.begin(), panel.lines.end(), [](const PlotLine& l) { return l.as_points; });
+    const double x_margin = marks ? 0.02 : 0;
+    SetRange(x_extent, x_margin, 11, *chart->GetAxis(vtkAxis::BOTTOM));
+    SetRange(y_extent, 0.06, 7, *chart->GetAxis(vtkAxis::LEFT));
   }
   chart->SetShowLegend(true);
   vtkChartLegend& legend = *chart->GetLegend();
@@ -140,6 +171,7 @@ void DrawPlot(const std::vector<PlotPanel>& panels, PictureSize size, const std:
   // The first drawing finds the shift that preserves precision where values differ little; the second one applies it to
   // the lines.
   canvas.window().Render();
+  Align(charts);
   for (const auto& chart : charts) chart->RecalculateBounds();
   canvas.Save(path);
 }

@@ -14,6 +14,7 @@ struct PlotLine {
   std::string name;
   std::vector<double> x;
   std::vector<double> y;
+  bool as_points = false;  // marks without a line, as for measured values
 };
 
 // Lines with common axes.

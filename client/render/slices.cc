@@ -22,7 +22,6 @@ using Colour = std::array<unsigned char, 3>;
 // Colours of outlines: bright on grey, and distinguishable by colour-blind readers.
 constexpr std::array<Colour, 6> kOutlineColours = {
     {{255, 176, 0}, {86, 180, 233}, {255, 80, 120}, {0, 210, 150}, {220, 130, 255}, {240, 228, 66}}};
-constexpr int kColumns = 3, kRows = 2;
 constexpr int kMargin = 10 * Canvas::kSampling, kCaption = 22 * Canvas::kSampling, kHead = 36 * Canvas::kSampling,
               kFoot = 40 * Canvas::kSampling;
 
@@ -30,16 +29,42 @@ const Colour& ColourOf(int label) {
   return kOutlineColours[static_cast<std::size_t>(label - 1) % kOutlineColours.size()];
 }
 
-// A slice normal to one axis.
-struct Panel {
-  int across = 2;          // axis
-  int right = 0, up = 1;   // axes of the picture
-  bool downwards = false;  // `up` runs down
-  int at = 0;              // voxel along `across`
+// An axis of the image along one of the patient, perhaps backwards.
+struct ImageAxis {
+  int axis = 0;
+  bool backwards = false;
 };
 
+// The axes of the image nearest to the patient's x (to the left), y (to the back) and z (to the head).
+std::array<ImageAxis, 3> PatientAxes(const Mat3& direction) {
+  std::array<int, 3> best = {0, 1, 2}, order = best;
+  double most = -1;
+  do {
+    double sum = 0;
+    for (int d = 0; d < 3; ++d) sum += std::abs(direction(d, order[static_cast<std::size_t>(d)]));
+    if (sum > most + 1e-9) {
+      most = sum;
+      best = order;
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  std::array<ImageAxis, 3> axes;
+  for (std::size_t d = 0; d < 3; ++d) axes[d] = {best[d], direction(static_cast<int>(d), best[d]) < 0};
+  return axes;
+}
+
 struct Extent {
-  std::array<int, 3> low, high;
+  std::array<int, 3> low, high;  // both inside
+};
+
+// A slice normal to one axis, of the voxels within `shown`.
+struct Panel {
+  int across = 2;                                       // axis
+  ImageAxis right, up;                                  // of the picture
+  std::array<const char*, 4> sides = {"", "", "", ""};  // marks at the left, right, below and above
+  int at = 0;                                           // voxel along `across`
+  Extent shown;
+
+  int size(int axis) const { return shown.high[axis] - shown.low[axis] + 1; }
 };
 
 // Of the labelled voxels; of all where there are none.
@@ -62,21 +87,43 @@ Extent LabelledExtent(const SlicesInput& input) {
   return extent;
 }
 
+// The voxels to show: all, or the labelled ones with a margin.
+Extent ShownExtent(const SlicesInput& input, const Extent& labelled) {
+  Extent shown = {{0, 0, 0}, {input.size[0] - 1, input.size[1] - 1, input.size[2] - 1}};
+  for (int axis = 0; input.crop && axis < 3; ++axis) {
+    const int margin = static_cast<int>(std::ceil(*input.crop / input.spacing[axis]));
+    shown.low[axis] = std::max(shown.low[axis], labelled.low[axis] - margin);
+    shown.high[axis] = std::min(shown.high[axis], labelled.high[axis] + margin);
+  }
+  return shown;
+}
+
 std::vector<Panel> ChoosePanels(const SlicesInput& input) {
   constexpr int kAxial = 4;
   const Extent extent = LabelledExtent(input);
+  const Extent shown = ShownExtent(input, extent);
+  const auto [left, back, head] = PatientAxes(input.direction);
+  const auto reversed = [](ImageAxis axis) { return ImageAxis{axis.axis, !axis.backwards}; };
+  const auto middle = [&](const ImageAxis& axis) { return (extent.low[axis.axis] + extent.high[axis.axis]) / 2; };
   std::vector<Panel> panels;
-  for (int s = 0; s < kAxial; ++s) {
-    const double part = (s + 0.5) / kAxial;
-    const int at = static_cast<int>(std::lround(extent.low[2] + part * (extent.high[2] - extent.low[2])));
-    panels.push_back({2, 0, 1, true, at});
+  for (int s = 0; s < kAxial; ++s) {  // from the foot to the head
+    const double part = head.backwards ? 1 - (s + 0.5) / kAxial : (s + 0.5) / kAxial;
+    const int low = extent.low[head.axis], high = extent.high[head.axis];
+    const int at = static_cast<int>(std::lround(low + part * (high - low)));
+    panels.push_back({head.axis, left, reversed(back), {"R", "L", "P", "A"}, at, shown});
   }
-  panels.push_back({1, 0, 2, false, (extent.low[1] + extent.high[1]) / 2});
-  panels.push_back({0, 1, 2, false, (extent.low[0] + extent.high[0]) / 2});
+  panels.push_back({back.axis, left, head, {"R", "L", "F", "H"}, middle(back), shown});
+  panels.push_back({left.axis, back, head, {"A", "P", "F", "H"}, middle(left), shown});
   return panels;
 }
 
-std::pair<float, float> GreyRange(std::span<const float> values) {
+// The values drawn in black and in white.
+std::pair<float, float> GreyRange(const SlicesInput& input) {
+  if (input.window) {
+    const auto [level, width] = *input.window;
+    return {static_cast<float>(level - width / 2), static_cast<float>(level + width / 2)};
+  }
+  const std::span<const float> values = input.values;
   constexpr std::size_t kMostSamples = 1'000'000;
   std::vector<float> samples;
   const std::size_t step = values.size() / kMostSamples + 1;
@@ -115,25 +162,25 @@ class Raster {
   vtkNew<vtkImageData> data_;
 };
 
-// A slice as a function of places in it, counted in voxels from its lower left corner.
+// A slice as a function of places in it.
 class Slice {
  public:
   Slice(const SlicesInput& input, const Panel& panel) : input_(input), panel_(panel) {}
 
-  double width() const { return input_.size[panel_.right] * input_.spacing[panel_.right]; }  // [m]
-  double height() const { return input_.size[panel_.up] * input_.spacing[panel_.up]; }       // [m]
+  double width() const { return panel_.size(panel_.right.axis) * input_.spacing[panel_.right.axis]; }  // [m]
+  double height() const { return panel_.size(panel_.up.axis) * input_.spacing[panel_.up.axis]; }       // [m]
 
   // At a place [m] from the lower left.
   int LabelAt(double x, double y) const {
-    const int right = static_cast<int>(std::floor(x / input_.spacing[panel_.right]));
-    const int up = static_cast<int>(std::floor(y / input_.spacing[panel_.up]));
-    if (right < 0 || up < 0 || right >= input_.size[panel_.right] || up >= input_.size[panel_.up]) return 0;
+    const int right = static_cast<int>(std::floor(x / input_.spacing[panel_.right.axis]));
+    const int up = static_cast<int>(std::floor(y / input_.spacing[panel_.up.axis]));
+    if (right < 0 || up < 0 || right >= panel_.size(panel_.right.axis) || up >= panel_.size(panel_.up.axis)) return 0;
     return input_.labels[IndexOf(right, up)];
   }
   // Bilinear between the centres of voxels.
   double ValueAt(double x, double y) const {
-    const auto [left, right, a] = Between(x / input_.spacing[panel_.right], input_.size[panel_.right]);
-    const auto [low, high, b] = Between(y / input_.spacing[panel_.up], input_.size[panel_.up]);
+    const auto [left, right, a] = Between(x / input_.spacing[panel_.right.axis], panel_.size(panel_.right.axis));
+    const auto [low, high, b] = Between(y / input_.spacing[panel_.up.axis], panel_.size(panel_.up.axis));
     const auto value = [&](int r, int u) { return static_cast<double>(input_.values[IndexOf(r, u)]); };
     return (1 - b) * ((1 - a) * value(left, low) + a * value(right, low)) +
            b * ((1 - a) * value(left, high) + a * value(right, high));
@@ -151,9 +198,13 @@ class Slice {
   }
   std::size_t IndexOf(int right, int up) const {
     std::array<std::size_t, 3> at;
-    at[panel_.across] = panel_.at;
-    at[panel_.right] = right;
-    at[panel_.up] = panel_.downwards ? input_.size[panel_.up] - 1 - up : up;
+    const auto place = [&](const ImageAxis& axis, int steps) {
+      return static_cast<std::size_t>(axis.backwards ? panel_.shown.high[axis.axis] - steps
+                                                     : panel_.shown.low[axis.axis] + steps);
+    };
+    at[panel_.across] = static_cast<std::size_t>(panel_.at);
+    at[panel_.right.axis] = place(panel_.right, right);
+    at[panel_.up.axis] = place(panel_.up, up);
     return at[0] +
            static_cast<std::size_t>(input_.size[0]) * (at[1] + static_cast<std::size_t>(input_.size[1]) * at[2]);
   }
@@ -184,15 +235,70 @@ void Paint(const Slice& slice, double scale, int left, int bottom, std::pair<flo
   }
 }
 
-void AddMark(const std::string& text, int x, int y, int size, bool bold, vtkRenderer& renderer) {
+constexpr double kTextInk[3] = {0.1, 0.1, 0.1}, kSideInk[3] = {1, 0.85, 0.3};
+
+void AddMark(const std::string& text, int x, int y, int size, bool bold, vtkRenderer& renderer,
+             const double colour[3] = kTextInk) {
   vtkNew<vtkTextActor> actor;
   actor->SetInput(text.c_str());
   actor->SetPosition(x, y);
   vtkTextProperty& style = *actor->GetTextProperty();
-  style.SetColor(0.1, 0.1, 0.1);
+  style.SetColor(colour[0], colour[1], colour[2]);
   style.SetFontSize(size);
   style.SetBold(bold ? 1 : 0);
+  if (colour != kTextInk) {  // legible on bright tissue, too
+    style.SetBackgroundColor(0.1, 0.1, 0.1);
+    style.SetBackgroundOpacity(0.6);
+  }
   renderer.AddActor2D(actor);
+}
+
+// R, L, A, P, H and F in the middle of the sides of a slice.
+void AddSides(const Panel& panel, int left, int bottom, int width, int height, vtkRenderer& renderer) {
+  constexpr int kInside = 5 * Canvas::kSampling, kLetter = 9 * Canvas::kSampling;
+  const int x = left + (width - kLetter) / 2, y = bottom + (height - kLetter) / 2;
+  AddMark(panel.sides[0], left + kInside, y, 13, true, renderer, kSideInk);
+  AddMark(panel.sides[1], left + width - kInside - kLetter, y, 13, true, renderer, kSideInk);
+  AddMark(panel.sides[2], x, bottom + kInside, 13, true, renderer, kSideInk);
+  AddMark(panel.sides[3], x, bottom + height - kInside - kLetter - kInside, 13, true, renderer, kSideInk);
+}
+
+// Rows of panels, each as high as its highest panel, filled from the left.
+struct Arrangement {
+  std::vector<std::size_t> in_row;  // number of panels
+  double scale = 0;                 // pixels drawn a metre
+  int height = 0;                   // of all rows with their captions [pixel drawn]
+};
+
+// The rows in which the panels are drawn largest.
+Arrangement Arrange(const SlicesInput& input, const std::vector<Panel>& panels, int width, int height) {
+  Arrangement best;
+  double heights = 0;  // of all rows [m]
+  const auto row_scale = [&](const std::vector<std::size_t>& in_row) {
+    double scale = 1e30;
+    heights = 0;
+    std::size_t p = 0;
+    for (const std::size_t count : in_row) {
+      double widths = 0, highest = 0;
+      for (std::size_t i = 0; i < count; ++i, ++p) {
+        const Slice slice(input, panels[p]);
+        widths += slice.width();
+        highest = std::max(highest, slice.height());
+      }
+      heights += highest;
+      scale = std::min(scale, (width - static_cast<int>(count + 1) * kMargin) / widths);
+    }
+    const int rows = static_cast<int>(in_row.size());
+    return std::min(scale, (height - rows * (kMargin + kCaption)) / heights);
+  };
+  for (const std::vector<std::size_t>& in_row :
+       std::vector<std::vector<std::size_t>>{{6}, {4, 2}, {3, 3}, {2, 2, 2}, {1, 1, 1, 1, 1, 1}, {5, 1}, {2, 4}}) {
+    const double scale = row_scale(in_row);
+    if (scale <= best.scale * 1.001) continue;
+    best = {in_row, scale,
+            static_cast<int>(heights * scale + static_cast<double>(in_row.size()) * (kMargin + kCaption))};
+  }
+  return best;
 }
 
 // A length of 1, 2 or 5 times a power of ten [m].
@@ -227,15 +333,13 @@ void DrawSlices(const SlicesInput& input, PictureSize size, const std::filesyste
   if (voxels == 0 || input.values.size() != voxels || input.labels.size() != voxels) {
     throw std::runtime_error("there is no image to draw");
   }
-  Canvas canvas(size);
   const std::vector<Panel> panels = ChoosePanels(input);
-  const int cell_width = canvas.width() / kColumns, cell_height = (canvas.height() - kHead - kFoot) / kRows;
-  double scale = 1e30;
-  for (const Panel& panel : panels) {
-    const Slice slice(input, panel);
-    scale = std::min(
-        {scale, (cell_width - 2 * kMargin) / slice.width(), (cell_height - kMargin - kCaption) / slice.height()});
-  }
+  const Arrangement arrangement =
+      Arrange(input, panels, size.width * Canvas::kSampling, size.height * Canvas::kSampling - kHead - kFoot);
+  const int needed = (arrangement.height + kHead + kFoot) / Canvas::kSampling + 1;
+  size.height = std::clamp(needed, 16, std::max(16, size.height));
+  Canvas canvas(size);
+  const double scale = arrangement.scale;
   vtkNew<vtkRenderer> renderer;
   renderer->SetBackground(1, 1, 1);
   canvas.window().AddRenderer(renderer);
@@ -247,15 +351,27 @@ void DrawSlices(const SlicesInput& input, PictureSize size, const std::filesyste
   vtkNew<vtkActor2D> picture;
   picture->SetMapper(mapper);
   renderer->AddActor2D(picture);
-  const auto grey = GreyRange(input.values);
-  for (std::size_t p = 0; p < panels.size(); ++p) {
-    const Slice slice(input, panels[p]);
-    const int column = static_cast<int>(p) % kColumns, row = static_cast<int>(p) / kColumns;
-    const int left = column * cell_width + (cell_width - static_cast<int>(slice.width() * scale)) / 2;
-    const int top = canvas.height() - kHead - row * cell_height - kCaption;
-    Paint(slice, scale, left, top - static_cast<int>(slice.height() * scale), grey, raster);
-    const std::string caption = std::string(1, "ijk"[panels[p].across]) + " = " + std::to_string(panels[p].at);
-    AddMark(caption, left, top + 5 * Canvas::kSampling, 13, false, *renderer);
+  const auto grey = GreyRange(input);
+  int top = canvas.height() - kHead - kCaption;
+  std::size_t p = 0;
+  for (const std::size_t count : arrangement.in_row) {
+    double widths = 0;
+    int highest = 0;
+    for (std::size_t i = p; i < p + count; ++i) widths += Slice(input, panels[i]).width() * scale;
+    // What a row does not need is space between its panels.
+    const int gap = std::max(kMargin, static_cast<int>((canvas.width() - widths) / static_cast<double>(count + 1)));
+    int left = gap;
+    for (std::size_t i = 0; i < count; ++i, ++p) {
+      const Slice slice(input, panels[p]);
+      const int width = static_cast<int>(slice.width() * scale), height = static_cast<int>(slice.height() * scale);
+      Paint(slice, scale, left, top - height, grey, raster);
+      const std::string caption = std::string(1, "ijk"[panels[p].across]) + " = " + std::to_string(panels[p].at);
+      AddMark(caption, left, top + 5 * Canvas::kSampling, 13, false, *renderer);
+      AddSides(panels[p], left, top - height, width, height, *renderer);
+      left += width + gap;
+      highest = std::max(highest, height);
+    }
+    top -= highest + kMargin + kCaption;
   }
   AddMark(input.title, 2 * kMargin, canvas.height() - kHead + 8 * Canvas::kSampling, 17, true, *renderer);
   AddFoot(input, scale, canvas.width(), raster, *renderer);

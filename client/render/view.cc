@@ -31,27 +31,26 @@ struct Aim {
   Vec3 up = Vec3::UnitZ();
 };
 
-Aim FromAngles(double azimuth, double elevation) {
+Aim FromAngles(double azimuth, double elevation, const Vec3& vertical) {
   const double a = azimuth * std::numbers::pi / 180, e = elevation * std::numbers::pi / 180;
+  const Mat3 frame = VerticalFrame(vertical);
   // The direction "up" turns with the eye, so that it is well defined when looking straight down.
-  return {{std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)},
-          {-std::sin(e) * std::cos(a), -std::sin(e) * std::sin(a), std::cos(e)}};
+  return {frame * Vec3(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)),
+          frame * Vec3(-std::sin(e) * std::cos(a), -std::sin(e) * std::sin(a), std::cos(e))};
 }
 
-Aim ChooseAim(const PictureOptions& options, const Vec3& extent, const std::optional<Vec3>& up) {
-  if (options.azimuth || options.elevation)
-    return FromAngles(options.azimuth.value_or(-60), options.elevation.value_or(20));
+Aim ChooseAim(const PictureOptions& options, const Vec3& extent, const std::optional<Vec3>& normal) {
+  const std::optional<Vec3> up = options.up ? options.up : normal;
+  const Vec3 vertical = up.value_or(Vec3::UnitZ());
+  if (options.azimuth || options.elevation || options.up)
+    return FromAngles(options.azimuth.value_or(-60), options.elevation.value_or(20), vertical);
   Eigen::Index longest = 0;
   extent.maxCoeff(&longest);
   Vec3 others = extent;
   others[longest] = 0;
   const bool slender = extent[longest] > 1.6 * others.maxCoeff();
   const bool upright = up && std::abs((*up)[longest]) > 0.5;  // such as a body that falls
-  if (!slender || upright) {
-    const Aim corner = FromAngles(-60, 20);
-    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), up.value_or(Vec3::UnitZ()));
-    return {turn * corner.eye, turn * corner.up};
-  }
+  if (!slender || upright) return FromAngles(-60, 20, vertical);
   // Across the picture from left to right, seen a little from above its side.
   const Vec3 along = Vec3::Unit(longest);
   Vec3 above = longest == 2 ? Vec3::UnitY() : Vec3::UnitZ();
@@ -77,6 +76,22 @@ std::string LengthText(double metres) {
 }
 
 }  // namespace
+
+Mat3 VerticalFrame(const Vec3& up) {
+  Eigen::Index axis = 0;
+  up.cwiseAbs().maxCoeff(&axis);
+  const double sign = up[axis] < 0 ? -1 : 1;
+  Mat3 frame;
+  if (axis == 0) {
+    frame << 0, 0, sign, sign, 0, 0, 0, 1, 0;  // y, z, x
+  } else if (axis == 1) {
+    frame << 1, 0, 0, 0, 0, sign, 0, -sign, 0;  // x, -z, y
+  } else {
+    frame << 1, 0, 0, 0, sign, 0, 0, 0, sign;
+  }
+  // The rest of the turn, of a floor that is not normal to an axis.
+  return Eigen::Quaterniond::FromTwoVectors(Vec3(sign * Vec3::Unit(axis)), up).toRotationMatrix() * frame;
+}
 
 void AimCamera(const PictureOptions& options, const double bounds[6], const std::optional<Vec3>& up_of_scene,
                double aspect, vtkRenderer& renderer) {

@@ -12,8 +12,12 @@ namespace fascicle::client {
 
 // The viewpoint and what fits into the picture. Parallel projection, so that lengths can be measured.
 
+// The axes of the viewpoint's angles as columns, the third one the vertical `up` (unit). Along an axis, the others are
+// axes, too: x, y, z for z; x, -z, y for y, so that the front faces +z as in files of animators; y, z, x for x.
+Mat3 VerticalFrame(const Vec3& up);
+
 // Points the camera of `renderer` at `bounds` [m] (in VTK's order: xmin, xmax, ...). If the options do not
-// define the view, `up` (unit), the normal of a floor, is the vertical. `aspect` is the width of the panel over its
+// define the vertical, it is `up` (unit), the normal of a floor, or else z. `aspect` is the width of the panel over its
 // height.
 void AimCamera(const PictureOptions& options, const double bounds[6], const std::optional<Vec3>& up, double aspect,
                vtkRenderer& renderer);

@@ -49,14 +49,14 @@ bool MayBePrestretched(const Material& material) {
 void CheckPrestretch(const TetShape& shape, const Material& own, const std::string& path, Problems& problems) {
   const std::string where = JoinPath(path, "prestretch");
   if (shape.prestretch.empty()) return;
-  if (shape.prestretch.size() != shape.mesh.tetrahedra.size()) {
+  if (shape.prestretch.size() != ElementCount(shape.mesh)) {
     problems.Add(where, std::to_string(shape.prestretch.size()) + " values for " +
-                            std::to_string(shape.mesh.tetrahedra.size()) + " tetrahedra");
+                            std::to_string(ElementCount(shape.mesh)) + " elements");
     return;
   }
   for (std::size_t e = 0; e < shape.prestretch.size(); ++e) {
     if (!(shape.prestretch[e] > 0 && std::isfinite(shape.prestretch[e]))) {
-      problems.Add(where, "the prestretch of tetrahedron " + std::to_string(e) + " is not a finite number above 0");
+      problems.Add(where, "the prestretch of element " + std::to_string(e) + " is not a finite number above 0");
       return;
     }
     if (shape.prestretch[e] == 1 || MayBePrestretched(MaterialAt(own, shape.materials, e))) continue;

@@ -24,12 +24,26 @@ struct ProblemText {
   const char* advice;
 };
 
-ProblemText TextOf(StepProblem problem) {
+// Advice names only fields that the method has.
+const char* AdviceOnInvertedElements(Method method) {
+  switch (method) {
+    case Method::kTet:
+      return "load, move or activate more slowly, use a smaller safety, a finer mesh where it bends, or a law that "
+             "resists compression";
+    case Method::kVoxel:
+      return "load, move or activate more slowly, use a smaller time_step, or a stiffer law";
+    case Method::kEulerian:
+      return "load, move or activate more slowly, use a smaller time_step or cell_size, or a law that resists "
+             "compression";
+  }
+  return "";
+}
+
+ProblemText TextOf(StepProblem problem, Method method) {
   switch (problem) {
     case StepProblem::kInvertedElement:
       return {"INVERTED_ELEMENT", "elements are inverted, even with the step reduced to a thousandth",
-              "load, move or activate more slowly, use a smaller safety, a finer mesh where it bends, or a law that "
-              "resists compression"};
+              AdviceOnInvertedElements(method)};
     case StepProblem::kNotFinite:
       return {"NOT_FINITE", "stresses are not finite, even with the step reduced to a thousandth",
               "check the units of loads and material parameters"};
@@ -235,7 +249,7 @@ struct Simulation::Impl {
   }
 
   Failure FailureOf(const StepOutcome& outcome) const {
-    const ProblemText text = TextOf(outcome.problem);
+    const ProblemText text = TextOf(outcome.problem, scene->method);
     const RunClock clock = method->clock();
     return {text.reason,          text.message,      clock.step,
             clock.time,           ObjectKind::kBody, scene->bodies[outcome.bad.body].name,

@@ -144,7 +144,7 @@ void AppendOfStage(const std::string& path, const Problems& own, const v1::Image
 
 std::vector<std::string> NotesOf(const StagedImage& staged) {
   char text[200];
-  std::snprintf(text, sizeof text, "%lld voxels, %.4g cm^3, mean value %.4g, in the image's own",
+  std::snprintf(text, sizeof text, "%lld voxels, %.4g cm^3, mean of the image's values %.4g",
                 static_cast<long long>(staged.body_statistics.voxels), 1e6 * staged.body_statistics.volume,
                 staged.body_statistics.mean);
   std::vector<std::string> notes = {text};

@@ -34,6 +34,7 @@ void TakeRefined(TetMesh mesh, const Between& between, TetShape& shape) {
 
 void RefineShape(TetShape& shape, const std::stop_token& stop) {
   RepeatForParts(shape.fibres);
+  RepeatForParts(shape.prestretch);
   RepeatForParts(shape.materials.of);
   RepeatForParts(shape.activations.of);
   RepeatForParts(shape.activation_scale);

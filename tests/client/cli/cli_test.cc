@@ -7,6 +7,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -76,8 +77,39 @@ TEST_F(CliTest, WrongCommandLinesAreInvalidInput) {
   EXPECT_EQ(Fascicle({"list", "--state", "sleeping"}).exit_code, 2);
   EXPECT_EQ(Fascicle({"completion", "tcsh"}).exit_code, 2);
   EXPECT_EQ(Fascicle({"examples", "write", "none"}).exit_code, 2);
-  EXPECT_EQ(Fascicle({"schema", "none"}).exit_code, 2);
+  EXPECT_EQ(Fascicle({"schema", "nothing so"}).exit_code, 2);
   EXPECT_EQ(Fascicle({"materials", "none"}).exit_code, 2);
+}
+
+TEST_F(CliTest, AWrongCommandGetsTheNearOne) {
+  const std::map<std::string, std::string> expected = {
+      {"status", "`show` or `list`"}, {"jobs", "`list`"}, {"rendr", "`render`"}, {"kill", "`cancel`"}};
+  for (const auto& [wrong, right] : expected) {
+    const Finished finished = Fascicle({wrong, "3f2a"});
+    EXPECT_EQ(finished.exit_code, 2);
+    EXPECT_THAT(finished.err, AllOf(HasSubstr("no command `" + wrong + "`"), HasSubstr("did you mean " + right)));
+  }
+  const Finished far = Fascicle({"--server", kNobody, "xyzzyplugh", "--json"});
+  EXPECT_EQ(far.exit_code, 2);
+  EXPECT_THAT(json::parse(far.out)["message"], Not(HasSubstr("did you mean")));
+}
+
+TEST_F(CliTest, SchemaSearchesWordsThatAreNoNames) {
+  const Finished found = Fascicle({"schema", "strain"});
+  EXPECT_EQ(found.exit_code, 0);
+  EXPECT_THAT(found.out, AllOf(HasSubstr("\"principal_strains\""), HasSubstr("\"green_lagrange_strain\""),
+                               Not(HasSubstr("constraints"))));
+  EXPECT_EQ(Fascicle({"schema", "green strain"}).exit_code, 0);
+  EXPECT_GE(Lines(Fascicle({"schema", "strain", "--json"}).out).size(), 3u);
+}
+
+TEST_F(CliTest, SeveralExamplesAreWrittenAtOnce) {
+  const std::string out = folder_ / "scenes";
+  EXPECT_EQ(Fascicle({"examples", "write", "bar_twist", "mesh_file.json", "--out", out}).exit_code, 0);
+  for (const char* name : {"bar_twist.json", "mesh_file.json", "strip.msh"}) {
+    EXPECT_TRUE(fs::exists(fs::path(out) / name)) << name;
+  }
+  EXPECT_EQ(Fascicle({"examples", "write", "bar_twist", "--all"}).exit_code, 2);
 }
 
 // What could not be written is not done, whichever command printed it and in whatever way.
@@ -492,6 +524,11 @@ TEST_F(CliTest, CompletionKnowsCommandsAndOptions) {
   EXPECT_EQ(complete("fascicle watch 3f --di", 3), "--digests\n");
   EXPECT_EQ(complete("fascicle --json materials cu", 3), "curve\n");
   EXPECT_EQ(complete("fascicle materials curve muscle --act", 4), "--activation\n");
+  // Values: of options, of examples and laws.
+  EXPECT_EQ(complete("fascicle render 3f --style wi", 4), "wireframe\n");
+  EXPECT_EQ(complete("fascicle list --state succ", 3), "succeeded\n");
+  EXPECT_EQ(complete("fascicle examples write bar_tw", 3), "bar_twist\n");
+  EXPECT_EQ(complete("fascicle materials curve neo", 3), "neo_hookean\n");
 }
 
 // The same through an external server.
@@ -522,7 +559,19 @@ TEST_F(ServerTest, AJobsWholeLife) {
   EXPECT_EQ(json::parse(Call({"show", job, "--json"}).out)["state"], "succeeded");
   EXPECT_THAT(Call({"show", job.substr(5)}).out, HasSubstr("succeeded"));
   EXPECT_EQ(Lines(Call({"list", "--json", "--state", "succeeded"}).out).size(), 1u);
-  EXPECT_THAT(Call({"list"}).out, HasSubstr(job));
+  EXPECT_THAT(Call({"list"}).out,
+              AllOf(HasSubstr(job), HasSubstr(" kB  20"), ::testing::ContainsRegex(" 0:0[0-9]  block")));
+  EXPECT_THAT(Call({"watch", job}).err, HasSubstr("frames 6"));
+  // Names of jobs are completed from the server.
+  const std::string script = File("completion.bash", Call({"completion", "bash"}).out);
+  const std::string bin = fs::path(Program("fascicle")).parent_path().string();
+  EXPECT_EQ(RunProgram({"/bin/bash", "-c",
+                        "PATH=" + bin + ":$PATH; source " + script +
+                            "; COMP_WORDS=(fascicle show jobs/); COMP_CWORD=2; "
+                            "_fascicle; echo \"${COMPREPLY[@]}\""},
+                       {{"FASCICLE_SERVER", address_}})
+                .out,
+            job + "\n");
   EXPECT_THAT(Call({"show", job, "--profile"}).out, AllOf(HasSubstr("\n  elastic force"), Not(HasSubstr("succeeded"))));
   const json profile = json::parse(Call({"show", job, "--profile", "--json"}).out);
   EXPECT_EQ(profile["runs"], 1);

@@ -144,6 +144,13 @@ TEST_F(MeshTest, TheEndsOfAMuscleMustBeApart) {
   EXPECT_GT(regions[0]["area"], 400 + 80 * 10 - 1);
   EXPECT_LT(regions[0]["area"], 400 + 80 * 12 + 1);
   EXPECT_NEAR(regions[1]["area"].get<double>(), 400, 1);
+  // The bar of 60 mm has tendon over 15 % at the upper end, where the attachment reaches further, and over one and a
+  // half edges of 5 mm at the lower end.
+  const json body = json::parse(ReadFile(folder_ / "bar.json"))["bodies"][0];
+  ASSERT_EQ(body["region_materials"].size(), 2u);
+  EXPECT_EQ(body["region_materials"][0]["region"], "origin_tendon");
+  EXPECT_NEAR(body["regions"][2]["plane"]["point"][2], 51, 0.1);
+  EXPECT_NEAR(body["regions"][3]["plane"]["point"][2], 7.5, 0.3);
 }
 
 TEST_F(MeshTest, AHoleIsRefusedWithItsPlace) {
@@ -176,7 +183,7 @@ TEST_F(MeshTest, AMuscleIsMeshedWithItsAttachmentsAndContracts) {
   const json series = json::parse(ReadFile(folder_ / "out/summary.json"))["series"];
   const auto last = [&](const char* name) { return series.at(name).at("final").get<double>(); };
   EXPECT_NEAR(last("muscle/volume_ratio"), 1, 0.01);
-  EXPECT_GT(last("muscle/min_volume_ratio"), 0.2);
+  EXPECT_GT(last("muscle/min_volume_ratio"), 0.5);
   // The muscle pulls its insertion, at the lower end, upwards; the support there pulls down with some tens of newtons.
   EXPECT_LT(last("muscle/reaction/insertion/z"), -5);
   for (const std::string axis : {"x", "y", "z"}) {

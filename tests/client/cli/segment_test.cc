@@ -84,6 +84,41 @@ TEST_F(SegmentTest, TellsWhatItFound) {
   }
 }
 
+// The bar is 8 x 4 x 4 mm from x = 3 mm, with the centre of the first voxel at 0.
+TEST_F(SegmentTest, TellsWhereTheBodyIs) {
+  const Finished found = Fascicle({"segment", Bar(), "--label", "3"});
+  EXPECT_THAT(found.out,
+              AllOf(HasSubstr("box       x 3 to 11, y 1 to 5, z 1 to 5 mm"), HasSubstr("middle    7, 3, 3 mm")));
+  const json report = json::parse(Fascicle({"voxelize", Bar(), "--label", "3", "--json"}).out);
+  EXPECT_NEAR(report["box"]["min"][0], 0.003, 1e-12);
+  EXPECT_NEAR(report["middle"][2], 0.003, 1e-12);
+}
+
+// From a scan to a job in two commands: the supported end carries the load.
+TEST_F(SegmentTest, ASceneOfWhatWasFoundRuns) {
+  for (const char* command : {"segment", "voxelize"}) {
+    fs::create_directories(folder_ / "a");
+    const Finished made =
+        Fascicle({command, Bar(), "--label", "3", "--out", File("a/body.mha"), "--scene", File("bar.json")});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const Finished run = Fascicle({"run", File("bar.json"), "--json"});
+    ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+    const json series = json::parse(run.out)["series"];
+    EXPECT_NEAR(series["body/reaction/lower/x"]["final"], -10, 0.01) << command;
+    EXPECT_GT(series["probe/upper/x"]["final"], 0);
+  }
+  EXPECT_EQ(Fascicle({"segment", Bar(), "--label", "3", "--scene", File("x.json")}).exit_code, 2) << "needs --out";
+}
+
+TEST_F(SegmentTest, PicturesCanBeCroppedAndWindowed) {
+  const Finished drawn =
+      Fascicle({"segment", Bar(), "--label", "3", "--picture", File("bar.png"), "--window", "1", "4", "--crop", "2"});
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_EQ(Fascicle({"segment", Bar(), "--label", "3", "--crop", "2"}).exit_code, 2) << "nothing to crop";
+  EXPECT_EQ(Fascicle({"segment", Bar(), "--label", "3", "--picture", File("bar.png"), "--window", "1", "0"}).exit_code,
+            2);
+}
+
 TEST_F(SegmentTest, LevelsAsATable) {
   const Finished table = Fascicle({"voxelize", Bar(), "--label", "3", "--level", "1", "--out", File("coarse.mha"),
                                    "--picture", File("coarse.png")});

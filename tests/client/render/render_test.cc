@@ -12,10 +12,16 @@
 #include <set>
 #include <stdexcept>
 
+#include "client/render/body_mesh.h"
 #include "client/render/colour_scale.h"
+#include "client/render/colouring.h"
 #include "client/render/field_values.h"
 #include "client/render/picture.h"
 #include "client/render/plot.h"
+#include "client/render/rest_outline.h"
+#include "client/render/slices.h"
+#include "client/render/ticks.h"
+#include "client/render/view.h"
 #include "tests/support/files.h"
 #include "tests/support/sample_job.h"
 #include "tests/support/sample_objects.h"
@@ -503,9 +509,9 @@ TEST_F(ObjectsTest, PlanesAreBehindEverything) {
   options.time = false;
   const std::size_t all = 400 * 300;
   EXPECT_GT(draw(options).Count(IsBone), 8 * all / 10) << "seen from above its side unless the view is given";
-  options.azimuth = -90;
-  options.elevation = 0;
-  EXPECT_LT(draw(options).Count(IsBone), 4 * all / 10);
+  options.elevation = -90;
+  EXPECT_LT(draw(options).Count(IsBone), 4 * all / 10) << "angles are about the floor's normal";
+  options.up = Vec3::UnitZ();
   options.azimuth = 0;
   options.elevation = 90;
   EXPECT_NEAR(static_cast<double>(draw(options).Count(IsRed)),
@@ -568,6 +574,186 @@ TEST_F(RenderTest, LinesThatHardlyChangeAreDrawnToo) {
     const std::size_t blue = image.Count([](const Pixel& p) { return p[0] < 60 && p[1] > 80 && p[2] > 150; });
     EXPECT_GT(blue, 400u) << change;
   }
+}
+
+// Measured values are marks: of a straight line from corner to corner only the ends are drawn.
+TEST_F(RenderTest, MeasuredValuesAreMarksWithoutALine) {
+  const std::string path = folder_ / "plot.png";
+  const auto blue = [&](bool as_points) {
+    DrawPlot({{"", "stretch", "stress [kPa]", {{"measured", {1, 2}, {0, 1}, as_points}}}}, {500, 400}, path);
+    return ReadPng(path).Count([](const Pixel& p) { return p[0] < 60 && p[1] > 80 && p[2] > 150; });
+  };
+  const std::size_t marks = blue(true), line = blue(false);
+  EXPECT_GT(marks, 30u);
+  EXPECT_GT(line, 4 * marks);
+}
+
+TEST(RoundTicks, AreRoundAndInside) {
+  const Ticks ticks = RoundTicks(0, 0.21, 11);
+  EXPECT_EQ(ticks.labels, (std::vector<std::string>{"0.00", "0.02", "0.04", "0.06", "0.08", "0.10", "0.12", "0.14",
+                                                    "0.16", "0.18", "0.20"}));
+  EXPECT_EQ(RoundTicks(-3, 149.3, 7).labels, (std::vector<std::string>{"0", "50", "100"}));
+  EXPECT_EQ(RoundTicks(145.3, 149.3, 7).labels, (std::vector<std::string>{"146", "147", "148", "149"}));
+  // Ends that are round count in spite of round-off.
+  EXPECT_EQ(RoundTicks(0.1 + 0.2, 0.7 - 1e-16, 5).labels,
+            (std::vector<std::string>{"0.3", "0.4", "0.5", "0.6", "0.7"}));
+  EXPECT_TRUE(RoundTicks(1, 1, 5).places.empty());
+  EXPECT_TRUE(RoundTicks(0, NAN, 5).places.empty());
+  for (const double size : {1e-9, 3e-3, 0.7, 12.0, 4.4e8}) {
+    const Ticks some = RoundTicks(-0.3 * size, size, 7);
+    EXPECT_GE(some.places.size(), 3u) << size;
+    EXPECT_LE(some.places.size(), 7u) << size;
+  }
+}
+
+// A cube seen from a corner: three of its twelve edges are behind, three in front are not on the outline.
+TEST(RestOutline, LeavesOutTheBack) {
+  BodyShape cube;
+  for (int n = 0; n < 8; ++n) cube.positions.emplace_back(n & 1, n >> 1 & 1, n >> 2);
+  cube.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  const auto surface = MakeSurface(*MakeGrid(cube, cube.positions, {}), false);
+  ASSERT_EQ(surface->GetNumberOfCells(), 12);
+  const Vec3 eye = Vec3(1, 1.1, 0.9).normalized();
+  EXPECT_EQ(MakeRestOutline(*surface, eye, true)->GetNumberOfCells(), 9);
+  EXPECT_EQ(MakeRestOutline(*surface, eye, false)->GetNumberOfCells(), 6);
+}
+
+TEST(VerticalFrame, IsRightHandedAndEndsInTheVertical) {
+  for (const Vec3& up : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(-1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, -1),
+                         Vec3(0.6, 0, 0.8), Vec3(0, 0.28, 0.96)}) {
+    const Mat3 frame = VerticalFrame(up);
+    EXPECT_NEAR((frame * frame.transpose() - Mat3::Identity()).norm(), 0, 1e-14) << up.transpose();
+    EXPECT_NEAR(frame.determinant(), 1, 1e-14) << up.transpose();
+    EXPECT_NEAR((frame.col(2) - up).norm(), 0, 1e-14) << up.transpose();
+  }
+  // A body that stands along y, as animators have it, faces +z.
+  EXPECT_NEAR((VerticalFrame(Vec3::UnitY()) * Vec3(0, -1, 0) - Vec3::UnitZ()).norm(), 0, 1e-14);
+}
+
+// The spindle lies along its longest axis; with that axis as the vertical it stands.
+TEST_F(RenderTest, TheVerticalCanBeChosen) {
+  PictureOptions options = Small();
+  options.colour = "";
+  options.rest_outline = false;
+  options.time = false;
+  const auto extent = [](const Image& image) {
+    int left = image.width, right = 0, low = image.height, high = 0;
+    for (int y = image.height / 6; y < image.height; ++y) {
+      for (int x = image.width / 5; x < image.width; ++x) {
+        const Pixel& p = image.pixels[static_cast<std::size_t>(y * image.width + x)];
+        if (p[0] < p[2] + 60) continue;  // flesh
+        left = std::min(left, x), right = std::max(right, x), low = std::min(low, y), high = std::max(high, y);
+      }
+    }
+    return std::pair(right - left, high - low);
+  };
+  const auto [width, height] = extent(Draw(options));
+  options.up = Vec3::UnitZ();
+  const auto [upright_width, upright_height] = extent(Draw(options));
+  EXPECT_GT(width, height);
+  EXPECT_GT(upright_height, upright_width);
+}
+
+// A few values far off do not make one colour of all the others, and the note says so.
+TEST_F(RenderTest, OutliersDoNotSpoilTheScale) {
+  v1::Frame frame = job_.frame(10);
+  const std::vector<BodyShape> shapes = DecodeGeometry(job_.geometry());
+  const std::size_t count = shapes[0].positions.size();
+  ASSERT_GE(count, 200u);
+  std::vector<double> values(count);
+  for (std::size_t n = 0; n < count; ++n) values[n] = static_cast<double>(n) / static_cast<double>(count);
+  v1::FieldValues& field = *frame.mutable_bodies(0)->add_fields();
+  field.set_name("strange");
+  field.set_location(v1::FieldValues::LOCATION_NODE);
+  field.set_components(1);
+  field.set_unit("1");
+  const auto scale = [&] {
+    field.set_values(Bytes(values));
+    return ColourFrames(shapes, {}, {&frame, 1}, "strange", std::nullopt)[0];
+  };
+  EXPECT_EQ(scale().note, "");
+  EXPECT_EQ(scale().scale.lowest, 0);
+  values[count / 2] = 1000;
+  EXPECT_LT(scale().scale.highest, 1.1);
+  EXPECT_THAT(scale().note, HasSubstr("0 to 1000"));
+}
+
+TEST(SpokenName, WritesNamesOfPeopleAsSuch) {
+  EXPECT_EQ(SpokenName("von_mises_stress"), "von Mises stress");
+  EXPECT_EQ(SpokenName("cauchy_stress/zz"), "Cauchy stress/zz");
+  EXPECT_EQ(SpokenName("green_strain"), "Green strain");
+  EXPECT_EQ(SpokenName("degree"), "degree");
+}
+
+TEST(ColourScale, CategoriesHaveColoursOfTheirOwn) {
+  const ColourScale scale = MakeCategories(4);
+  std::set<std::array<double, 3>> colours;
+  for (int i = 0; i < 4; ++i) {
+    std::array<double, 3> colour;
+    scale.table->GetColor(i, colour.data());
+    colours.insert(colour);
+  }
+  EXPECT_EQ(colours.size(), 4u);
+}
+
+// A scan of 12 x 10 x 8 voxels with a bright corner at its first voxels, where the body is.
+class SlicesTest : public RenderTest {
+ protected:
+  SlicesTest() {
+    input_.size = {12, 10, 8};
+    input_.spacing = Vec3::Constant(1e-3);
+    values_.assign(12 * 10 * 8, 0.0F);
+    labels_.assign(values_.size(), 0);
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 3; ++i) {
+          values_[static_cast<std::size_t>(i + 12 * (j + 10 * k))] = 100;
+          labels_[static_cast<std::size_t>(i + 12 * (j + 10 * k))] = 1;
+        }
+      }
+    }
+    input_.names = {"body"};
+  }
+  Image DrawScan() {
+    input_.values = values_;
+    input_.labels = labels_;
+    const std::string path = folder_ / "slices.png";
+    DrawSlices(input_, {600, 400}, path);
+    return ReadPng(path);
+  }
+  static bool IsWhite(const Pixel& p) { return p[0] > 240 && p[1] > 240 && p[2] > 240; }
+  static bool IsOutline(const Pixel& p) { return p[0] > 220 && p[1] > 150 && p[1] < 200 && p[2] < 60; }
+
+  SlicesInput input_;
+  std::vector<float> values_;
+  std::vector<std::uint8_t> labels_;
+};
+
+// An image whose axes run backwards shows the patient the same way round.
+TEST_F(SlicesTest, ThePatientIsTheSameWayRound) {
+  const Image straight = DrawScan();
+  input_.direction = Vec3(-1, -1, -1).asDiagonal();
+  std::reverse(values_.begin(), values_.end());
+  std::reverse(labels_.begin(), labels_.end());
+  const Image reversed = DrawScan();
+  std::size_t different = 0;
+  for (std::size_t p = 0; p < straight.pixels.size(); ++p) different += straight.pixels[p] != reversed.pixels[p];
+  // Only the captions differ, which count voxels.
+  EXPECT_LT(different, straight.pixels.size() / 100);
+}
+
+TEST_F(SlicesTest, CroppingMagnifiesTheBody) {
+  const std::size_t whole = DrawScan().Count(IsOutline);
+  input_.crop = 1e-3;
+  EXPECT_GT(DrawScan().Count(IsOutline), whole + whole / 4);
+}
+
+TEST_F(SlicesTest, TheWindowSaysWhatIsBlackAndWhite) {
+  input_.window = {50, 20};
+  const std::size_t white = DrawScan().Count(IsWhite);
+  input_.window = {200, 20};
+  EXPECT_LT(DrawScan().Count(IsWhite), white - 1000) << "the body is black";
 }
 
 TEST(ValuesAtNodes, AveragesTetrahedraByVolume) {
