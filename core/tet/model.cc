@@ -68,7 +68,7 @@ double TetModel::PrestretchOf(std::size_t tet) const {
   const auto body = std::upper_bound(bodies_.begin(), bodies_.end(), tet,
                                      [](std::size_t t, const TetBody& b) { return t < b.tet_end; });
   const std::vector<double>& prestretch = body->source->tet().prestretch;
-  return prestretch.empty() ? 1 : prestretch[static_cast<std::size_t>(source_tetrahedron_[tet])];
+  return prestretch.empty() ? 1 : prestretch[static_cast<std::size_t>(source_element_[tet])];
 }
 
 }  // namespace fascicle

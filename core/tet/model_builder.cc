@@ -238,7 +238,7 @@ void TetModelBuilder::FillGroup(const Body& body, TetGroup& group) {
       if (is_new) {
         const Law& law = std::get<Law>(material);
         const double whole = law.VolumeModulus();
-        series.push_back(SeriesOf(body, PartOf(body.tet().materials, model_.source_tetrahedron_[e])));
+        series.push_back(SeriesOf(body, PartOf(body.tet().materials, model_.source_element_[e])));
         const double kept = nodal ? ElementVolumeModulus(law, series.back(), model_.order()) : whole;
         laws.push_back(law.WithVolumeModulus(kept));
         branch_laws.push_back(law.WithVolumeModulus(0));
