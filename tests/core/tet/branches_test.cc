@@ -144,7 +144,7 @@ TEST(BranchesTest, TangentIsTheDerivativeOfTheForces) {
       EXPECT_NEAR((high - low) / (2 * kMove), -work, 1e-5 * size);
 
       const BlockPattern pattern = s.model.VisitElement([&]<class Element>(Element) {
-        return PatternOfElements(s.model.nodes(), s.model.tetrahedra(),
+        return PatternOfElements(s.model.nodes(), s.model.elements(),
                                  [&](std::size_t e) { return s.model.NodesOf<Element>(e); });
       });
       const StiffnessLayout layout(s.model, pattern);
