@@ -174,7 +174,7 @@ std::optional<SegmentedImage> Segment(const BodySource& source, const ImageStage
 
 std::optional<VoxelGrid> TranslateImage(const BodySource& source, const std::string& path,
                                         std::vector<std::string>& notes, Problems& problems) {
-  constexpr std::uint32_t kVersion = 2;  // version of the results of Segment
+  constexpr std::uint32_t kVersion = 3;  // version of the results of Segment
   const v1::ImageShape& shape = source.wire.mesh().image();
   const double metres = MetresIn(source.wire.unit());
   const bool has_source = shape.has_file() || shape.has_phantom();

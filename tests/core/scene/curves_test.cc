@@ -28,7 +28,8 @@ TEST(CurvesTest, AllAreVisitedWithTheirPaths) {
                   "bodies[0].constraints[0].motion.translation[0]", "bodies[0].constraints[0].motion.translation[1]",
                   "bodies[0].constraints[0].motion.translation[2]", "bodies[0].constraints[0].motion.rotation.angle",
                   "bodies[0].loads[0].scale", "bodies[0].loads[1].scale", "bodies[0].loads[2].scale",
-                  "bodies[0].loads[2].stern.angle", "bodies[0].loads[2].stern.activation", "gravity.scale",
+                  "bodies[0].loads[2].stern.angle", "bodies[0].loads[2].stern.activation", "bodies[0].loads[3].scale",
+                  "bodies[0].loads[4].scale", "bodies[0].loads[5].scale", "bodies[0].loads[6].scale", "gravity.scale",
                   "squeezes[0].scale"));
 }
 

@@ -19,7 +19,7 @@ v1::Scene LadenScene(Files& files) {
     region_materials { region: "upper" material { neo_hookean { young_modulus: 2e4 } } }
     region_activations { region: "upper" curve { times: 0 values: 0.75 } }
     activation_scale { path: "s.txt" } initial_displacement { path: "u.txt" }
-    fibres { constant { direction: [0, 0, 1] } prestretch: 1.1 })",
+    fibres { constant { direction: [0, 0, 1] } })",
                                                 &body);
   std::string scale, displacement;
   for (int t = 0; t < 144; ++t) scale += std::to_string(t / 200.0) + "\n";
@@ -46,7 +46,6 @@ TEST(RefineBody, PartsTakeWhatTheirElementHas) {
     ASSERT_EQ(after.activations.of[t], before.activations.of[t / 64]);
     ASSERT_EQ(after.activation_scale[t], before.activation_scale[t / 64]);
     ASSERT_EQ(after.fibres[t], before.fibres[t / 64]);
-    ASSERT_EQ(after.prestretch[t], 1.1);
   }
   // The displacement is linear in z: 0.01 cm for every layer of 1 cm.
   ASSERT_EQ(after.initial_displacement.size(), after.mesh.nodes.size());
@@ -81,6 +80,16 @@ TEST(RefineBody, PartsOfHexahedraTakeWhatTheyHave) {
     ASSERT_NEAR(after.initial_displacement[n].z(), 0.01 * after.mesh.nodes[n].z(), 1e-12);
   }
   EXPECT_EQ(fine->bodies[0].regions[0].sides.size(), 8 * 12u);
+}
+
+TEST(RefineBody, PartsKeepThePrestretch) {
+  v1::Scene wire = BoxScene();
+  google::protobuf::TextFormat::MergeFromString(
+      R"(material { tendon {} } fibres { constant { direction: [0, 0, 1] } prestretch: 1.1 })", wire.mutable_bodies(0));
+  wire.set_refinements(1);
+  const auto fine = Translate(wire);
+  ASSERT_NE(fine, nullptr);
+  EXPECT_EQ(fine->bodies[0].tet().prestretch, std::vector<double>(8 * 144, 1.1));
 }
 
 TEST(RefineBody, RegionsCoverTheSamePart) {

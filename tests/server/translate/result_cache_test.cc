@@ -198,7 +198,7 @@ class EveryLongStage : public ::testing::TestWithParam<int> {
     switch (number) {
       case 0:
         return {"meshes/segmentation", PhantomScene(),
-                "5a8e1528f91b86b5dedf76632a160339f0bfb5b95948f076294e85aa621c4541"};
+                "3eac14d0f754cd26f508fe06f20b3b24ab16302bcd2749930e15de5204119ddf"};
       case 1:
         return {"fibres/harmonic", FibreScene(kHarmonic),
                 "3a50acafad79b17fc152b7ce7c6cab56942282b99975c1e4b96f09ae86b20200"};
