@@ -65,6 +65,7 @@ std::vector<CommandLine> LinesOfReadme(std::string_view text) {
   const std::vector<std::string> lines = SplitLines(text);
   std::vector<CommandLine> commands;
   bool fenced = false, commands_in_fence = false, indented = false;
+  int section = 0;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::string line = Trimmed(lines[i]);
     if (line.starts_with("```")) {
@@ -76,9 +77,11 @@ std::vector<CommandLine> LinesOfReadme(std::string_view text) {
     // Code is indented after an empty line only; in a list it may be part of a paragraph.
     const bool deep = lines[i].find_first_not_of(' ') >= kIndentation;
     indented = !fenced && !line.empty() && deep && (indented || i == 0 || Trimmed(lines[i - 1]).empty());
+    if (!fenced && line.starts_with("#")) ++section;
     if (line.empty() || line.starts_with("#")) continue;
     if ((fenced && commands_in_fence) || (indented && BeginsWithProgram(line))) {
       commands.push_back(ReadCommand(lines, i, " #"));
+      commands.back().section = section;
     }
   }
   return commands;

@@ -12,6 +12,7 @@ struct CommandLine {
   int line = 0;         // of the document, from 1
   std::string command;  // continued lines are joined, the comment is removed
   std::string comment;
+  int section = 0;  // the number of headings before it
 };
 
 // The lines of a README: fenced code without a language, and indented code that begins with a program.

@@ -33,7 +33,7 @@ constexpr bool kSlow = true;
 constexpr bool kSlow = false;
 #endif
 
-// A README, or the help of a command.
+// A section of a README, or the help of a command.
 struct Document {
   std::string name;
   std::vector<CommandLine> lines;
@@ -48,9 +48,15 @@ std::vector<Document> Readmes() {
       entry.disable_recursion_pending();
     }
     if (name != "README.md") continue;
-    documents.push_back({fs::relative(entry->path(), root).string(), LinesOfReadme(ReadFile(entry->path()))});
+    int section = -1;
+    for (CommandLine& line : LinesOfReadme(ReadFile(entry->path()))) {
+      if (line.section != section) documents.push_back({fs::relative(entry->path(), root).string(), {}});
+      section = line.section;
+      documents.back().lines.push_back(std::move(line));
+    }
   }
-  std::sort(documents.begin(), documents.end(), [](const Document& a, const Document& b) { return a.name < b.name; });
+  std::stable_sort(documents.begin(), documents.end(),
+                   [](const Document& a, const Document& b) { return a.name < b.name; });
   return documents;
 }
 
@@ -241,6 +247,8 @@ TEST(CommandLinesTest, FencedAndIndentedCodeOfReadmes) {
     fascicle one 'a # b' # comment
     not a program
 
+## Another
+
 ```
 fascicle two \
   --three   # the end
@@ -260,6 +268,8 @@ fascicle two \
   EXPECT_EQ(lines[0].line, 3);
   EXPECT_EQ(lines[1].command, "fascicle two --three");
   EXPECT_EQ(lines[1].comment, "the end");
+  EXPECT_EQ(lines[0].section, 0);
+  EXPECT_EQ(lines[1].section, 1);
 }
 
 TEST(CommandLinesTest, ExamplesOfHelp) {
