@@ -17,6 +17,7 @@ inline constexpr const char* kFixedPort = "listens on a fixed port or writes out
 inline constexpr std::array kExcusedLines = {
     ExcusedLine{"deploy/demo", kBuilds},
     ExcusedLine{"deploy/check", kBuilds},
+    ExcusedLine{"deploy/check slow", kBuilds},
     ExcusedLine{"deploy/build release voxel_test", kBuilds},
     ExcusedLine{"deploy/build release tests", kBuilds},
     ExcusedLine{"ctest --test-dir build/release -R Static -j 2", kBuilds},
