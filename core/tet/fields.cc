@@ -257,7 +257,8 @@ std::vector<double> AtPlace(const FieldInputs& inputs, const TetPlace& place, Ou
         [&](const auto& laws) {
           const Mat3 branches = HasBranches(inputs) ? MeanBranchStress(model, inputs.branches, e) : Mat3(Mat3::Zero());
           const auto& law = laws[model.law_of()[e]];
-          PutField(field, PointOf<Element, kFrom>(inputs, law, e, F, PatchWeightsAt<Element>(place), branches), values.data());
+          PutField(field, PointOf<Element, kFrom>(inputs, law, e, F, PatchWeightsAt<Element>(place), branches),
+                   values.data());
         },
         group->laws);
   });

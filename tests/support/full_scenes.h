@@ -63,13 +63,13 @@ inline Scene FullScene(Method method, Shape shape) {
   Body body;
   body.name = "body";
   body.shape = std::move(shape);
+  body.viscoelasticity = {{{0.2, 0.01}, {0.3, 1}}};
   body.regions = {FullRegion()};
   body.constraints = {{0, {true, true, true}, FullMotion()}};
   body.loads = {{0, Traction{Vec3(0, 0, 1)}, Curve::Constant(1), {}},
                 {0, NodalForce{Vec3(0, 0, 1)}, Curve::Constant(1), {}},
                 {0, NodalForce{Vec3(0, 0, 1)}, Curve::Constant(1), SternPull{{0.3, 0.03, 100, 1.5}, {}}}};
   if (method == Method::kTet) {
-    body.viscoelasticity = {{{0.2, 0.01}, {0.3, 1}}};
     body.loads.push_back({0, Pressure{1}, Curve::Constant(1), {}});
     body.loads.push_back({0, BodyForce{Vec3(0, 0, 1)}, Curve::Constant(1), {}});
     body.loads.push_back({0, Springs{Vec3(1, 1, 1)}, Curve::Constant(1), {}});

@@ -329,6 +329,7 @@ TEST(CheckSceneTest, BodiesHaveTheShapeOfTheMethod) {
 Scene PlasticScene() {
   Scene scene = FullScene(Method::kEulerian, FullSurfaceShape());
   scene.floors.clear();
+  scene.bodies[0].viscoelasticity = {};
   scene.bodies[0].regions.resize(1);
   scene.bodies[0].regions[0].selectors = {PlaneSelector{Vec3::Zero(), -Vec3::UnitX()}};
   return scene;

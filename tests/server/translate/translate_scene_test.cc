@@ -363,69 +363,6 @@ TEST(TranslateScene, MakesEveryLawWithItsParameters) {
   }
 }
 
-// Curves of a muscle: a published set, and a user's own ones in place of some of its; elements with their own
-// parameters keep them.
-TEST(TranslateScene, MusclesTakeTheirCurves) {
-  v1::Scene wire = BoxScene();
-  Files files;
-  v1::Body& body = *wire.mutable_bodies(0);
-  google::protobuf::TextFormat::ParseFromString(R"(
-    tabulated_muscle {
-      curves: PUBLISHED_CURVES_ALMONACID_2024
-      active_length { lengths: [0.5, 1, 1.5] values: [0, 1, 0.25] }
-      force_velocity { velocities: [-1, 0, 1] values: [0, 1, 1.5] } })",
-                                                body.mutable_material());
-  google::protobuf::TextFormat::MergeFromString(R"(
-    fibres { constant { direction: [0, 0, 1] } prestretch: 1.25 } element_parameters { path: "p.txt" })",
-                                                &body);
-  std::string text = "peak_stress\n";
-  for (int t = 0; t < 144; ++t) text += std::to_string(1000 + t) + "\n";
-  body.mutable_element_parameters()->set_asset(files.Add(text));
-  const auto scene = Translate(wire, files);
-  ASSERT_NE(scene, nullptr);
-  const Body& box = scene->bodies[0];
-  const MuscleCurves published = CurvesOf(PublishedCurves::kAlmonacid2024);
-  for (const std::size_t t : {0u, 143u}) {
-    const auto& law = std::get<TabulatedMuscle>(MaterialOf(box, t));
-    EXPECT_EQ(law.numbers().peak_stress, 1000.0 + t);
-    EXPECT_EQ(law.curves().stress, CurveStress::kCauchy);
-    EXPECT_EQ(
-        law.curves().active_length.At(0.9).value,
-        PointCurve(std::array{0.5, 1.0, 1.5}, std::array{0.0, 1.0, 0.25}, PointCurve::Beyond::kConstant).At(0.9).value);
-    EXPECT_EQ(law.curves().passive_length.At(1.4).value, published.passive_length.At(1.4).value);
-    EXPECT_EQ(law.curves().force_velocity.At(2.0).value, 1.5);
-  }
-  EXPECT_EQ(box.tet().prestretch, std::vector<double>(144, 1.25));
-  // Without max_velocity the last curve has no effect.
-  EXPECT_THAT(box.notes, ElementsAre(testing::HasSubstr("force_velocity: has no effect without max_velocity")));
-}
-
-// A Prony series for a body, which its elements with their own parameters share, and another one for a part of it.
-TEST(TranslateScene, MaterialsTakeTheirViscoelasticity) {
-  v1::Scene wire = BoxScene();
-  Files files;
-  v1::Body& body = *wire.mutable_bodies(0);
-  google::protobuf::TextFormat::MergeFromString(R"(
-    material { viscoelasticity { strengths: [0.5, 0.25] times: [0.1, 2] } }
-    regions { name: "upper" plane { point: [0, 0, 2] normal: [0, 0, 1] } }
-    region_materials { region: "upper" material { neo_hookean { young_modulus: 2e4 } } }
-    element_parameters { path: "p.txt" })",
-                                                &body);
-  std::string text = "young_modulus\n";
-  for (int t = 0; t < 144; ++t) text += std::to_string(1000 + t) + "\n";
-  body.mutable_element_parameters()->set_asset(files.Add(text));
-  const auto scene = Translate(wire, files);
-  ASSERT_NE(scene, nullptr);
-  const Body& box = scene->bodies[0];
-  ASSERT_EQ(box.viscoelasticity.terms.size(), 2u);
-  EXPECT_EQ(box.viscoelasticity.terms[1].strength, 0.25);
-  EXPECT_EQ(box.viscoelasticity.terms[1].time, 2);
-  const auto& parts = box.tet().viscoelasticity;
-  ASSERT_EQ(parts.size(), box.tet().materials.more.size());
-  EXPECT_TRUE(parts[0].terms.empty());
-  for (std::size_t k = 1; k < parts.size(); ++k) EXPECT_EQ(parts[k].terms.size(), 2u);
-}
-
 TEST(TranslateScene, ReadsMeshFilesWithTags) {
   Files files;
   v1::Scene wire = BoxScene();
@@ -577,6 +514,69 @@ TEST(TranslateScene, PartsOfABodyTakeTheirMaterials) {
   for (std::size_t t = 0; t < 72; ++t) EXPECT_NEAR(ShearModulus(MaterialOf(box, t)), (1000.0 + t) / 2, 1e-9);
   for (std::size_t t = 72; t < 108; ++t) EXPECT_NEAR(ShearModulus(MaterialOf(box, t)), 1e4, 1e-9);
   for (std::size_t t = 108; t < 144; ++t) EXPECT_TRUE(std::holds_alternative<MooneyRivlin>(MaterialOf(box, t)));
+}
+
+// Curves of a muscle: a published set, and a user's own ones in place of some of its; elements with their own
+// parameters keep them.
+TEST(TranslateScene, MusclesTakeTheirCurves) {
+  v1::Scene wire = BoxScene();
+  Files files;
+  v1::Body& body = *wire.mutable_bodies(0);
+  google::protobuf::TextFormat::ParseFromString(R"(
+    tabulated_muscle {
+      curves: PUBLISHED_CURVES_ALMONACID_2024
+      active_length { lengths: [0.5, 1, 1.5] values: [0, 1, 0.25] }
+      force_velocity { velocities: [-1, 0, 1] values: [0, 1, 1.5] } })",
+                                                body.mutable_material());
+  google::protobuf::TextFormat::MergeFromString(R"(
+    fibres { constant { direction: [0, 0, 1] } prestretch: 1.25 } element_parameters { path: "p.txt" })",
+                                                &body);
+  std::string text = "peak_stress\n";
+  for (int t = 0; t < 144; ++t) text += std::to_string(1000 + t) + "\n";
+  body.mutable_element_parameters()->set_asset(files.Add(text));
+  const auto scene = Translate(wire, files);
+  ASSERT_NE(scene, nullptr);
+  const Body& box = scene->bodies[0];
+  const MuscleCurves published = CurvesOf(PublishedCurves::kAlmonacid2024);
+  for (const std::size_t t : {0u, 143u}) {
+    const auto& law = std::get<TabulatedMuscle>(MaterialOf(box, t));
+    EXPECT_EQ(law.numbers().peak_stress, 1000.0 + t);
+    EXPECT_EQ(law.curves().stress, CurveStress::kCauchy);
+    EXPECT_EQ(
+        law.curves().active_length.At(0.9).value,
+        PointCurve(std::array{0.5, 1.0, 1.5}, std::array{0.0, 1.0, 0.25}, PointCurve::Beyond::kConstant).At(0.9).value);
+    EXPECT_EQ(law.curves().passive_length.At(1.4).value, published.passive_length.At(1.4).value);
+    EXPECT_EQ(law.curves().force_velocity.At(2.0).value, 1.5);
+  }
+  EXPECT_EQ(box.tet().prestretch, std::vector<double>(144, 1.25));
+  // Without max_velocity the last curve has no effect.
+  EXPECT_THAT(box.notes, ElementsAre(testing::HasSubstr("force_velocity: has no effect without max_velocity")));
+}
+
+// A Prony series for a body, which its elements with their own parameters share, and another one for a part of it.
+TEST(TranslateScene, MaterialsTakeTheirViscoelasticity) {
+  v1::Scene wire = BoxScene();
+  Files files;
+  v1::Body& body = *wire.mutable_bodies(0);
+  google::protobuf::TextFormat::MergeFromString(R"(
+    material { viscoelasticity { strengths: [0.5, 0.25] times: [0.1, 2] } }
+    regions { name: "upper" plane { point: [0, 0, 2] normal: [0, 0, 1] } }
+    region_materials { region: "upper" material { neo_hookean { young_modulus: 2e4 } } }
+    element_parameters { path: "p.txt" })",
+                                                &body);
+  std::string text = "young_modulus\n";
+  for (int t = 0; t < 144; ++t) text += std::to_string(1000 + t) + "\n";
+  body.mutable_element_parameters()->set_asset(files.Add(text));
+  const auto scene = Translate(wire, files);
+  ASSERT_NE(scene, nullptr);
+  const Body& box = scene->bodies[0];
+  ASSERT_EQ(box.viscoelasticity.terms.size(), 2u);
+  EXPECT_EQ(box.viscoelasticity.terms[1].strength, 0.25);
+  EXPECT_EQ(box.viscoelasticity.terms[1].time, 2);
+  const auto& parts = box.tet().viscoelasticity;
+  ASSERT_EQ(parts.size(), box.tet().materials.more.size());
+  EXPECT_TRUE(parts[0].terms.empty());
+  for (std::size_t k = 1; k < parts.size(); ++k) EXPECT_EQ(parts[k].terms.size(), 2u);
 }
 
 TEST(TranslateScene, PartsOfABodyTakeTheirActivations) {
