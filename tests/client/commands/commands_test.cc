@@ -88,11 +88,15 @@ void AddHelp(const std::vector<std::string>& command, std::vector<Document>& doc
   }
 }
 
-std::vector<Document> Helps() {
-  std::vector<Document> documents;
-  AddHelp({"fascicle"}, documents);
-  AddHelp({"fascicled"}, documents);
-  return documents;
+// Asked for once: each is a process.
+const std::vector<Document>& Helps() {
+  static const std::vector<Document> kDocuments = [] {
+    std::vector<Document> documents;
+    AddHelp({"fascicle"}, documents);
+    AddHelp({"fascicled"}, documents);
+    return documents;
+  }();
+  return kDocuments;
 }
 
 const ExcusedLine* ExcuseOf(const std::string& command) {
