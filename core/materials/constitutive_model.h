@@ -15,7 +15,7 @@ struct FibreState {
   // Rest direction a0, times the prestretch: the fibres' stretch at rest, which multiplies their stretch. Ignored by
   // isotropic laws.
   Vec3 direction = Vec3::Zero();
-  double activation = 0;          // alpha in [0, 1]; ignored by passive laws
+  double activation = 0;  // alpha in [0, 1]; ignored by passive laws
   // For laws that depend on the fibre's rate: the isochoric stretch one step ago [1] and the inverse of that step's
   // length [1/s], zero for an isometric fibre.
   double previous_stretch = 1;

@@ -61,8 +61,8 @@ struct TetShape {
   std::vector<Vec3> initial_displacement;  // of each node at time 0 [m], may tangle the mesh; empty: none
 };
 template <>
-inline constexpr auto kFieldNames<TetShape> = FieldNames("mesh", "fibres", "prestretch", "region_materials", "viscoelasticity",
-                                                         "region_activations", "activation_scale",
+inline constexpr auto kFieldNames<TetShape> = FieldNames("mesh", "fibres", "prestretch", "region_materials",
+                                                         "viscoelasticity", "region_activations", "activation_scale",
                                                          "initial_displacement");
 
 // Bricks, the solid voxels of a grid, for the voxel method.
