@@ -19,7 +19,7 @@ class BlemkerMuscle : public LawFunctions<BlemkerMuscle> {
  public:
   static constexpr const char* kName = "blemker_muscle";
   static constexpr const char* kTitle = "Active skeletal muscle with shear along and across its fibres";
-  static constexpr const char* kSource = "Blemker, Pinsky, Delp 2005, equations 2 to 10 and table 1";
+  static constexpr const char* kSource = "Blemker, Pinsky, Delp 2005; Criscione, Douglas, Hunter 2001";
   static constexpr std::array<ParameterInfo, 8> kParameters = {{
       {"along_modulus", "Pa", 0, true, 1e9, false, 500, "G1: half of the shear modulus along the fibres"},
       {"across_modulus", "Pa", 0, true, 1e9, false, 500, "G2: half of the shear modulus across the fibres"},

@@ -18,7 +18,7 @@ class BlemkerTendon : public LawFunctions<BlemkerTendon> {
  public:
   static constexpr const char* kName = "blemker_tendon";
   static constexpr const char* kTitle = "Tendon and aponeurosis with shear along and across its fibres";
-  static constexpr const char* kSource = "Blemker, Pinsky, Delp 2005, equations 2 to 11 and table 1";
+  static constexpr const char* kSource = "Blemker, Pinsky, Delp 2005; Criscione, Douglas, Hunter 2001";
   static constexpr std::array<ParameterInfo, 6> kParameters = {{
       {"along_modulus", "Pa", 0, true, 1e9, false, 5e4, "G1: half of the shear modulus along the fibres"},
       {"across_modulus", "Pa", 0, true, 1e9, false, 5e4, "G2: half of the shear modulus across the fibres"},

@@ -33,11 +33,11 @@ struct MuscleCurves {
 // Published sets of curves.
 enum class PublishedCurves {
   // Gaussian active curve of width 0.45, exponential passive curve with shape 5 and strain 0.6, Hill's hyperbola with
-  // a/F0 = 0.25 and a plateau of 1.4. Forces. [Thelen 2003, J. Biomech. Eng. 125, equations 3 to 7, young adults; the
-  // force-velocity curve at full activation]
+  // a/F0 = 0.25 and a plateau of 1.4. Forces. [Thelen 2003, J. Biomech. Eng. 125, young adults; the force-velocity
+  // curve at full activation]
   kThelen2003,
   // Sum of Gaussians, exponential with shape 4 and strain 0.6, logarithmic force-velocity curve. Forces. [De Groote,
-  // Kinney, Rao, Fregly 2016, Ann. Biomed. Eng. 44, supplement]
+  // Kinney, Rao, Fregly 2016, Ann. Biomed. Eng. 44]
   kDeGroote2016,
   // Sum of sines, piecewise quadratic passive curve, piecewise cubic force-velocity curve. Cauchy stresses. [Almonacid
   // et al. 2024, A three-dimensional model of skeletal muscle tissues, SIAM J. Appl. Math.]

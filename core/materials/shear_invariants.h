@@ -12,9 +12,9 @@
 //   B2 = arcosh((I1 I4 - I5)/(2 J sqrt(I4)))      shear across them, at constant area
 //   lambda = J^(-1/3) sqrt(I4)                    isochoric stretch of the fibres
 //
-// I1 = tr C, I4 = a0.C a0, I5 = a0.C^2 a0 with the unit fibre direction a0. [Blemker, Pinsky, Delp 2005, equations 2 to
-// 6; Criscione, Douglas & Hunter 2001, J. Mech. Phys. Solids 49] Small-strain moduli 2 G1, 2 G2 and K. Without fibre
-// stress, a change of the fibres' length at constant volume and shape across needs no energy.
+// I1 = tr C, I4 = a0.C a0, I5 = a0.C^2 a0 with the unit fibre direction a0. [Blemker, Pinsky, Delp 2005; Criscione,
+// Douglas & Hunter 2001, J. Mech. Phys. Solids 49] Small-strain moduli 2 G1, 2 G2 and K. Without fibre stress, a change
+// of the fibres' length at constant volume and shape across needs no energy.
 //
 // If the direction has another length, lambda is multiplied by it (a prestretch), but not the invariants of the matrix.
 namespace fascicle {
