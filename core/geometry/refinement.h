@@ -30,9 +30,9 @@ struct RefinedTetrahedra {
 RefinedTetrahedra Refined(const TetMesh& mesh, const std::stop_token& stop = {});
 
 struct RefinedHexahedra {
-  // The nodes of the coarse mesh in their order, then those in the middle of edges, sides and hexahedra. The parts of
-  // hexahedron h are hexahedra 8 h to 8 h + 7, split by SplitHexahedra. Tags are those of the parents; of triangles,
-  // those of the side that they are on. A node in the middle of tagged nodes has their tag.
+  // The nodes of the coarse mesh in their order, then mid-edge nodes, and those in the middle of sides and hexahedra.
+  // The parts of hexahedron h are hexahedra 8 h to 8 h + 7, split by SplitHexahedra. Tags are those of the parents; of
+  // triangles, those of the side that they are on. A node in the middle of tagged nodes has their tag.
   TetMesh mesh;
   // The two, four or eight nodes in whose middle each new node is.
   std::vector<std::vector<std::int32_t>> between;
