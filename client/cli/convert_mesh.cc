@@ -73,7 +73,7 @@ std::optional<TetMesh> Read(const Conversion& conversion, const std::stop_token&
   const MeshFile file = {.name = conversion.input,
                          .bytes = *bytes,
                          .element_bytes = elements ? std::string_view(*elements) : std::string_view(),
-                         .split_solids = conversion.split_hexahedra};
+                         .solids = conversion.split_hexahedra ? Solids::kSplit : Solids::kKeep};
   return ReadMesh(file, problems, stop, &remarks);
 }
 
@@ -100,16 +100,18 @@ double AreaOf(const TetMesh& mesh, const Triangle& triangle) {
 
 TaggedParts PartsOf(const TetMesh& mesh) {
   TaggedParts parts;
-  const auto add = [&](int dimension, std::int32_t tag, double measure) {
+  const auto add = [&](int dimension, std::int32_t tag, double measure, bool counts = true) {
     if (tag == 0) return;  // none
     TaggedPart& part = parts[{dimension, tag}];
-    ++part.count;
+    part.count += counts ? 1 : 0;
     part.measure += measure;
   };
-  for (std::size_t t = 0; t < mesh.tetrahedron_tags.size(); ++t) {
-    add(3, mesh.tetrahedron_tags[t], SignedVolume(mesh, t));
-  }
-  for (const auto& [t, tag] : mesh.further_tags) add(3, tag, SignedVolume(mesh, static_cast<std::size_t>(t)));
+  // Six tetrahedra make a hexahedron.
+  const auto add_tetrahedron = [&](std::size_t t, std::int32_t tag) {
+    add(3, tag, SignedVolume(mesh, t), mesh.hexahedra.empty() || t % 6 == 0);
+  };
+  for (std::size_t t = 0; t < mesh.tetrahedron_tags.size(); ++t) add_tetrahedron(t, mesh.tetrahedron_tags[t]);
+  for (const auto& [t, tag] : mesh.further_tags) add_tetrahedron(static_cast<std::size_t>(t), tag);
   for (std::size_t i = 0; i < mesh.triangle_tags.size(); ++i) {
     add(2, mesh.triangle_tags[i], AreaOf(mesh, mesh.tagged_triangles[i]));
   }
@@ -133,19 +135,25 @@ std::vector<TagName> NamesOf(const MeshRemarks& remarks, TaggedParts& parts) {
 
 double InDegrees(double radians) { return radians * 180 / std::numbers::pi; }
 
-const char* KindOf(int dimension) { return dimension == 3 ? "tetrahedra" : dimension == 2 ? "triangles" : "nodes"; }
+const char* ElementsOf(const TetMesh& mesh) { return mesh.hexahedra.empty() ? "tetrahedra" : "hexahedra"; }
+
+const char* KindOf(int dimension, const TetMesh& mesh) {
+  return dimension == 3 ? ElementsOf(mesh) : dimension == 2 ? "triangles" : "nodes";
+}
 
 Json ReportJson(const Conversion& conversion, const Converted& converted) {
   Json regions = Json::array();
   for (const auto& [key, part] : converted.parts) {
     const auto& [dimension, tag] = key;
-    regions.push_back(
-        {{"name", part.name}, {"dimension", dimension}, {"physical_tag", tag}, {KindOf(dimension), part.count}});
+    regions.push_back({{"name", part.name},
+                       {"dimension", dimension},
+                       {"physical_tag", tag},
+                       {KindOf(dimension, converted.mesh), part.count}});
     if (dimension > 0) regions.back()[dimension == 3 ? "volume" : "area"] = part.measure;
   }
   return {{"mesh", conversion.out},
           {"unit", conversion.unit},
-          {"tetrahedra", converted.mesh.tetrahedra.size()},
+          {ElementsOf(converted.mesh), ElementCount(converted.mesh)},
           {"nodes", converted.mesh.nodes.size()},
           {"curved_edges", converted.mesh.curved_edges.size()},
           {"volume", TotalVolume(converted.mesh)},
@@ -158,7 +166,7 @@ void PrintReport(const Conversion& conversion, const Converted& converted) {
   const TetMesh& mesh = converted.mesh;
   const char* unit = conversion.unit.c_str();
   for (const std::string& note : converted.remarks.notes) std::printf("note: %s\n", note.c_str());
-  std::printf("tetrahedra          %zu\nnodes               %zu\n", mesh.tetrahedra.size(), mesh.nodes.size());
+  std::printf("%-19s %zu\nnodes               %zu\n", ElementsOf(mesh), ElementCount(mesh), mesh.nodes.size());
   if (!mesh.curved_edges.empty()) std::printf("curved edges        %zu\n", mesh.curved_edges.size());
   std::printf("smallest angle      %.1f degrees\nvolume              %.6g %s^3\n",
               InDegrees(converted.report.smallest_dihedral_angle), TotalVolume(mesh), unit);
@@ -169,7 +177,7 @@ void PrintReport(const Conversion& conversion, const Converted& converted) {
   for (const auto& [key, part] : converted.parts) {
     const auto& [dimension, tag] = key;
     std::printf("region %-*s physical tag %d: %lld %s", static_cast<int>(width), part.name.c_str(),
-                static_cast<int>(tag), static_cast<long long>(part.count), KindOf(dimension));
+                static_cast<int>(tag), static_cast<long long>(part.count), KindOf(dimension, mesh));
     if (dimension > 0) std::printf(", %.4g %s^%d", part.measure, unit, dimension);
     std::printf("\n");
   }

@@ -431,7 +431,7 @@ int SampleFibres(const SampleOptions& options, const Context& context) {
       }
       if (context.json) PrintJson(json);
     }
-    if (row.size() == 2) throw CommandError::Invalid("--fibres: no body has tetrahedra with fibres");
+    if (row.size() == 2) throw CommandError::Invalid("--fibres: no body has elements with fibres");
     for (std::size_t k = 0; k < row.size(); ++k) columns[k].values.push_back(row[k]);
   });
   std::vector<PlotPanel> list;

@@ -191,7 +191,7 @@ std::optional<TetMesh> ReadExodus(const std::filesystem::path& path, bool split_
   Collector collector(stop);
   for (const Group& group : kGroups) ReadGroup(group, *reader, collector, problems);
   if (problems.count() > before) return std::nullopt;
-  return FinishMesh(collector.Take(), split_solids, problems, stop, &remarks);
+  return FinishMesh(collector.Take(), split_solids ? Solids::kSplit : Solids::kKeep, problems, stop, &remarks);
 }
 
 }  // namespace fascicle::client

@@ -9,8 +9,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 
 #include "client/export/element_sides.h"
+#include "core/geometry/hexahedron.h"
+#include "core/geometry/solid_cells.h"
 
 namespace fascicle::client {
 namespace {
@@ -80,6 +83,30 @@ Mat3 EdgesOf(const CornerNodes& tet, const std::vector<Vec3>& x) {
   Mat3 edges;
   for (int c = 0; c < 3; ++c) edges.col(c) = x[tet[static_cast<std::size_t>(c) + 1]] - x[tet[0]];
   return edges;
+}
+
+// A body of hexahedra as one of tetrahedra, six for each with its fibre and its values.
+BodySnapshot AsTetrahedra(const BodySnapshot& body) {
+  BodySnapshot split = body;
+  split.shape.bricks.clear();
+  split.shape.fibres.clear();
+  for (std::size_t e = 0; e < body.shape.bricks.size(); ++e) {
+    std::array<std::uint32_t, 8> nodes;
+    for (std::size_t c = 0; c < 8; ++c) nodes[static_cast<std::size_t>(kBrickOrder[c])] = body.shape.bricks[e][c];
+    SplitSolid(SolidShape::kHexahedron, std::span<const std::uint32_t>(nodes), split.shape.tetrahedra);
+    split.shape.fibres.resize(split.shape.tetrahedra.size(), body.shape.fibres[e]);
+  }
+  for (BodyField& field : split.fields) {
+    if (field.at_nodes) continue;
+    const std::vector<double> of_hexahedra = std::move(field.values);
+    const std::size_t components = field.components.size();
+    field.values.clear();
+    for (std::size_t t = 0; t < split.shape.tetrahedra.size(); ++t) {
+      const auto first = of_hexahedra.begin() + static_cast<std::ptrdiff_t>(t / 6 * components);
+      field.values.insert(field.values.end(), first, first + static_cast<std::ptrdiff_t>(components));
+    }
+  }
+  return split;
 }
 
 // Traces fibres through the tetrahedra of a body at rest.
@@ -232,6 +259,9 @@ CrossSectionAreas CrossSectionAreasOf(const BodySnapshot& body, const Vec3& axis
 std::optional<FibreArchitecture> FibreArchitectureOf(const BodySnapshot& body,
                                                      const std::optional<Vec3>& line_of_action, bool deformed) {
   const BodyShape& shape = body.shape;
+  if (!shape.fibres.empty() && !shape.bricks.empty()) {
+    return FibreArchitectureOf(AsTetrahedra(body), line_of_action, deformed);
+  }
   if (shape.fibres.empty() || shape.tetrahedra.empty()) return std::nullopt;
   const std::vector<Vec3>& x = deformed ? body.positions : shape.positions;
   const Vec3 line = line_of_action ? line_of_action->normalized() : LongestAxis(x);

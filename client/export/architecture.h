@@ -29,7 +29,7 @@ struct FibreArchitecture {
   // its pennation [m^2]. For fibres of equal length, V cos(pennation) / length [Powell et al. 1984].
   double cross_section = 0;
 };
-// Nothing for a body without fibres or without tetrahedra.
+// Nothing for a body without fibres, or of triangles.
 //   line_of_action  any non-zero length; the body's longest principal axis if there is none
 std::optional<FibreArchitecture> FibreArchitectureOf(const BodySnapshot& body,
                                                      const std::optional<Vec3>& line_of_action, bool deformed);

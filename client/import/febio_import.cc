@@ -83,7 +83,7 @@ class Importer {
 
   std::optional<ImportedScene> Make() {
     ImportedScene result;
-    const Tetrahedra all = MakeTetrahedra(model_.mesh);
+    const Tetrahedra all = MakeTetrahedra(model_.mesh, model_.of_hexahedra);
     const std::vector<MeshBody> bodies = MakeBodies(all);
     TellOfBodies(bodies);
     if (bodies.size() > kMaxBodies) return std::nullopt;
@@ -258,8 +258,13 @@ class Importer {
     SetElement(bodies, scene);
   }
 
-  // Elements as in the model: four or ten nodes. Hexahedra become the default element of the stepping.
+  // Elements as in the model: tetrahedra of four or ten nodes, or hexahedra. Those that are split become the default
+  // element of the stepping.
   void SetElement(const std::vector<MeshBody>& bodies, v1::Scene& scene) {
+    if (model_.of_hexahedra) {
+      scene.mutable_tet()->set_element(v1::ELEMENT_HEXAHEDRAL);
+      return;
+    }
     bool any_quadratic = false, any_split = false, any_linear = false;
     for (const MeshBody& body : bodies) {
       any_quadratic = any_quadratic || body.quadratic;

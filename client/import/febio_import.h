@@ -33,7 +33,8 @@ struct FebioOptions {
   // SI, mm-N-s, mm-kg-s, um-nN-s or CGS, or mm-N-MPa for mm-N-s and m-N-Pa for SI. If empty: the units named by the
   // file; or mm-N-s, or where inertia or weight count the first system in which the density is that of tissue.
   std::string units;
-  // Whether to split hexahedra, wedges and pyramids into tetrahedra instead of refusing them. Neighbours match.
+  // Whether to split hexahedra, wedges and pyramids into tetrahedra. Neighbours match. Otherwise, hexahedra are kept in
+  // models of hexahedra only, and wedges, pyramids and mixtures are refused.
   bool split_hexahedra = false;
   // Whether to import a model although the scene lacks or changes parts of it that change the answer; if not, each of
   // them is a problem.
@@ -54,9 +55,10 @@ struct ImportedScene {
   std::string version;
 };
 
-// Reads a FEBio model (febio_spec 4.0, 3.0 or 2.5): tetrahedra of four and ten nodes, the materials of scene.proto,
-// fixed and prescribed displacements, rigid bodies whose motion is given, nodal forces, tractions, pressures, constant
-// body forces, fibres, load curves, one analysis step. Each face-connected part of the mesh becomes a body.
+// Reads a FEBio model (febio_spec 4.0, 3.0 or 2.5): tetrahedra of four and ten nodes, hexahedra of eight, the materials
+// of scene.proto, fixed and prescribed displacements, rigid bodies whose motion is given, nodal forces, tractions,
+// pressures, constant body forces, fibres, load curves, one analysis step. Each face-connected part of the mesh becomes
+// a body.
 //
 // All problems are added at once, each with file, line and element. Any input is safe: nothing crashes, hangs or needs
 // more memory than a small multiple of the file, and no other file is read. What the scene lacks or changes is a

@@ -124,11 +124,11 @@ std::optional<TetMesh> ReadFebioMesh(const std::string& name, std::string_view b
       source.Fail(root, "the file has no mesh of FEBio 2.5, 3 or 4", "save the model again with FEBio Studio");
     }
     for (const pugi::xml_node section : root.children(name_of_mesh)) ReadMesh(section, source, model);
-    for (const Part& part : model.mesh.parts) IsUsable(part, split_solids, source);
+    for (const Part& part : model.mesh.parts) IsUsable(part, split_solids || part.shape == Shape::kHex8, source);
     if (own.empty()) {
       RawMesh raw = MeshConverter(model.mesh, stop).Convert();
       for (const Notice& notice : source.notices) raw.notes.push_back(notice.where + ": " + notice.message);
-      result = FinishMesh(std::move(raw), split_solids, own, stop, &remarks);
+      result = FinishMesh(std::move(raw), split_solids ? Solids::kSplit : Solids::kKeep, own, stop, &remarks);
     }
   }
   problems.Append("", own);

@@ -6,7 +6,7 @@
 namespace fascicle::client {
 namespace {
 
-constexpr int kTriangle3 = 2, kTetrahedron4 = 4, kTetrahedron10 = 11, kPoint = 15;
+constexpr int kTriangle3 = 2, kTetrahedron4 = 4, kHexahedron8 = 5, kTetrahedron10 = 11, kPoint = 15;
 
 class Lines {
  public:
@@ -34,22 +34,25 @@ void WriteElement(std::size_t& number, int type, std::int32_t tag, const auto& n
 }
 
 void WriteElements(const MeshToWrite& mesh, Lines& out) {
-  std::size_t count = mesh.tetrahedra.size(), number = 0;
+  std::size_t count = mesh.tetrahedra.size() + mesh.hexahedra.size(), number = 0;
   for (const TaggedPart& part : mesh.parts) count += part.nodes.size() + part.triangles.size();
   out << "$Elements\n" << count << "\n";
   for (const TaggedPart& part : mesh.parts) {
     for (const std::int32_t n : part.nodes) WriteElement(number, kPoint, part.tag, std::array{n}, out);
     for (const Triangle& triangle : part.triangles) WriteElement(number, kTriangle3, part.tag, triangle, out);
   }
+  for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h) {
+    WriteElement(number, kHexahedron8, mesh.tags[h], mesh.hexahedra[h], out);
+  }
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     if (mesh.middles.empty()) {
-      WriteElement(number, kTetrahedron4, mesh.tetrahedron_tags[t], mesh.tetrahedra[t], out);
+      WriteElement(number, kTetrahedron4, mesh.tags[t], mesh.tetrahedra[t], out);
       continue;
     }
     const auto& c = mesh.tetrahedra[t];
     const auto& m = mesh.middles[t];
     // Gmsh has edge 2-3 before edge 1-3.
-    WriteElement(number, kTetrahedron10, mesh.tetrahedron_tags[t],
+    WriteElement(number, kTetrahedron10, mesh.tags[t],
                  std::array{c[0], c[1], c[2], c[3], m[0], m[1], m[2], m[3], m[5], m[4]}, out);
   }
   out << "$EndElements\n";

@@ -14,7 +14,7 @@ namespace fascicle::client {
 // A named part of a mesh with its own tag.
 struct TaggedPart {
   std::string name;
-  int dimension = 3;  // 0: nodes, 2: triangles, 3: tetrahedra
+  int dimension = 3;  // 0: nodes, 2: triangles, 3: elements
   std::int32_t tag = 0;
   std::vector<std::int32_t> nodes;  // dimension 0
   std::vector<Triangle> triangles;  // dimension 2
@@ -23,8 +23,9 @@ struct TaggedPart {
 struct MeshToWrite {
   std::vector<Vec3> nodes;
   std::vector<Tetrahedron> tetrahedra;
+  std::vector<Hexahedron> hexahedra;                 // in place of the tetrahedra
   std::vector<std::array<std::int32_t, 6>> middles;  // in the order of kTetEdges; empty for four nodes
-  std::vector<std::int32_t> tetrahedron_tags;
+  std::vector<std::int32_t> tags;                    // of the tetrahedra or hexahedra
   std::vector<TaggedPart> parts;
 };
 

@@ -198,6 +198,7 @@ struct Model {
   std::string version;
   Control control;
   Mesh mesh;
+  bool of_hexahedra = false;  // whether the hexahedra of deformable parts are kept
   std::vector<ImportedMaterial> materials;
   std::unordered_map<std::string, std::size_t> material_index;  // by name, and by number where no name is the same
   ElementData data;

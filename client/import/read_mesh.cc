@@ -286,18 +286,23 @@ class MaterialAssignment {
   XmlSource& source_;
 };
 
-// Takes the material from deformable parts that are not tetrahedra, and reports them.
+// Takes the material from deformable parts that are not tetrahedra, and reports them. Models of hexahedra only keep
+// them, unless they are to be split.
 void DropOtherShapes(bool split_hexahedra, XmlSource& source, Model& model) {
+  model.of_hexahedra =
+      !split_hexahedra && std::all_of(model.mesh.parts.begin(), model.mesh.parts.end(), [](const Part& part) {
+        return part.material < 0 || part.shape == Shape::kNoVolume || part.shape == Shape::kHex8;
+      });
   for (Part& part : model.mesh.parts) {
     if (part.material < 0) continue;
     if (part.shape != Shape::kNoVolume) model.materials[static_cast<std::size_t>(part.material)].used = true;
-    if (!IsUsable(part, split_hexahedra, source)) part.material = -1;
+    if (!IsUsable(part, split_hexahedra || model.of_hexahedra, source)) part.material = -1;
   }
 }
 
 }  // namespace
 
-bool IsUsable(const Part& part, bool split_hexahedra, XmlSource& source) {
+bool IsUsable(const Part& part, bool takes_hexahedra, XmlSource& source) {
   switch (part.shape) {
     case Shape::kTet4:
     case Shape::kTet10:
@@ -305,8 +310,9 @@ bool IsUsable(const Part& part, bool split_hexahedra, XmlSource& source) {
     case Shape::kHex8:
     case Shape::kPenta6:
     case Shape::kPyra5:
-      if (split_hexahedra) return true;
-      source.Fail(part.node, "consists of " + Quoted(part.type) + " elements; fascicle has tetrahedra only",
+      if (takes_hexahedra) return true;
+      source.Fail(part.node,
+                  "consists of " + Quoted(part.type) + " elements; a model must have tetrahedra or hex8 only",
                   "--split-hexahedra splits them, or mesh the body with tet4 or tet10");
       return false;
     case Shape::kOtherSolid:

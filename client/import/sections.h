@@ -46,7 +46,7 @@ void ReadRigidBody(pugi::xml_node node, XmlSource& source, Model& model);
 // A material by its name or number.
 std::optional<std::size_t> FindMaterial(const Model& model, const std::string& name);
 // Whether a part consists of elements that can be deformable; reports others.
-bool IsUsable(const Part& part, bool split_hexahedra, XmlSource& source);
+bool IsUsable(const Part& part, bool takes_hexahedra, XmlSource& source);
 
 // The ids of the elements of a part or element set; null if it does not exist.
 const std::vector<std::int64_t>* FindElements(const Mesh& mesh, const std::string& name);

@@ -220,9 +220,16 @@ void SetFibres(const Model& model, const Tetrahedra& all, XmlSource& source, Bod
   std::vector<Vec3> fibres;
   fibres.reserve(draft.mesh.tetrahedra.size());
   bool same = true;
-  for (const std::size_t t : draft.mesh.tetrahedra) {
-    Vec3 centroid = Vec3::Zero();
-    for (const std::int32_t n : all.corners[t]) centroid += 0.25 * model.mesh.nodes[static_cast<std::size_t>(n)];
+  const auto mean_of = [&](const auto& nodes) {
+    Vec3 sum = Vec3::Zero();
+    for (const std::int32_t n : nodes) {
+      sum += 1.0 / static_cast<double>(nodes.size()) * model.mesh.nodes[static_cast<std::size_t>(n)];
+    }
+    return sum;
+  };
+  for (std::size_t i = 0; i < draft.mesh.tetrahedra.size(); i += all.step()) {
+    const std::size_t t = draft.mesh.tetrahedra[i];
+    const Vec3 centroid = all.of_hexahedra ? mean_of(HexahedronOf(model.mesh, all, t)) : mean_of(all.corners[t]);
     fibres.push_back(maker.Fibre(all.part[t], static_cast<std::size_t>(all.element[t]), centroid));
     same = same && fibres.back() == fibres.front();
   }
@@ -232,7 +239,7 @@ void SetFibres(const Model& model, const Tetrahedra& all, XmlSource& source, Bod
     }
     return;
   }
-  ImportedFile file{draft.body.name() + "_fibres.txt", "# the fibre of each tetrahedron, in the order of the mesh\n"};
+  ImportedFile file{draft.body.name() + "_fibres.txt", "# the fibre of each element, in the order of the mesh\n"};
   for (const Vec3& fibre : fibres) {
     AppendNumber(fibre[0], ' ', file.bytes);
     AppendNumber(fibre[1], ' ', file.bytes);

@@ -17,8 +17,16 @@ std::vector<Triangle> TrianglesOf(const Facet& facet) {
   return {first, second};
 }
 
-Tetrahedra MakeTetrahedra(const Mesh& mesh) {
+Hexahedron HexahedronOf(const Mesh& mesh, const Tetrahedra& all, std::size_t t) {
+  const Part& part = mesh.parts[static_cast<std::size_t>(all.part[t])];
+  Hexahedron nodes;
+  std::copy_n(part.nodes.begin() + static_cast<std::ptrdiff_t>(part.count) * all.element[t], 8, nodes.begin());
+  return nodes;
+}
+
+Tetrahedra MakeTetrahedra(const Mesh& mesh, bool of_hexahedra) {
   Tetrahedra all;
+  all.of_hexahedra = of_hexahedra;
   for (std::size_t p = 0; p < mesh.parts.size(); ++p) {
     const Part& part = mesh.parts[p];
     if (part.material < 0) continue;

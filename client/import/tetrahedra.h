@@ -16,10 +16,18 @@ struct Tetrahedra {
   std::vector<std::array<std::int32_t, 6>> middles;  // of tet10, in the order of kTetEdges; -1 for others
   std::vector<std::int32_t> part;                    // index of the part
   std::vector<std::int32_t> element;                 // index in the part
+  // Whether every six tetrahedra stand for a hexahedron, which is kept.
+  bool of_hexahedra = false;
+
+  // The tetrahedra of an element of a scene: every `step`-th one begins an element.
+  std::size_t step() const { return of_hexahedra ? 6 : 1; }
 };
 
+// The nodes of the hexahedron of tetrahedron t.
+Hexahedron HexahedronOf(const Mesh& mesh, const Tetrahedra& all, std::size_t t);
+
 // Hexahedra, wedges and pyramids are split as in core/geometry/solid_cells.h.
-Tetrahedra MakeTetrahedra(const Mesh& mesh);
+Tetrahedra MakeTetrahedra(const Mesh& mesh, bool of_hexahedra);
 
 // The shape of elements that are not tetrahedra.
 SolidShape SolidShapeOf(Shape shape);

@@ -84,11 +84,18 @@ void DraftMesh(const Model& model, const Tetrahedra& all, XmlSource& source, Bod
     file.parts.push_back(std::move(part));
   }
   bool mixed = false;
-  for (const std::size_t t : draft.mesh.tetrahedra) {
+  for (std::size_t i = 0; i < draft.mesh.tetrahedra.size(); i += all.step()) {
+    const std::size_t t = draft.mesh.tetrahedra[i];
+    file.tags.push_back(tag_of[static_cast<std::size_t>(all.part[t])]);
+    if (all.of_hexahedra) {
+      Hexahedron hexahedron = HexahedronOf(model.mesh, all, t);
+      for (std::int32_t& n : hexahedron) n = draft.mesh.local.at(n);
+      file.hexahedra.push_back(hexahedron);
+      continue;
+    }
     Tetrahedron tetrahedron = all.corners[t];
     for (std::int32_t& n : tetrahedron) n = draft.mesh.local.at(n);
     file.tetrahedra.push_back(tetrahedron);
-    file.tetrahedron_tags.push_back(tag_of[static_cast<std::size_t>(all.part[t])]);
     if (!draft.mesh.quadratic) continue;
     auto middles = all.middles[t];
     mixed = mixed || middles[0] < 0;

@@ -39,13 +39,13 @@ BodyShape DecodeBody(const v1::BodyGeometry& body) {
   shape.positions = DecodeArray<Vec3>(body.positions(), "rest positions");
   shape.tetrahedra = DecodeArray<std::array<std::uint32_t, 4>>(body.tetrahedra(), "tetrahedra");
   shape.fibres = DecodeArray<Vec3>(body.fibres(), "fibres");
-  shape.bricks = DecodeArray<std::array<std::uint32_t, 8>>(body.bricks(), "voxels");
+  shape.bricks = DecodeArray<std::array<std::uint32_t, 8>>(body.bricks(), "voxels or hexahedra");
   shape.triangles = DecodeArray<std::array<std::uint32_t, 3>>(body.triangles(), "triangles");
   CheckNodes(shape.triangles, shape.positions.size(), "a triangle");
   CheckNodes(shape.tetrahedra, shape.positions.size(), "a tetrahedron");
-  CheckNodes(shape.bricks, shape.positions.size(), "a voxel");
-  if (!shape.fibres.empty() && shape.fibres.size() != shape.tetrahedra.size()) {
-    throw std::runtime_error("the server sent fibres that don't fit the tetrahedra");
+  CheckNodes(shape.bricks, shape.positions.size(), "a voxel or hexahedron");
+  if (!shape.fibres.empty() && shape.fibres.size() != shape.elements()) {
+    throw std::runtime_error("the server sent fibres that don't fit the elements");
   }
   for (const v1::RegionGeometry& region : body.regions()) {
     shape.regions.push_back({region.name(), DecodeArray<std::uint32_t>(region.nodes(), "a region")});

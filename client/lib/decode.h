@@ -20,9 +20,9 @@ struct BodyShape {
   std::string name;
   std::vector<Vec3> positions;                           // [m]
   std::vector<std::array<std::uint32_t, 4>> tetrahedra;  // node indices, all in range
-  std::vector<std::array<std::uint32_t, 8>> bricks;      // in place of tetrahedra: voxels, as in BodyGeometry
+  std::vector<std::array<std::uint32_t, 8>> bricks;      // in place of tetrahedra: voxels or hexahedra
   std::vector<std::array<std::uint32_t, 3>> triangles;   // in place of tetrahedra: a closed surface
-  std::vector<Vec3> fibres;                              // unit, one for each tetrahedron, or empty
+  std::vector<Vec3> fibres;                              // unit, one for each element, or empty
   struct Region {
     std::string name;
     std::vector<std::uint32_t> nodes;  // all in range

@@ -17,13 +17,14 @@ namespace fascicle::client {
 namespace {
 
 // Every n-th centroid; the same ones in every frame.
-vtkSmartPointer<vtkPolyData> MakeSeeds(const BodyShape& shape, const std::vector<Vec3>& positions, int seeds) {
-  const std::size_t count = shape.tetrahedra.size();
-  const std::size_t stride = std::max<std::size_t>(1, count / static_cast<std::size_t>(seeds));
+template <class Elements>
+vtkSmartPointer<vtkPolyData> MakeSeeds(const Elements& elements, const std::vector<Vec3>& positions, int seeds) {
+  const std::size_t stride = std::max<std::size_t>(1, elements.size() / static_cast<std::size_t>(seeds));
   std::vector<Vec3> centroids;
-  for (std::size_t e = stride / 2; e < count; e += stride) {
-    const auto& t = shape.tetrahedra[e];
-    centroids.push_back((positions[t[0]] + positions[t[1]] + positions[t[2]] + positions[t[3]]) / 4);
+  for (std::size_t e = stride / 2; e < elements.size(); e += stride) {
+    Vec3 sum = Vec3::Zero();
+    for (const std::uint32_t node : elements[e]) sum += positions[node];
+    centroids.emplace_back(sum / static_cast<double>(elements[e].size()));
   }
   auto data = vtkSmartPointer<vtkPolyData>::New();
   data->SetPoints(MakePoints(centroids));
@@ -49,6 +50,21 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const RigidShape& body, const Pose
   BodyShape shape;
   shape.triangles = body.triangles;
   return MakeGrid(shape, PositionsAt(body, pose));
+}
+
+bool IsOfVoxels(const BodyShape& shape) {
+  constexpr double kAlike = 1e-6;
+  if (shape.bricks.empty()) return false;
+  const std::vector<Vec3>& x = shape.positions;
+  const auto& first = shape.bricks[0];
+  const double size = (x[first[7]] - x[first[0]]).norm();
+  return std::all_of(shape.bricks.begin(), shape.bricks.end(), [&](const auto& brick) {
+    for (std::size_t c = 1; c < 8; ++c) {
+      const Vec3 edge = x[brick[c]] - x[brick[0]], of_first = x[first[c]] - x[first[0]];
+      if ((edge - of_first).norm() > kAlike * size) return false;
+    }
+    return true;
+  });
 }
 
 vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid, bool smooth) {
@@ -80,7 +96,8 @@ vtkSmartPointer<vtkPolyData> MakeFibreLines(const BodyShape& shape, const std::v
   grid->GetPointData()->SetVectors(directions);
   vtkNew<vtkStreamTracer> tracer;
   tracer->SetInputData(grid);
-  tracer->SetSourceData(MakeSeeds(shape, positions, seeds));
+  tracer->SetSourceData(shape.bricks.empty() ? MakeSeeds(shape.tetrahedra, positions, seeds)
+                                             : MakeSeeds(shape.bricks, positions, seeds));
   tracer->SetIntegratorTypeToRungeKutta4();
   tracer->SetIntegrationDirectionToBoth();
   tracer->SetIntegrationStepUnit(vtkStreamTracer::CELL_LENGTH_UNIT);

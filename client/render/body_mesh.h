@@ -18,6 +18,9 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std:
 // The triangles of a rigid body in its pose.
 vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const RigidShape& body, const Pose& pose);
 
+// Whether a body consists of bricks of one shape, as those of an image.
+bool IsOfVoxels(const BodyShape& shape);
+
 // Boundary faces with normals for smooth shading; edges sharper than 40 degrees stay sharp. `smooth`: moves corners, by
 // less than a voxel, to hide the steps between voxels.
 vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid, bool smooth = false);

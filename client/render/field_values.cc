@@ -16,7 +16,26 @@ Mat3 Edges(const std::vector<Vec3>& x, const std::array<std::uint32_t, 4>& t) {
   return edges;
 }
 
-// Averages the values of the elements around each node, weighted by rest volume (which is the same for all voxels).
+// The edges of a brick at its middle, with the volume of a parallelepiped.
+Mat3 Edges(const std::vector<Vec3>& x, const std::array<std::uint32_t, 8>& brick) {
+  Mat3 edges = Mat3::Zero();
+  for (std::size_t c = 0; c < 8; ++c) {
+    for (int d = 0; d < 3; ++d) edges.col(d) += ((c >> d & 1) != 0 ? 0.25 : -0.25) * x[brick[c]];
+  }
+  return edges;
+}
+
+template <class Element>
+void AddFibre(const Element& element, const Vec3& fibre, const std::vector<Vec3>& rest_positions,
+              const std::vector<Vec3>& positions, std::vector<Vec3>& sums) {
+  const Mat3 rest = Edges(rest_positions, element);
+  const Vec3 deformed = Edges(positions, element) * rest.inverse() * fibre;
+  const double weight = std::abs(rest.determinant()) / deformed.norm();
+  if (!std::isfinite(weight)) return;
+  for (const std::uint32_t node : element) sums[node] += (sums[node].dot(deformed) < 0 ? -weight : weight) * deformed;
+}
+
+// Averages the values of the elements around each node, weighted by rest volume.
 std::vector<double> AverageAtNodes(const BodyShape& shape, const std::vector<double>& values) {
   std::vector<double> sums(shape.positions.size(), 0.0), weights(shape.positions.size(), 0.0);
   for (std::size_t e = 0; e < shape.tetrahedra.size(); ++e) {
@@ -27,9 +46,10 @@ std::vector<double> AverageAtNodes(const BodyShape& shape, const std::vector<dou
     }
   }
   for (std::size_t e = 0; e < shape.bricks.size(); ++e) {
+    const double volume = std::abs(Edges(shape.positions, shape.bricks[e]).determinant());
     for (const std::uint32_t node : shape.bricks[e]) {
-      sums[node] += values[e];
-      weights[node] += 1;
+      sums[node] += volume * values[e];
+      weights[node] += volume;
     }
   }
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = weights[i] > 0 ? sums[i] / weights[i] : 0.0;
@@ -114,12 +134,11 @@ NodeValues ValuesAtNodes(const BodyShape& shape, const v1::BodyFrame& frame, con
 std::vector<Vec3> FibresAtNodes(const BodyShape& shape, const std::vector<Vec3>& positions) {
   std::vector<Vec3> sums(shape.positions.size(), Vec3::Zero());
   for (std::size_t e = 0; e < shape.fibres.size(); ++e) {
-    const auto& t = shape.tetrahedra[e];
-    const Mat3 rest = Edges(shape.positions, t);
-    const Vec3 fibre = Edges(positions, t) * rest.inverse() * shape.fibres[e];
-    const double weight = std::abs(rest.determinant()) / fibre.norm();
-    if (!std::isfinite(weight)) continue;
-    for (const std::uint32_t node : t) sums[node] += (sums[node].dot(fibre) < 0 ? -weight : weight) * fibre;
+    if (shape.bricks.empty()) {
+      AddFibre(shape.tetrahedra[e], shape.fibres[e], shape.positions, positions, sums);
+    } else {
+      AddFibre(shape.bricks[e], shape.fibres[e], shape.positions, positions, sums);
+    }
   }
   for (Vec3& sum : sums) {
     if (sum.norm() > 0) sum.normalize();

@@ -138,7 +138,7 @@ void AddRestOutlines(const std::vector<BodyShape>& shapes, vtkRenderer& renderer
   for (const BodyShape& shape : shapes) {
     vtkNew<vtkPolyDataSilhouette> silhouette;
     // For voxels only the silhouette, because their edges are everywhere.
-    const bool voxels = !shape.bricks.empty();
+    const bool voxels = IsOfVoxels(shape);
     silhouette->SetInputData(MakeSurface(*MakeGrid(shape, shape.positions), voxels));
     silhouette->SetCamera(renderer.GetActiveCamera());
     silhouette->SetEnableFeatureAngle(voxels ? 0 : 60);

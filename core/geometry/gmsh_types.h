@@ -6,7 +6,8 @@
 namespace fascicle::gmsh {
 
 // Numbers of element types in .msh files, after the nodes of each. [Gmsh reference manual, "Node ordering"]
-inline constexpr std::int64_t kTriangle3 = 2, kTetrahedron4 = 4, kTriangle6 = 9, kTetrahedron10 = 11, kPoint = 15;
+inline constexpr std::int64_t kTriangle3 = 2, kTetrahedron4 = 4, kHexahedron8 = 5, kTriangle6 = 9, kTetrahedron10 = 11,
+                              kPoint = 15;
 
 }  // namespace fascicle::gmsh
 

@@ -17,6 +17,7 @@
 
 #include "core/base/stop.h"
 #include "core/geometry/faces.h"
+#include "core/geometry/hexahedron.h"
 #include "core/geometry/quadratic_tetrahedron.h"
 
 namespace fascicle {
@@ -330,6 +331,43 @@ void CheckCurvedEdges(const TetMesh& mesh, const std::stop_token& stop, Problems
                 "mesh the body again, with optimization of high-order elements switched on", problems);
 }
 
+// Checks that hexahedra are made of their tetrahedra, and are not folded at the points of a 2 x 2 x 2 quadrature.
+void CheckHexahedra(const TetMesh& mesh, const std::stop_token& stop, Problems& problems) {
+  if (mesh.hexahedra.empty()) return;
+  constexpr double kNear = 0.21132486540518711775;  // (1 - 1/sqrt(3)) / 2
+  Findings wrong, folded;
+  for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h) {
+    ThrowIfStopped(stop);
+    const Hexahedron& nodes = mesh.hexahedra[h];
+    bool fits = InRange(nodes, mesh.nodes.size()) && 6 * h + 6 <= mesh.tetrahedra.size();
+    for (std::size_t t = 6 * h; fits && t < 6 * h + 6; ++t) {
+      fits = std::all_of(mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end(),
+                         [&](std::int32_t n) { return std::find(nodes.begin(), nodes.end(), n) != nodes.end(); });
+    }
+    if (!fits) {
+      wrong.Add(h);
+      continue;
+    }
+    const HexahedronNodes X = NodesOfHexahedron(mesh, h);
+    for (int q = 0; q < 8; ++q) {
+      Vec3 at;
+      for (int d = 0; d < 3; ++d) at[d] = (q >> d & 1) != 0 ? 1 - kNear : kNear;
+      const Mat3 slopes = TrilinearSlopes(X, at);
+      if (slopes.col(0).cross(slopes.col(1)).dot(slopes.col(2)) > 0) continue;
+      folded.Add(h);
+      break;
+    }
+  }
+  if (mesh.tetrahedra.size() != 6 * mesh.hexahedra.size()) {
+    problems.Add("", std::to_string(mesh.tetrahedra.size()) + " tetrahedra for " +
+                         std::to_string(mesh.hexahedra.size()) + " hexahedra, not six for each");
+  }
+  wrong.Report("hexahedron has other nodes than its tetrahedra", "hexahedra have other nodes than their tetrahedra",
+               "split them again", problems);
+  folded.Report("hexahedron is inverted or folded", "hexahedra are inverted or folded",
+                "order their nodes around the lower side, then around the upper one, or mesh the body again", problems);
+}
+
 }  // namespace
 
 MeshReport CheckMesh(const TetMesh& mesh, Problems& problems, const std::stop_token& stop) {
@@ -346,6 +384,7 @@ MeshReport CheckMesh(const TetMesh& mesh, Problems& problems, const std::stop_to
   CheckDuplicates(mesh, stop, problems);
   CheckUnusedNodes(mesh, stop, problems);
   CheckCurvedEdges(mesh, stop, problems);
+  CheckHexahedra(mesh, stop, problems);
   report.components = CheckComponents(mesh, stop, problems);
   report.volume = TotalVolume(mesh);
   report.smallest_dihedral_angle = SmallestDihedralAngle(mesh, stop);
@@ -358,6 +397,8 @@ bool OrientConsistently(TetMesh& mesh) {
     if (!InRange(mesh.tetrahedra[t], mesh.nodes.size()) || !(SignedVolume(mesh, t) < 0)) return false;
   }
   for (Tetrahedron& tetrahedron : mesh.tetrahedra) std::swap(tetrahedron[2], tetrahedron[3]);
+  for (Hexahedron& hexahedron : mesh.hexahedra)
+    std::rotate(hexahedron.begin(), hexahedron.begin() + 4, hexahedron.end());
   return true;
 }
 

@@ -125,12 +125,22 @@ std::string CountSolids(const std::vector<RawSolid>& solids) {
   return text;
 }
 
+bool IsOfHexahedra(const RawMesh& raw) {
+  return raw.tetrahedra.empty() && std::all_of(raw.solids.begin(), raw.solids.end(), [](const RawSolid& solid) {
+           return solid.shape == SolidShape::kHexahedron;
+         });
+}
+
 // Reports volume elements whose omission would leave holes in the body.
-bool CheckSolids(const RawMesh& raw, bool split_solids, Problems& problems) {
+bool CheckSolids(const RawMesh& raw, Solids wanted, Problems& problems) {
   const std::size_t before = problems.count();
-  if (!raw.solids.empty() && !split_solids) {
-    problems.Add("", "the file has " + CountSolids(raw.solids) + "; fascicle has tetrahedra only",
-                 "`fascicle mesh FILE --convert --split-hexahedra --out FILE.msh` splits them");
+  if (!raw.solids.empty() && wanted == Solids::kKeep && !IsOfHexahedra(raw)) {
+    const std::string tetrahedra =
+        raw.tetrahedra.empty() ? "" : " and " + std::to_string(raw.tetrahedra.size()) + " tetrahedra";
+    problems.Add("",
+                 "the file has " + CountSolids(raw.solids) + tetrahedra +
+                     "; a mesh must have either tetrahedra or hexahedra only",
+                 "`fascicle mesh FILE --convert --split-hexahedra --out FILE.msh` splits them into tetrahedra");
   }
   const std::size_t lost = raw.higher_order + raw.other_solids;
   if (lost > 0 && (!raw.tetrahedra.empty() || !raw.solids.empty())) {
@@ -142,7 +152,7 @@ bool CheckSolids(const RawMesh& raw, bool split_solids, Problems& problems) {
 
 // Replaces solids by tetrahedra and quadrilaterals by triangles. Returns the number of tetrahedra before those of each
 // solid, and of all.
-std::vector<std::size_t> SplitSolids(RawMesh& raw, const std::stop_token& stop) {
+std::vector<std::size_t> SplitSolids(RawMesh& raw, Solids wanted, const std::stop_token& stop) {
   std::vector<std::size_t> first = {raw.tetrahedra.size()};
   for (std::size_t s = 0; s < raw.solids.size(); ++s) {
     ThrowIfStopped(stop);
@@ -162,10 +172,12 @@ std::vector<std::size_t> SplitSolids(RawMesh& raw, const std::stop_token& stop) 
     for (const auto& triangle : SplitQuad(raw.quads[q])) raw.triangles.push_back(triangle);
     raw.triangle_tags.resize(raw.triangles.size(), raw.quad_tags[q]);
   }
-  if (!raw.solids.empty()) raw.notes.push_back(CountSolids(raw.solids) + " were split into tetrahedra");
+  if (!raw.solids.empty() && wanted == Solids::kSplit)
+    raw.notes.push_back(CountSolids(raw.solids) + " were split into tetrahedra");
   if (raw.curved_solids > 0) {
     raw.notes.push_back("the mid-edge nodes of " + std::to_string(raw.curved_solids) +
-                        " of them were left out: their edges are straight");
+                        (wanted == Solids::kSplit ? " of them" : " hexahedra") +
+                        " were left out: their edges are straight");
   }
   return first;
 }
@@ -178,6 +190,9 @@ void OrientSolids(const std::vector<std::size_t>& first, TetMesh& mesh) {
     for (std::size_t t = first[s]; volume < 0 && t < first[s + 1]; ++t) {
       std::swap(mesh.tetrahedra[t][2], mesh.tetrahedra[t][3]);
     }
+    if (volume >= 0 || mesh.hexahedra.empty()) continue;
+    Hexahedron& hexahedron = mesh.hexahedra[s];
+    std::rotate(hexahedron.begin(), hexahedron.begin() + 4, hexahedron.end());
   }
 }
 
@@ -214,6 +229,7 @@ void DropUnused(RawMesh& raw, std::vector<std::array<std::int32_t, 6>>& middles,
     }
   };
   renumber(mesh.tetrahedra);
+  renumber(mesh.hexahedra);
   renumber(middles);
   renumber(mesh.tagged_triangles);
   const auto is_gone = [](const Triangle& t) { return *std::min_element(t.begin(), t.end()) < 0; };
@@ -312,13 +328,13 @@ void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, const 
   mesh.node_tags.resize(kept);
 }
 
-std::optional<TetMesh> MakeMesh(RawMesh& raw, bool split_solids, const std::stop_token& stop, Problems& problems) {
+std::optional<TetMesh> MakeMesh(RawMesh& raw, Solids wanted, const std::stop_token& stop, Problems& problems) {
   if (raw.tetrahedra.empty() && raw.solids.empty()) {
     ReportNothingToRead(raw, problems);
     return std::nullopt;
   }
-  if (!CheckSolids(raw, split_solids, problems)) return std::nullopt;
-  const std::vector<std::size_t> split = SplitSolids(raw, stop);
+  if (!CheckSolids(raw, wanted, problems)) return std::nullopt;
+  const std::vector<std::size_t> split = SplitSolids(raw, wanted, stop);
   if (std::int64_t(raw.nodes.size()) > kMaxIndex || std::int64_t(raw.tetrahedra.size()) > kMaxIndex) {
     problems.Add("", "the mesh has more than 2^31 nodes or tetrahedra", "use a coarser mesh");
     return std::nullopt;
@@ -328,6 +344,11 @@ std::optional<TetMesh> MakeMesh(RawMesh& raw, bool split_solids, const std::stop
   if (!SortNodes(raw, stop, problems)) return std::nullopt;
   const NodeFinder finder(raw);
   FindNodes(finder, raw.tetrahedra, mesh.tetrahedra, "tetrahedra", stop, problems);
+  if (wanted == Solids::kKeep && !raw.solids.empty()) {
+    std::vector<std::array<std::int64_t, 8>> hexahedra;
+    for (const RawSolid& solid : raw.solids) hexahedra.push_back(solid.nodes);
+    FindNodes(finder, hexahedra, mesh.hexahedra, "hexahedra", stop, problems);
+  }
   FindNodes(finder, raw.triangles, mesh.tagged_triangles, "triangles", stop, problems);
   mesh.tetrahedron_tags = NarrowTags(raw.tetrahedron_tags, problems);
   mesh.triangle_tags = NarrowTags(raw.triangle_tags, problems);
@@ -361,9 +382,9 @@ std::optional<TetMesh> MakeMesh(RawMesh& raw, bool split_solids, const std::stop
 
 }  // namespace
 
-std::optional<TetMesh> FinishMesh(RawMesh raw, bool split_solids, Problems& problems, const std::stop_token& stop,
+std::optional<TetMesh> FinishMesh(RawMesh raw, Solids solids, Problems& problems, const std::stop_token& stop,
                                   MeshRemarks* remarks) {
-  std::optional<TetMesh> mesh = MakeMesh(raw, split_solids, stop, problems);
+  std::optional<TetMesh> mesh = MakeMesh(raw, solids, stop, problems);
   if (remarks != nullptr) *remarks = {std::move(raw.names), std::move(raw.notes)};
   return mesh;
 }
@@ -399,7 +420,7 @@ std::optional<TetMesh> ReadMesh(const MeshFile& file, Problems& problems, const 
                            : "known are " + KnownMeshExtensions());
   }
   if (problems.count() > before) return std::nullopt;
-  return FinishMesh(std::move(raw), file.split_solids, problems, stop, remarks);
+  return FinishMesh(std::move(raw), file.solids, problems, stop, remarks);
 }
 
 }  // namespace fascicle

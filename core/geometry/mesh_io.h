@@ -12,12 +12,16 @@
 
 namespace fascicle {
 
+// What becomes of hexahedra, wedges and pyramids. kKeep: a mesh of hexahedra alone is kept as such, all others but
+// tetrahedra are refused. kSplit: they are split into tetrahedra.
+enum class Solids { kKeep, kSplit };
+
 // The bytes of a mesh file. The views must stay valid during the call only.
 struct MeshFile {
   std::string_view name;  // its extension, in any case, gives the format: .msh .vtu .vtk .mesh .node .inp
   std::string_view bytes;
   std::string_view element_bytes = {};  // TetGen only: the bytes of the .ele file
-  bool split_solids = false;            // split hexahedra, wedges and pyramids into tetrahedra; otherwise refused
+  Solids solids = Solids::kKeep;        // what becomes of hexahedra, wedges and pyramids
 };
 
 // What a file says besides its mesh.
@@ -28,7 +32,7 @@ struct MeshRemarks {
 
 // Reads tetrahedra and tagged triangles and nodes from Gmsh 2.2/4.1 ASCII, VTK XML (.vtu: ascii, inline and appended,
 // raw or base64, zlib-compressed or not), VTK legacy (ascii and binary), MEDIT ASCII, TetGen, and Abaqus. Lines and
-// surface cells without tags are skipped; solids that are not tetrahedra are refused unless they are to be split. Nodes
+// surface cells without tags are skipped; solids of other shapes are treated as the file's `solids` says. Nodes
 // without a tetrahedron are left out, with a note. The file's node numbers are kept where they are contiguous; TetGen
 // files may count from 0 or 1. Coordinates stay in the file's unit; tetrahedra keep the file's orientation, and those
 // of a split solid have positive volumes. Malformed input never crashes, hangs or allocates more than a small multiple

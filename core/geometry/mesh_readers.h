@@ -51,9 +51,9 @@ struct RawMesh {
   std::vector<std::string> notes;
 };
 
-// Looks up the nodes, splits solids if that is wanted, and makes a mesh of what a reader found. Adds to `problems`
+// Looks up the nodes, splits or keeps solids as wanted, and makes a mesh of what a reader found. Adds to `problems`
 // what prevents that, and to `remarks`, if given, the names and notes.
-std::optional<TetMesh> FinishMesh(RawMesh raw, bool split_solids, Problems& problems, const std::stop_token& stop = {},
+std::optional<TetMesh> FinishMesh(RawMesh raw, Solids solids, Problems& problems, const std::stop_token& stop = {},
                                   MeshRemarks* remarks = nullptr);
 
 // Each adds malformed input to `problems`; its result must then be discarded. Each throws Stopped after a stop request.

@@ -79,6 +79,19 @@ void AppendTetrahedron(std::size_t number, const Tetrahedron& t, std::int32_t ta
              middle(a, c), middle(a, d), middle(c, d), middle(b, d));
 }
 
+void AppendHexahedron(std::size_t number, const Hexahedron& hexahedron, std::int32_t tag, std::string& text) {
+  for (const auto head : {static_cast<std::int64_t>(number), std::int64_t{gmsh::kHexahedron8}, std::int64_t{2},
+                          std::int64_t{tag}, std::int64_t{tag}}) {
+    Append(head, text);
+    text += ' ';
+  }
+  for (const std::int32_t n : hexahedron) {
+    Append(n + 1, text);
+    text += ' ';
+  }
+  text.back() = '\n';
+}
+
 }  // namespace
 
 std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names, const std::stop_token& stop) {
@@ -99,8 +112,8 @@ std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names, con
   }
   for (const Vec3& node : middles.positions()) AppendNode(++number, node, text);
   text += "$EndNodes\n$Elements\n" +
-          std::to_string(mesh.tagged_nodes.size() + mesh.tagged_triangles.size() + mesh.tetrahedra.size() +
-                         mesh.further_tags.size()) +
+          std::to_string(mesh.tagged_nodes.size() + mesh.tagged_triangles.size() + ElementCount(mesh) +
+                         mesh.further_tags.size() / (mesh.hexahedra.empty() ? 1 : 6)) +
           "\n";
   // Number, type, number of tags, the tags (physical, elementary), nodes.
   number = 0;
@@ -112,13 +125,21 @@ std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names, con
     const auto& [a, b, c] = mesh.tagged_triangles[i];
     AppendLine(text, ++number, gmsh::kTriangle3, 2, tag, tag, a + 1, b + 1, c + 1);
   }
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+  // Tags are those of tetrahedra, also of hexahedra.
+  const std::size_t per_element = mesh.hexahedra.empty() ? 1 : 6;
+  const auto append = [&](std::size_t e, std::int32_t tag) {
+    if (mesh.hexahedra.empty()) {
+      AppendTetrahedron(++number, mesh.tetrahedra[e], tag, middles, text);
+    } else {
+      AppendHexahedron(++number, mesh.hexahedra[e], tag, text);
+    }
+  };
+  for (std::size_t e = 0; e < ElementCount(mesh); ++e) {
     ThrowIfStopped(stop);
-    const std::int32_t tag = mesh.tetrahedron_tags.empty() ? 0 : mesh.tetrahedron_tags[t];
-    AppendTetrahedron(++number, mesh.tetrahedra[t], tag, middles, text);
+    append(e, mesh.tetrahedron_tags.empty() ? 0 : mesh.tetrahedron_tags[per_element * e]);
   }
   for (const auto& [t, tag] : mesh.further_tags) {
-    AppendTetrahedron(++number, mesh.tetrahedra[t], tag, middles, text);
+    if (static_cast<std::size_t>(t) % per_element == 0) append(static_cast<std::size_t>(t) / per_element, tag);
   }
   return text + "$EndElements\n";
 }

@@ -29,6 +29,18 @@ struct RefinedTetrahedra {
 // the coarse one.
 RefinedTetrahedra Refined(const TetMesh& mesh, const std::stop_token& stop = {});
 
+struct RefinedHexahedra {
+  // The nodes of the coarse mesh in their order, then those in the middle of edges, sides and hexahedra. The parts of
+  // hexahedron h are hexahedra 8 h to 8 h + 7, split by SplitHexahedra. Tags are those of the parents; of triangles,
+  // those of the side that they are on. A node in the middle of tagged nodes has their tag.
+  TetMesh mesh;
+  // The two, four or eight nodes in whose middle each new node is.
+  std::vector<std::vector<std::int32_t>> between;
+};
+
+// Divides every hexahedron of a mesh of hexahedra in eight. The sides remain the bilinear ones that they were.
+RefinedHexahedra RefinedIntoHexahedra(const TetMesh& mesh, const std::stop_token& stop = {});
+
 // Divides every voxel in eight with its material and stiffness. At most 2^31 - 1 voxels may result.
 VoxelGrid Refined(const VoxelGrid& grid, const std::stop_token& stop = {});
 

@@ -16,6 +16,17 @@ namespace {
 
 constexpr double kRegionRoundOff = 1e-9;  // relative to the diagonal; for angles in [rad]
 
+std::vector<Triangle> TrianglesOf(const std::vector<Quad>& quads) {
+  std::vector<Triangle> triangles;
+  for (const Quad& q : quads) triangles.insert(triangles.end(), {{q[0], q[1], q[2]}, {q[0], q[2], q[3]}});
+  return triangles;
+}
+
+template <class FaceNodes>
+Vec3 NormalAtFirst(const std::vector<Vec3>& X, const FaceNodes& face) {
+  return (X[face[1]] - X[face[0]]).cross(X[face[2]] - X[face[0]]);
+}
+
 // Access to one kind of mesh: its elements and the faces of its boundary.
 struct Tetrahedra {
   using Surface = std::vector<Triangle>;
@@ -26,11 +37,29 @@ struct Tetrahedra {
   const std::vector<std::int32_t>& tags() const { return mesh.tetrahedron_tags; }
   const std::vector<std::array<std::int32_t, 2>>& further_tags() const { return mesh.further_tags; }
   static const Surface& Triangles(const Surface& faces) { return faces; }
+  Vec3 NormalOf(const Triangle& face) const { return NormalAtFirst(mesh.nodes, face); }
   static void AddFace(const Triangle& face, Region& region) { region.triangles.push_back(face); }
   static const Surface& FacesOf(const Region& region) { return region.triangles; }
   static std::array<Triangle, 4> SidesOf(const Tetrahedron& tet) {
     return {OutwardTriangle(tet, 0), OutwardTriangle(tet, 1), OutwardTriangle(tet, 2), OutwardTriangle(tet, 3)};
   }
+};
+
+// Hexahedra, for all selectors but tags. SelectRegion adds the triangles of the sides.
+struct Hexahedra {
+  using Surface = std::vector<Quad>;
+  const TetMesh& mesh;
+  const Surface& surface;
+
+  const std::vector<Hexahedron>& elements() const { return mesh.hexahedra; }
+  static std::vector<Triangle> Triangles(const Surface& faces) { return TrianglesOf(faces); }
+  // Of the diagonals: the mean over a side that is not flat.
+  Vec3 NormalOf(const Quad& face) const {
+    const std::vector<Vec3>& X = mesh.nodes;
+    return (X[face[2]] - X[face[0]]).cross(X[face[3]] - X[face[1]]);
+  }
+  static void AddFace(const Quad& face, Region& region) { region.sides.push_back(face); }
+  static const Surface& FacesOf(const Region& region) { return region.sides; }
 };
 
 struct Bricks {
@@ -40,11 +69,8 @@ struct Bricks {
 
   const std::vector<Brick>& elements() const { return mesh.bricks; }
   const std::vector<std::int32_t>& tags() const { return mesh.labels; }
-  static std::vector<Triangle> Triangles(const Surface& faces) {
-    std::vector<Triangle> triangles;
-    for (const Quad& q : faces) triangles.insert(triangles.end(), {{q[0], q[1], q[2]}, {q[0], q[2], q[3]}});
-    return triangles;
-  }
+  static std::vector<Triangle> Triangles(const Surface& faces) { return TrianglesOf(faces); }
+  Vec3 NormalOf(const Quad& face) const { return NormalAtFirst(mesh.nodes, face); }
   static void AddFace(const Quad& face, Region& region) { region.quads.push_back(face); }
   static const Surface& FacesOf(const Region& region) { return region.quads; }
   static std::array<Quad, 6> SidesOf(const Brick& brick) {
@@ -128,8 +154,7 @@ struct Select {
 
   void operator()(const SideSelector& selector) const {
     for (const FaceNodes& face : cells.surface) {
-      const Vec3& origin = cells.mesh.nodes[face[0]];
-      const Vec3 normal = (cells.mesh.nodes[face[1]] - origin).cross(cells.mesh.nodes[face[2]] - origin);
+      const Vec3 normal = cells.NormalOf(face);
       // atan2 stays accurate near 0 and pi, where the arc cosine loses half of the digits.
       const double angle = std::atan2(normal.cross(selector.direction).norm(), normal.dot(selector.direction));
       if (normal.isZero(0) || angle > selector.max_angle + kRegionRoundOff) continue;
@@ -223,7 +248,49 @@ Items Common(Items first, Items second) {
   return common;
 }
 
+// The region with a tag in terms of hexahedra, all of whose tetrahedra have their tag.
+void SelectTagged(const TetMesh& mesh, const HexahedralBoundary& boundary, const TagSelector& selector,
+                  Region& region) {
+  std::vector<Triangle> surface;
+  for (const auto& triangles : boundary.triangles) surface.insert(surface.end(), triangles.begin(), triangles.end());
+  Select<Tetrahedra>{{mesh, surface}, region}(selector);
+  std::vector<Triangle> chosen = std::exchange(region.triangles, {});
+  std::sort(chosen.begin(), chosen.end());
+  const auto is_chosen = [&](const Triangle& t) { return std::binary_search(chosen.begin(), chosen.end(), t); };
+  for (std::size_t i = 0; i < boundary.quads.size(); ++i) {
+    if (std::all_of(boundary.triangles[i].begin(), boundary.triangles[i].end(), is_chosen)) {
+      region.sides.push_back(boundary.quads[i]);
+    }
+  }
+  for (std::int32_t& element : region.elements) element /= 6;
+  region.elements.erase(std::unique(region.elements.begin(), region.elements.end()), region.elements.end());
+}
+
 }  // namespace
+
+Region SelectRegion(const TetMesh& mesh, const HexahedralBoundary& boundary, std::string name,
+                    const Selector& selector) {
+  Region region;
+  region.name = std::move(name);
+  region.selectors = {selector};
+  std::visit(
+      [&]<class Kind>(const Kind& kind) {
+        if constexpr (std::is_same_v<Kind, TagSelector>) {
+          SelectTagged(mesh, boundary, kind, region);
+        } else {
+          Select<Hexahedra>{{mesh, boundary.quads}, region}(kind);
+        }
+      },
+      selector);
+  // Both lists have the order of the hexahedra.
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < boundary.quads.size() && next < region.sides.size(); ++i) {
+    if (boundary.quads[i] != region.sides[next]) continue;
+    region.triangles.insert(region.triangles.end(), boundary.triangles[i].begin(), boundary.triangles[i].end());
+    ++next;
+  }
+  return region;
+}
 
 Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name,
                     const Selector& selector) {
@@ -289,6 +356,7 @@ Region Intersection(const Region& first, const Region& second) {
           Common(first.triangles, second.triangles),
           Common(first.elements, second.elements),
           Common(first.quads, second.quads),
+          Common(first.sides, second.sides),
           std::move(selectors)};
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry/brick_mesh.h"
+#include "core/geometry/hexahedron.h"
 #include "core/geometry/tet_mesh.h"
 
 namespace fascicle {
@@ -42,6 +43,7 @@ struct Region {
   std::vector<std::int32_t> elements;    // ascending; tag: those with the tag; plane, box, sphere: centroid inside;
                                          // side: those with their centroid within the depth of a face
   std::vector<Quad> quads;               // the same for the boundary of bricks
+  std::vector<Quad> sides = {};          // of hexahedra; `triangles` are those of these sides
   std::vector<Selector> selectors = {};  // the selectors that define it; all must hold
 };
 
@@ -53,6 +55,11 @@ struct Region {
 // Tolerances: 1e-9 of the mesh's diagonal for plane, box and sphere; 1e-9 rad for the angle.
 // `surface` must be BoundaryTriangles(mesh).
 Region SelectRegion(const TetMesh& mesh, const std::vector<Triangle>& surface, std::string name,
+                    const Selector& selector);
+
+// The same for a mesh of hexahedra, whose region has sides and their triangles. `boundary` must be
+// BoundaryOfHexahedra(mesh).
+Region SelectRegion(const TetMesh& mesh, const HexahedralBoundary& boundary, std::string name,
                     const Selector& selector);
 
 // The same for bricks; the tag is their label. `surface` must be BoundaryQuads(mesh).

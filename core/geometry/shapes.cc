@@ -30,7 +30,8 @@ struct Block {
   }
 };
 
-void AddHexahedron(const Block& block, const std::array<int, 3>& at, std::vector<Tetrahedron>& tetrahedra) {
+void AddHexahedron(const Block& block, const std::array<int, 3>& at, TetMesh& mesh) {
+  std::vector<Tetrahedron>& tetrahedra = mesh.tetrahedra;
   bool mirror_image = false;
   std::array<bool, 3> backwards{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -52,9 +53,19 @@ void AddHexahedron(const Block& block, const std::array<int, 3>& at, std::vector
   }
 }
 
+Hexahedron HexahedronAt(const Block& block, const std::array<int, 3>& at) {
+  Hexahedron nodes;
+  for (int n = 0; n < 8; ++n) {
+    std::array<int, 3> corner = at;
+    for (int axis = 0; axis < 3; ++axis) corner[axis] += (kCorner[n] >> axis) & 1;
+    nodes[n] = block.Node(corner);
+  }
+  return nodes;
+}
+
 // Fills a block; place(i, j, k) is the position of node (i, j, k).
 template <class Place>
-TetMesh MakeBlock(const Block& block, const Place& place) {
+TetMesh MakeBlock(const Block& block, Cells cells, const Place& place) {
   const auto& [nx, ny, nz] = block.divisions;
   FASCICLE_CHECK(nx >= 1 && ny >= 1 && nz >= 1, "a shape has at least one hexahedron along each axis");
   TetMesh mesh;
@@ -67,7 +78,10 @@ TetMesh MakeBlock(const Block& block, const Place& place) {
   mesh.tetrahedra.reserve(std::size_t(6) * nx * ny * nz);
   for (int k = 0; k < nz; ++k) {
     for (int j = 0; j < ny; ++j) {
-      for (int i = 0; i < nx; ++i) AddHexahedron(block, {i, j, k}, mesh.tetrahedra);
+      for (int i = 0; i < nx; ++i) {
+        AddHexahedron(block, {i, j, k}, mesh);
+        if (cells == Cells::kHexahedra) mesh.hexahedra.push_back(HexahedronAt(block, {i, j, k}));
+      }
     }
   }
   return mesh;
@@ -98,16 +112,16 @@ Eigen::Vector2d OnDisc(int i, int j, int divisions) {
 
 }  // namespace
 
-TetMesh MakeBox(const Vec3& origin, const Vec3& size, const std::array<int, 3>& divisions) {
-  return MakeBlock({divisions}, [&](int i, int j, int k) {
+TetMesh MakeBox(const Vec3& origin, const Vec3& size, const std::array<int, 3>& divisions, Cells cells) {
+  return MakeBlock({divisions}, cells, [&](int i, int j, int k) {
     return Vec3(origin.x() + size.x() * (double(i) / divisions[0]), origin.y() + size.y() * (double(j) / divisions[1]),
                 origin.z() + size.z() * (double(k) / divisions[2]));
   });
 }
 
-TetMesh MakeFusiform(const Fusiform& shape) {
+TetMesh MakeFusiform(const Fusiform& shape, Cells cells) {
   const int across = shape.divisions_across, along = shape.divisions_along;
-  return MakeBlock({{across, across, along}, {true, true, false}}, [&](int i, int j, int k) {
+  return MakeBlock({{across, across, along}, {true, true, false}}, cells, [&](int i, int j, int k) {
     const double s = double(k) / along;
     const double sine = std::sin(kPi * s);
     const double radius = shape.end_radius + (shape.belly_radius - shape.end_radius) * (sine * sine);
@@ -116,9 +130,9 @@ TetMesh MakeFusiform(const Fusiform& shape) {
   });
 }
 
-TetMesh MakeTorus(const Torus& shape) {
+TetMesh MakeTorus(const Torus& shape, Cells cells) {
   const int across = shape.divisions_across, around = shape.divisions_around;
-  return MakeBlock({{across, across, around}, {true, true, false}, true}, [&](int i, int j, int k) {
+  return MakeBlock({{across, across, around}, {true, true, false}, true}, cells, [&](int i, int j, int k) {
     // Along the axis, radially, around the axis: a right-handed frame.
     const Eigen::Vector2d at = shape.minor_radius * OnDisc(i, j, across);
     const double angle = 2 * kPi * k / around;
@@ -127,8 +141,8 @@ TetMesh MakeTorus(const Torus& shape) {
   });
 }
 
-TetMesh MakeSphere(double radius, int divisions) {
-  return MakeBlock({{divisions, divisions, divisions}, {true, true, true}}, [&](int i, int j, int k) -> Vec3 {
+TetMesh MakeSphere(double radius, int divisions, Cells cells) {
+  return MakeBlock({{divisions, divisions, divisions}, {true, true, true}}, cells, [&](int i, int j, int k) -> Vec3 {
     return radius * RoundOff<3>({Centred(i, divisions), Centred(j, divisions), Centred(k, divisions)});
   });
 }

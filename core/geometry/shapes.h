@@ -15,8 +15,12 @@ namespace fascicle {
 // distortion map between disk and square"]. Boundary nodes lie on the surface exactly, tetrahedra have similar volumes,
 // and no dihedral angle is below 16 degrees at any resolution, provided that hexahedra are about as long as wide.
 
+// Whether a mesh keeps the hexahedra beside the tetrahedra.
+enum class Cells { kTetrahedra, kHexahedra };
+
 // Node i + (nx+1) (j + (ny+1) k) is at (i, j, k): x varies fastest.
-TetMesh MakeBox(const Vec3& origin, const Vec3& size, const std::array<int, 3>& divisions);
+TetMesh MakeBox(const Vec3& origin, const Vec3& size, const std::array<int, 3>& divisions,
+                Cells cells = Cells::kTetrahedra);
 
 struct Fusiform {
   double length = 0;        // along z [m]
@@ -25,7 +29,7 @@ struct Fusiform {
   int divisions_across = 6;
   int divisions_along = 24;
 };
-TetMesh MakeFusiform(const Fusiform& shape);
+TetMesh MakeFusiform(const Fusiform& shape, Cells cells = Cells::kTetrahedra);
 
 struct Torus {
   double major_radius = 0;  // [m]
@@ -33,9 +37,9 @@ struct Torus {
   int divisions_around = 24;
   int divisions_across = 4;
 };
-TetMesh MakeTorus(const Torus& shape);
+TetMesh MakeTorus(const Torus& shape, Cells cells = Cells::kTetrahedra);
 
-TetMesh MakeSphere(double radius, int divisions);
+TetMesh MakeSphere(double radius, int divisions, Cells cells = Cells::kTetrahedra);
 
 }  // namespace fascicle
 

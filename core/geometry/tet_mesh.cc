@@ -19,6 +19,13 @@ Vec3 Centroid(const TetMesh& mesh, std::size_t tetrahedron) {
   return (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c] + mesh.nodes[d]) / 4;
 }
 
+Vec3 ElementCentroid(const TetMesh& mesh, std::size_t element) {
+  if (mesh.hexahedra.empty()) return Centroid(mesh, element);
+  Vec3 sum = Vec3::Zero();
+  for (const std::int32_t n : mesh.hexahedra[element]) sum += mesh.nodes[n];
+  return sum / 8;
+}
+
 double TotalVolume(const TetMesh& mesh) {
   double volume = 0;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) volume += SignedVolume(mesh, t);

@@ -6,11 +6,12 @@
 
 namespace fascicle {
 FibreField ConstantFibres(const TetMesh& mesh, const Vec3& direction) {
-  return FibreField(mesh.tetrahedra.size(), direction.stableNormalized());
+  return FibreField(ElementCount(mesh), direction.stableNormalized());
 }
 
 FibreField ReadFibres(const TetMesh& mesh, std::string_view text, Problems& problems) {
-  const std::size_t expected = mesh.tetrahedra.size();
+  const std::size_t expected = ElementCount(mesh);
+  const std::string kind = mesh.hexahedra.empty() ? "tetrahedr" : "hexahedr";
   FibreField fibres;
   fibres.reserve(expected);
   std::size_t vectors = 0;
@@ -31,11 +32,23 @@ FibreField ReadFibres(const TetMesh& mesh, std::string_view text, Problems& prob
     }
   }
   if (vectors != expected) {
-    problems.Add({}, std::to_string(vectors) + " fibre directions for " + std::to_string(expected) + " tetrahedra",
-                 "give one line for each tetrahedron, in the order of the mesh file");
+    problems.Add({}, std::to_string(vectors) + " fibre directions for " + std::to_string(expected) + " " + kind + "a",
+                 "give one line for each " + kind + "on, in the order of the mesh file");
     sound = false;
   }
   return sound ? fibres : FibreField();
+}
+
+FibreField OfElements(const TetMesh& mesh, FibreField of_tetrahedra) {
+  if (mesh.hexahedra.empty() || of_tetrahedra.empty()) return of_tetrahedra;
+  FibreField fibres;
+  fibres.reserve(mesh.hexahedra.size());
+  for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t t = 6 * h; t < 6 * h + 6; ++t) sum += SignedVolume(mesh, t) * of_tetrahedra[t];
+    fibres.push_back(sum.isZero(0) ? of_tetrahedra[6 * h] : Vec3(sum.stableNormalized()));
+  }
+  return fibres;
 }
 
 }  // namespace fascicle

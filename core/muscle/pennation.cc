@@ -6,10 +6,10 @@
 namespace fascicle {
 namespace {
 
-// The direction in which the fibre of a tetrahedron is tilted: 1 towards the normal, -1 away from it, 0 not at all.
-double Side(const TetMesh& mesh, std::size_t tetrahedron, const Pennation& pennation) {
+// The direction in which the fibre of an element is tilted: 1 towards the normal, -1 away from it, 0 not at all.
+double Side(const TetMesh& mesh, std::size_t element, const Pennation& pennation) {
   if (!pennation.mirror_point) return 1;
-  const double distance = (Centroid(mesh, tetrahedron) - *pennation.mirror_point).dot(pennation.normal);
+  const double distance = (ElementCentroid(mesh, element) - *pennation.mirror_point).dot(pennation.normal);
   return distance > 0 ? 1 : distance < 0 ? -1 : 0;
 }
 
@@ -31,7 +31,7 @@ void Pennate(const TetMesh& mesh, const Pennation& pennation, FibreField& fibres
     }
   }
   if (along > 0) {
-    problems.Add("normal", "the fibres of " + std::to_string(along) + " tetrahedra are parallel to it",
+    problems.Add("normal", "the fibres of " + std::to_string(along) + " elements are parallel to it",
                  "give a direction across the fibres");
   }
 }

@@ -18,7 +18,7 @@ struct Pennation {
 };
 
 // Rotates every fibre a by the angle about a x n, where n is the normal or, before the mirror plane, its opposite. Adds
-// a problem where fibres are parallel to the normal, since the direction of tilt is undefined. Tetrahedra whose
+// a problem where fibres are parallel to the normal, since the direction of tilt is undefined. Elements whose
 // centroid is in the mirror plane keep their fibre.
 void Pennate(const TetMesh& mesh, const Pennation& pennation, FibreField& fibres, Problems& problems);
 

@@ -36,7 +36,8 @@ inline constexpr auto kFieldNames<SphereSelector> = FieldNames("center", "radius
 template <>
 inline constexpr auto kFieldNames<SideSelector> = FieldNames("direction", "max_angle", "depth");
 template <>
-inline constexpr auto kFieldNames<Region> = FieldNames("name", "nodes", "triangles", "elements", "quads", "selectors");
+inline constexpr auto kFieldNames<Region> = FieldNames("name", "nodes", "triangles", "elements", "quads", "sides",
+                                                       "selectors");
 
 template <>
 inline constexpr auto kFieldNames<ActivationDynamics> = FieldNames("activation_time", "deactivation_time",

@@ -28,7 +28,7 @@ void CheckScale(const std::vector<double>& scale, std::size_t elements, const st
 }
 
 void CheckTetrahedra(const TetShape& shape, const std::string& path, Problems& problems) {
-  const std::size_t elements = shape.mesh.tetrahedra.size();
+  const std::size_t elements = ElementCount(shape.mesh);
   const std::string of_regions = JoinPath(path, "region_activations");
   CheckParts(shape.activations, elements, of_regions, problems);
   for (std::size_t k = 0; k < shape.activations.more.size(); ++k) {

@@ -34,7 +34,7 @@ void CheckFamilies(const FibreField& fibres, const Material& own, const Parts<Ma
   for (std::size_t e = 0; e < fibres.size(); ++e) {
     if (HasFamiliesAt(MaterialAt(own, parts, e), fibres[e])) continue;
     problems.Add(path,
-                 "the fibre direction of tetrahedron " + std::to_string(e) +
+                 "the fibre direction of element " + std::to_string(e) +
                      " and the material's reference direction span no plane for the two families of fibres",
                  "give reference_x, reference_y and reference_z of a direction that is nowhere parallel to the fibres");
     return;
@@ -52,14 +52,13 @@ void CheckField(const FibreField& fibres, bool needed, std::size_t count, const 
     return;
   }
   if (fibres.size() != count) {
-    problems.Add(path,
-                 std::to_string(fibres.size()) + " fibre directions for " + std::to_string(count) + " tetrahedra");
+    problems.Add(path, std::to_string(fibres.size()) + " fibre directions for " + std::to_string(count) + " elements");
     return;
   }
   for (std::size_t e = 0; e < fibres.size(); ++e) {
     // Rounding leaves unit vectors within some 1e-16 of length 1; 1e-6 also accepts those stored as floats.
     if (std::abs(fibres[e].norm() - 1) < 1e-6) continue;
-    problems.Add(path, "the fibre direction of tetrahedron " + std::to_string(e) + " is not a unit vector");
+    problems.Add(path, "the fibre direction of element " + std::to_string(e) + " is not a unit vector");
     return;
   }
 }
@@ -67,7 +66,7 @@ void CheckField(const FibreField& fibres, bool needed, std::size_t count, const 
 void CheckShape(const TetShape& shape, const Material& own, const std::string& path, Problems& problems) {
   const auto& more = shape.materials.more;
   const bool needed = Needs(own) || std::any_of(more.begin(), more.end(), Needs);
-  CheckField(shape.fibres, needed, shape.mesh.tetrahedra.size(), path, problems);
+  CheckField(shape.fibres, needed, ElementCount(shape.mesh), path, problems);
   CheckFamilies(shape.fibres, own, shape.materials, path, problems);
 }
 

@@ -5,7 +5,7 @@ namespace fascicle::scene_checks {
 namespace {
 
 void CheckShape(const TetShape& shape, const std::string& path, Problems& problems) {
-  CheckParts(shape.materials, shape.mesh.tetrahedra.size(), path, problems);
+  CheckParts(shape.materials, ElementCount(shape.mesh), path, problems);
 }
 
 void CheckShape(const VoxelShape& shape, const std::string& path, Problems& problems) {

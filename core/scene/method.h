@@ -16,11 +16,11 @@ inline constexpr std::array<const char*, 3> kMethodNames = {"tet", "voxel", "eul
 
 enum class Stepping { kExplicit, kMixed, kBackwardEuler, kNewmark, kBdf2, kQuasiStatic };
 
-// Polynomial order of the displacement in an element: 4 or 10 nodes.
-enum class ElementOrder { kLinear, kQuadratic };
+// Shape functions of an element: tetrahedra of 4 or 10 nodes, hexahedra of 8 nodes.
+enum class ElementOrder { kLinear, kQuadratic, kHexahedral };
 
-// Where the volume energy of nearly incompressible laws acts: on nodal averages, or in each element separately, which
-// locks.
+// Where the volume energy of nearly incompressible laws acts: on averages (of tetrahedra: around nodes, of hexahedra:
+// over the element), or at each point separately, which locks.
 enum class VolumeForm { kNodal, kElement };
 enum class Precision { kDouble, kSingle };
 

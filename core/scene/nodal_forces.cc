@@ -18,7 +18,7 @@ Forces ForcesOf(const Traction& traction, const LoadedRegion& region) {
   Forces forces;
   for (const LoadedRegion::Face& face : region.faces) {
     for (int c = 0; c < face.count; ++c) {
-      forces.try_emplace(face.nodes[c], Vec3::Zero()).first->second += face.area.norm() / face.count * traction.vector;
+      forces.try_emplace(face.nodes[c], Vec3::Zero()).first->second += face.share[c] * traction.vector;
     }
   }
   return forces;
@@ -55,6 +55,7 @@ using Volumes = std::map<std::int32_t, double>;
 
 Volumes VolumesOf(const Region& region, const TetShape& shape) {
   Volumes volumes;
+  if (!shape.mesh.hexahedra.empty()) return VolumesOfHexahedra(region, shape.mesh);
   for (const std::int32_t e : region.elements) {
     const double share = SignedVolume(shape.mesh, static_cast<std::size_t>(e)) / 4;
     for (const std::int32_t node : shape.mesh.tetrahedra[e]) volumes[node] += share;
@@ -73,14 +74,47 @@ Volumes VolumesOf(const Region&, const SurfaceShape&) { return {}; }
 
 }  // namespace
 
+std::map<std::int32_t, double> VolumesOfHexahedra(const Region& region, const TetMesh& mesh) {
+  Volumes volumes;
+  for (const std::int32_t e : region.elements) {
+    const std::array<double, 8> shares = NodeVolumes(NodesOfHexahedron(mesh, static_cast<std::size_t>(e)));
+    for (std::size_t a = 0; a < 8; ++a) volumes[mesh.hexahedra[e][a]] += shares[a];
+  }
+  return volumes;
+}
+
+LoadedRegion::Face::Face(const Vec3& a, int n, const std::array<std::int32_t, 4>& of) : area(a), count(n), nodes(of) {
+  for (int c = 0; c < n; ++c) share[c] = a.norm() / n;
+}
+
+LoadedRegion::Face LoadedSide(const Quad& side, const std::vector<Vec3>& X) {
+  constexpr double kNear = 0.21132486540518711775;  // (1 - 1/sqrt(3)) / 2
+  LoadedRegion::Face face;
+  face.count = 4;
+  face.nodes = side;
+  face.area = 0.5 * (X[side[2]] - X[side[0]]).cross(X[side[3]] - X[side[1]]);
+  for (const double u : {kNear, 1 - kNear}) {
+    for (const double v : {kNear, 1 - kNear}) {
+      const Vec3 along_u = (1 - v) * (X[side[1]] - X[side[0]]) + v * (X[side[2]] - X[side[3]]);
+      const Vec3 along_v = (1 - u) * (X[side[3]] - X[side[0]]) + u * (X[side[2]] - X[side[1]]);
+      const double part = 0.25 * along_u.cross(along_v).norm();
+      const std::array<double, 4> weight = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
+      for (std::size_t c = 0; c < 4; ++c) face.share[c] += part * weight[c];
+    }
+  }
+  return face;
+}
+
 LoadedRegion LoadedRegionOf(const Region& region, const std::vector<Vec3>& X) {
   LoadedRegion loaded;
   loaded.nodes = region.nodes;
+  for (const Quad& side : region.sides) loaded.faces.push_back(LoadedSide(side, X));
+  if (!region.sides.empty()) return loaded;  // the triangles are those of the sides
   for (const Triangle& t : region.triangles) {
-    loaded.faces.push_back({0.5 * (X[t[1]] - X[t[0]]).cross(X[t[2]] - X[t[0]]), 3, {t[0], t[1], t[2]}});
+    loaded.faces.emplace_back(0.5 * (X[t[1]] - X[t[0]]).cross(X[t[2]] - X[t[0]]), 3, Quad{t[0], t[1], t[2]});
   }
   for (const Quad& q : region.quads) {
-    loaded.faces.push_back({(X[q[1]] - X[q[0]]).cross(X[q[3]] - X[q[0]]), 4, q});
+    loaded.faces.emplace_back((X[q[1]] - X[q[0]]).cross(X[q[3]] - X[q[0]]), 4, q);
   }
   return loaded;
 }

@@ -14,13 +14,16 @@ namespace fascicle {
 
 // The region on which a load acts, for any element type.
 struct LoadedRegion {
-  // A face of the rest surface, and the nodes that share a force on it in equal parts. This is consistent with the
-  // shape functions of linear triangles and bilinear quads, whose nodes are the corners, and of quadratic triangles,
-  // whose nodes are the mid-edge nodes.
+  // A face of the rest surface and its nodes, which share a force on it: consistently with the shape functions. Linear
+  // triangles and rectangles, whose nodes are the corners, and quadratic triangles, whose nodes are the mid-edge nodes,
+  // have equal shares.
   struct Face {
-    Vec3 area = Vec3::Zero();  // outward normal times area [m^2]
-    int count = 0;             // number of nodes
+    Face() = default;
+    Face(const Vec3& a, int n, const std::array<std::int32_t, 4>& of);  // equal shares
+    Vec3 area = Vec3::Zero();                                           // outward normal times area [m^2]
+    int count = 0;                                                      // number of nodes
     std::array<std::int32_t, 4> nodes = {};
+    std::array<double, 4> share = {};  // of the area, for each node [m^2]
   };
   std::vector<std::int32_t> nodes;
   std::vector<Face> faces;
@@ -28,6 +31,13 @@ struct LoadedRegion {
   // negative at the corners of quadratic elements.
   std::map<std::int32_t, double> volumes;
 };
+
+// A bilinear side of a hexahedron, flat or not: the integrals of its shape functions. Exact for parallelograms, else by
+// 2 x 2 Gauss points.
+LoadedRegion::Face LoadedSide(const Quad& side, const std::vector<Vec3>& X);
+
+// The volumes of a region's hexahedra that belong to each of the mesh's nodes [m^3].
+std::map<std::int32_t, double> VolumesOfHexahedra(const Region& region, const TetMesh& mesh);
 
 // A region of a mesh that has corner nodes only, without volumes.
 //   X  rest positions of the mesh's nodes [m]

@@ -13,9 +13,9 @@ namespace fascicle {
 
 // A place within an element of a body's shape.
 struct ProbePlace {
-  std::int32_t element = 0;  // tetrahedron, brick, or triangle of a surface
-  // Tetrahedron: barycentric coordinates of corners 1 to 3. Brick: from 0 to 1 along i, j, k. Triangle: barycentric
-  // coordinates of corners 1 and 2.
+  std::int32_t element = 0;  // tetrahedron, hexahedron, brick, or triangle of a surface
+  // Tetrahedron: barycentric coordinates of corners 1 to 3. Hexahedron, brick: from 0 to 1 along each axis. Triangle:
+  // barycentric coordinates of corners 1 and 2.
   Vec3 coordinates = Vec3::Zero();
 };
 template <>

@@ -180,22 +180,20 @@ void NormalizeDirections(std::span<double> values) {
   for (std::size_t i = 0; i + 2 < values.size(); i += 3) Eigen::Map<Vec3>(&values[i]).normalize();
 }
 
-FieldLocation LocationOf(const OutputFieldInfo& info, Method method) {
-  if (IsNodal(info)) return FieldLocation::kNode;
-  switch (method) {
-    case Method::kTet:
-      return FieldLocation::kTetrahedron;
-    case Method::kVoxel:
-      return FieldLocation::kBrick;
-    case Method::kEulerian:
-      return FieldLocation::kNode;
-  }
-  return FieldLocation::kNode;
+FieldLocation LocationOf(const OutputFieldInfo& info, const Shape& shape) {
+  struct OfElements {
+    FieldLocation operator()(const TetShape& s) const {
+      return s.mesh.hexahedra.empty() ? FieldLocation::kTetrahedron : FieldLocation::kBrick;
+    }
+    FieldLocation operator()(const VoxelShape&) const { return FieldLocation::kBrick; }
+    FieldLocation operator()(const SurfaceShape&) const { return FieldLocation::kNode; }
+  };
+  return IsNodal(info) ? FieldLocation::kNode : std::visit(OfElements{}, shape);
 }
 
 std::size_t PlacesOf(const OutputFieldInfo& info, const Shape& shape) {
   struct Elements {
-    std::size_t operator()(const TetShape& s) const { return s.mesh.tetrahedra.size(); }
+    std::size_t operator()(const TetShape& s) const { return ElementCount(s.mesh); }
     std::size_t operator()(const VoxelShape& s) const { return s.mesh.bricks.size(); }
     std::size_t operator()(const SurfaceShape& s) const { return s.mesh.nodes.size(); }
   };

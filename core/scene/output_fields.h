@@ -38,7 +38,7 @@ enum class OutputField {
   kPennationAngle
 };
 
-// Where the values of a field are.
+// Where the values of a field are; kBrick: in each voxel or hexahedron.
 enum class FieldLocation { kNode, kTetrahedron, kBrick };
 
 // The input from which a field is computed at each point.
@@ -104,8 +104,8 @@ void PutFromMean(OutputField field, const double* mean, double* values);
 // Normalizes directions from PutField or their averages; zero stays zero.
 void NormalizeDirections(std::span<double> values);
 
-// Where a method's frames have the values of a field, and their number for a body of that shape.
-FieldLocation LocationOf(const OutputFieldInfo& info, Method method);
+// Where frames have the values of a field of a body of that shape, and their number.
+FieldLocation LocationOf(const OutputFieldInfo& info, const Shape& shape);
 std::size_t PlacesOf(const OutputFieldInfo& info, const Shape& shape);
 
 // What a scene offers to its fields.

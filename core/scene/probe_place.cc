@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/geometry/hexahedron.h"
 #include "core/geometry/triangle_distance.h"
 #include "core/geometry/triangle_mesh.h"
 
@@ -20,6 +21,12 @@ using Weights = std::vector<std::pair<std::int32_t, double>>;
 // Shape functions of each type of element.
 Weights WeightsIn(const Tetrahedron& t, const Vec3& L) {
   return {{t[0], 1 - L.sum()}, {t[1], L[0]}, {t[2], L[1]}, {t[3], L[2]}};
+}
+// A Brick is a Hexahedron with another order of nodes, but the same type.
+Weights WeightsInHexahedron(const Hexahedron& hexahedron, const Vec3& at) {
+  Weights weights;
+  for (int a = 0; a < 8; ++a) weights.emplace_back(hexahedron[static_cast<std::size_t>(a)], TrilinearWeight(a, at));
+  return weights;
 }
 Weights WeightsIn(const Brick& brick, const Vec3& at) {
   Weights weights;
@@ -45,16 +52,38 @@ Vec3 CornerOf(const Simplex&, std::size_t c) {
   return c == 0 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Unit(static_cast<Eigen::Index>(c) - 1));
 }
 
+// The coordinates in the first hexahedron that contains the point, among those of the tetrahedra that do: where sides
+// are not flat, a point beside a hexahedron may be in one of its tetrahedra. At its nearest place if there is none.
+std::optional<ProbePlace> HexahedronAt(const TetMesh& mesh, const std::vector<std::int32_t>& candidates,
+                                       const Vec3& point) {
+  std::optional<ProbePlace> nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::int32_t h : candidates) {
+    const std::optional<Vec3> x = CoordinatesIn(NodesOfHexahedron(mesh, static_cast<std::size_t>(h)), point);
+    if (!x) continue;
+    const Vec3 inside = x->cwiseMax(0).cwiseMin(1);
+    const double outside = (*x - inside).norm();
+    if (!(outside < least)) continue;
+    least = outside;
+    nearest = ProbePlace{h, inside};
+    if (outside <= kClose) break;
+  }
+  return nearest;
+}
+
 std::optional<ProbePlace> ElementAt(const TetShape& shape, const Vec3& point) {
   const std::vector<Vec3>& X = shape.mesh.nodes;
+  std::vector<std::int32_t> hexahedra;
   for (std::size_t e = 0; e < shape.mesh.tetrahedra.size(); ++e) {
     const Tetrahedron& t = shape.mesh.tetrahedra[e];
     Mat3 edges;
     for (int c = 0; c < 3; ++c) edges.col(c) = X[t[c + 1]] - X[t[0]];
     const Vec3 L = edges.inverse() * (point - X[t[0]]);
-    if (L.minCoeff() >= -kClose && L.sum() <= 1 + kClose) return ProbePlace{static_cast<std::int32_t>(e), L};
+    if (!(L.minCoeff() >= -kClose && L.sum() <= 1 + kClose)) continue;
+    if (shape.mesh.hexahedra.empty()) return ProbePlace{static_cast<std::int32_t>(e), L};
+    hexahedra.push_back(static_cast<std::int32_t>(e / 6));
   }
-  return std::nullopt;
+  return HexahedronAt(shape.mesh, hexahedra, point);
 }
 
 std::optional<ProbePlace> ElementAt(const VoxelShape& shape, const Vec3& point) {
@@ -87,6 +116,17 @@ std::optional<ProbePlace> ElementAt(const SurfaceShape& shape, const Vec3& point
   return place;
 }
 
+// The first hexahedron of a node.
+ProbePlace HexahedronWith(const TetMesh& mesh, std::int32_t node) {
+  for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h) {
+    for (int a = 0; a < 8; ++a) {
+      if (mesh.hexahedra[h][static_cast<std::size_t>(a)] != node) continue;
+      return {static_cast<std::int32_t>(h), NodeCoordinates(a)};
+    }
+  }
+  return {};
+}
+
 std::int32_t NearestNode(const std::vector<Vec3>& nodes, const Vec3& point) {
   std::size_t nearest = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -116,6 +156,9 @@ LocatedProbe LocateProbe(std::string name, std::int32_t body, const Shape& shape
 
 ProbePlace PlaceOf(const Probe& probe, const Shape& shape) {
   if (probe.inside) return *probe.inside;
+  if (const auto* tet = std::get_if<TetShape>(&shape); tet != nullptr && !tet->mesh.hexahedra.empty()) {
+    return HexahedronWith(tet->mesh, probe.node);
+  }
   return std::visit(
       [&](const auto& s) {
         const auto& elements = ElementsOf(s);
@@ -130,6 +173,9 @@ ProbePlace PlaceOf(const Probe& probe, const Shape& shape) {
 }
 
 std::vector<std::pair<std::int32_t, double>> WeightsAt(const ProbePlace& place, const Shape& shape) {
+  if (const auto* tet = std::get_if<TetShape>(&shape); tet != nullptr && !tet->mesh.hexahedra.empty()) {
+    return WeightsInHexahedron(tet->mesh.hexahedra[static_cast<std::size_t>(place.element)], place.coordinates);
+  }
   return std::visit(
       [&](const auto& s) {
         return WeightsIn(ElementsOf(s)[static_cast<std::size_t>(place.element)], place.coordinates);

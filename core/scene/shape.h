@@ -22,9 +22,9 @@ namespace fascicle {
 template <>
 inline constexpr auto kFieldNames<CurvedEdge> = FieldNames("ends", "middle");
 template <>
-inline constexpr auto kFieldNames<TetMesh> = FieldNames("nodes", "tetrahedra", "tetrahedron_tags", "tagged_triangles",
-                                                        "triangle_tags", "tagged_nodes", "node_tags", "curved_edges",
-                                                        "further_tags");
+inline constexpr auto kFieldNames<TetMesh> = FieldNames("nodes", "tetrahedra", "hexahedra", "tetrahedron_tags",
+                                                        "tagged_triangles", "triangle_tags", "tagged_nodes",
+                                                        "node_tags", "curved_edges", "further_tags");
 template <>
 inline constexpr auto kFieldNames<VoxelGrid> = FieldNames("size", "spacing", "origin", "direction", "material",
                                                           "stiffness");
@@ -42,13 +42,13 @@ struct Parts {
 template <class Value>
 inline constexpr auto kFieldNames<Parts<Value>> = FieldNames("", "of");
 
-// Tetrahedra, for the tet method.
+// Tetrahedra or hexahedra, for the tet method.
 struct TetShape {
   TetMesh mesh;
-  FibreField fibres;  // one for each tetrahedron, or none
+  FibreField fibres;  // one for each element, or none
   Parts<Material> materials;
   Parts<Curve> activations;
-  std::vector<double> activation_scale;    // fraction of the activation that reaches each tetrahedron [0, 1]; empty: 1
+  std::vector<double> activation_scale;    // fraction of the activation that reaches each element [0, 1]; empty: 1
   std::vector<Vec3> initial_displacement;  // of each node at time 0 [m], may tangle the mesh; empty: none
 };
 template <>

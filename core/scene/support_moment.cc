@@ -8,7 +8,7 @@ Vec3 CentroidOf(const Region& region, const std::vector<Vec3>& nodes) {
   Vec3 moment = Vec3::Zero(), sum = Vec3::Zero();
   double area = 0;
   for (const LoadedRegion::Face& face : LoadedRegionOf(region, nodes).faces) {
-    for (int c = 0; c < face.count; ++c) moment += face.area.norm() / face.count * nodes[face.nodes[c]];
+    for (int c = 0; c < face.count; ++c) moment += face.share[c] * nodes[face.nodes[c]];
     area += face.area.norm();
   }
   if (area > 0) return moment / area;

@@ -121,7 +121,7 @@ BodyFrame MeasureEulerianBody(const Scene& scene, const EulerianBody& body, cons
   EulerianCells cells;
   UpdateCells(body, state, team, cells);
   for (const OutputField field : scene.output.fields) {
-    frame.fields.push_back(FieldOf(field, Method::kEulerian,
+    frame.fields.push_back(FieldOf(field, FieldLocation::kNode,
                                    FieldValuesAt(body, state, now, cells, FieldAsked(scene, field), state.surface)));
   }
   return frame;

@@ -17,9 +17,9 @@ FrameBytes::Bytes BytesOf(const std::vector<Item>& items) {
 
 }  // namespace
 
-FieldValues FieldOf(OutputField field, Method method, std::vector<double> values) {
+FieldValues FieldOf(OutputField field, FieldLocation location, std::vector<double> values) {
   const OutputFieldInfo& info = InfoOf(field);
-  return {info.name, LocationOf(info, method), static_cast<int>(info.components), info.unit, std::move(values)};
+  return {info.name, location, static_cast<int>(info.components), info.unit, std::move(values)};
 }
 
 Digest DigestOf(const Frame& frame) {

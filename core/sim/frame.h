@@ -21,8 +21,8 @@ struct FieldValues {
   std::vector<double> values;  // component fastest
 };
 
-// A field in the frames of a method, with its values.
-FieldValues FieldOf(OutputField field, Method method, std::vector<double> values);
+// A field with its values at a location (LocationOf).
+FieldValues FieldOf(OutputField field, FieldLocation location, std::vector<double> values);
 
 struct BodyFrame {
   std::vector<Vec3> positions;  // [m]

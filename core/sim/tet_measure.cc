@@ -104,7 +104,8 @@ std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& stat
     frames[b].positions.assign(state.positions.begin() + static_cast<std::ptrdiff_t>(body.node_begin),
                                state.positions.begin() + static_cast<std::ptrdiff_t>(body.mesh_node_end));
     for (const OutputField field : model.scene().output.fields) {
-      frames[b].fields.push_back(FieldOf(field, Method::kTet, FieldValuesOf(model, b, field, state, controls, team)));
+      frames[b].fields.push_back(FieldOf(field, LocationOf(InfoOf(field), body.source->shape),
+                                         FieldValuesOf(model, b, field, state, controls, team)));
     }
   }
   return frames;

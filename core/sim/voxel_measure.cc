@@ -209,8 +209,8 @@ std::vector<BodyFrame> MeasureVoxelBodies(const Scene& scene, const VoxelSolver&
       frames[b].positions.push_back(PositionOf(body, state.bodies[b].displacement, n));
     }
     for (const OutputField field : scene.output.fields) {
-      frames[b].fields.push_back(
-          FieldOf(field, Method::kVoxel, FieldValuesOf(body, state.bodies[b], state.time_step, field)));
+      frames[b].fields.push_back(FieldOf(field, LocationOf(InfoOf(field), scene.bodies[b].shape),
+                                         FieldValuesOf(body, state.bodies[b], state.time_step, field)));
     }
   }
   return frames;

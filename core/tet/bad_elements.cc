@@ -11,12 +11,12 @@ namespace {
 
 constexpr std::size_t kMaxBadElements = 16;
 
-// Smallest height over a face: 3 v / area = |det Ds| / (2 area).
-double SmallestHeight(const Mat3& Ds) {
-  const double twice_area =
+// Smallest height over a face of a tetrahedron, 3 v / area = |det Ds| / (2 area), or of a parallelepiped, v / area.
+double SmallestHeight(const Mat3& Ds, bool is_tetrahedron) {
+  const double product =
       std::max({Ds.col(0).cross(Ds.col(1)).norm(), Ds.col(1).cross(Ds.col(2)).norm(), Ds.col(2).cross(Ds.col(0)).norm(),
-                (Ds.col(1) - Ds.col(0)).cross(Ds.col(2) - Ds.col(0)).norm()});
-  return std::abs(Determinant(Ds)) / twice_area;
+                is_tetrahedron ? (Ds.col(1) - Ds.col(0)).cross(Ds.col(2) - Ds.col(0)).norm() : 0.0});
+  return std::abs(Determinant(Ds)) / product;
 }
 
 }  // namespace
@@ -29,7 +29,7 @@ BadElements FindBadElements(const TetModel& model, const FibreDrive& drive, cons
       const double J = Determinant(F);
       if (J > 0 && std::isfinite(law.Stress(F, FibreAt<Element>(model, e, drive, q)).sum())) continue;
       bad.inverted |= J <= 0;
-      bad.elements.push_back(model.source_tetrahedron()[e]);
+      bad.elements.push_back(model.source_element()[e]);
       return;
     }
   };
@@ -55,7 +55,7 @@ BadElements FindElementsAt(const TetModel& model, std::size_t node) {
   while (node >= model.bodies()[around.body].node_end) ++around.body;
   for (std::int32_t k = model.node_use_begin()[node]; k < model.node_use_begin()[node + 1]; ++k) {
     if (around.elements.size() == kMaxBadElements) break;
-    around.elements.push_back(model.source_tetrahedron()[model.node_uses()[k] / model.nodes_per_element()]);
+    around.elements.push_back(model.source_element()[model.node_uses()[k] / model.nodes_per_element()]);
   }
   std::sort(around.elements.begin(), around.elements.end());
   return around;
@@ -67,11 +67,13 @@ BadElements FindThinnestElement(const TetModel& model, const NodalVector& x) {
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const TetBody& body = model.bodies()[b];
     for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
-      const double height = SmallestHeight(EdgeMatrix(x, model.corners()[e]));
+      const double height = model.VisitElement([&]<class Element>(Element) {
+        return SmallestHeight(MeanEdges(ValuesOf<Element>(model, e, x)), Element::kNodes != 8);
+      });
       if (!(height < least)) continue;
       least = height;
       thinnest.body = b;
-      thinnest.elements = {model.source_tetrahedron()[e]};
+      thinnest.elements = {model.source_element()[e]};
     }
   }
   return thinnest;

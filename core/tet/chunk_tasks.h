@@ -9,17 +9,39 @@ namespace fascicle {
 inline const double* Numbers(const NodalVector& values) { return values.data()->data(); }
 inline double* Numbers(NodalVector& values) { return values.data()->data(); }
 
+// The kernels for the model's element.
+template <class S>
+const ElementKernels<S>& KernelsOf(const TetModel& model, const Kernels& kernels) {
+  constexpr bool kIsFloat = std::is_same_v<S, float>;
+  const auto choose = [](const auto& in_double, const auto& in_float) -> const ElementKernels<S>& {
+    if constexpr (kIsFloat) {
+      return in_float;
+    } else {
+      return in_double;
+    }
+  };
+  switch (model.order()) {
+    case ElementOrder::kLinear:
+      return choose(kernels.linear, kernels.linear_float);
+    case ElementOrder::kQuadratic:
+      return choose(kernels.quadratic, kernels.quadratic_float);
+    case ElementOrder::kHexahedral:
+      break;
+  }
+  return choose(kernels.hexahedral, kernels.hexahedral_float);
+}
+
 // Calls visitor(kernels for the model's element and number type).
 template <class Visitor>
 void VisitKernels(const TetModel& model, const Kernels& kernels, const Visitor& visitor) {
-  const bool linear = model.order() == ElementOrder::kLinear;
-  model.VisitBlocks([&]<class S>(const BlockArrays<S>&) {
-    if constexpr (std::is_same_v<S, float>) {
-      visitor(linear ? kernels.linear_float : kernels.quadratic_float);
-    } else {
-      visitor(linear ? kernels.linear : kernels.quadratic);
-    }
-  });
+  model.VisitBlocks([&]<class S>(const BlockArrays<S>&) { visitor(KernelsOf<S>(model, kernels)); });
+}
+
+// Whether a chunk's elements have patches.
+inline bool HasPatches(const TetModel& model, const Chunk& chunk) {
+  const ElementChunks& chunks = model.chunks();
+  if (!chunks.element_patch.empty()) return chunks.element_patch[kBlock * chunk.block_begin] != Sharing::kNone;
+  return chunks.patch_sums.target[chunk.node_begin] != Sharing::kNone;
 }
 
 // A task with a chunk's elements and law; the caller adds the loads and results.
@@ -36,7 +58,8 @@ ChunkTask<S> TaskOf(const TetModel& model, const Chunk& chunk, const Sharing& sh
   task.nodes = &chunks.nodes[chunk.node_begin];
   task.node_count = chunk.node_end - chunk.node_begin;
   task.patch = &chunks.patch[chunk.node_begin];
-  task.target = &sharing.target[chunk.node_begin];
+  if (!chunks.element_patch.empty()) task.element_patch = &chunks.element_patch[kBlock * chunk.block_begin];
+  if (!sharing.target.empty()) task.target = &sharing.target[chunk.node_begin];
   task.law = std::visit([&](const auto& laws) -> const void* { return &laws[chunk.law]; }, group.laws);
   task.law_kind = static_cast<int>(group.laws.index());
   return task;

@@ -6,17 +6,19 @@
 #include <array>
 #include <cstdint>
 
+#include "core/geometry/hexahedron.h"
 #include "core/geometry/tet_mesh.h"
 #include "core/linalg/nodal_vector.h"
 #include "core/tet/shape_functions.h"
 
 // Shape functions and geometry of one element [Teran 2003, 3 and 4].
 //
-// Both elements reduce to linear tetrahedra: a quadrature point of the quadratic element behaves like a linear
+// All elements reduce to linear tetrahedra: a quadrature point of the quadratic element behaves like a linear
 // tetrahedron whose corners are fixed combinations of the element's ten nodes, because
 //   F = sum_a x_a (x) grad N_a = sum_c y_c (x) g_c,   y_c = (4 L_c - 1) x_c + sum_{j != c} 4 L_j x_cj,
 // with L the barycentric coordinates of the point, g_c their rest gradients in that tetrahedron, and x_cj the mid-edge
-// node between c and j. So all laws and loops are written for a linear tetrahedron.
+// node between c and j. A point of a hexahedron behaves like one with y_0 = 0 and y_c = sum_a x_a dN_a/dxi_c. So all
+// laws and loops are written for a linear tetrahedron.
 namespace fascicle {
 
 // Values at the corners of one such tetrahedron.
@@ -44,6 +46,22 @@ struct QuadraticElement : QuadraticShape {
   }
 };
 
+struct HexahedralElement : HexahedralShape {
+  static CornerValues Corners(const std::array<Vec3, 8>& nodes, int q) {
+    CornerValues corners;
+    corners.fill(Vec3::Zero());
+    for (int a = 0; a < 8; ++a) {
+      for (int d = 0; d < 3; ++d) corners[1 + d] += Slope(q, a, d) * nodes[a];
+    }
+    return corners;
+  }
+  static void AddCorners(const CornerValues& corners, int q, std::array<Vec3, 8>& nodes) {
+    for (int a = 0; a < 8; ++a) {
+      for (int d = 0; d < 3; ++d) nodes[a] += Slope(q, a, d) * corners[1 + d];
+    }
+  }
+};
+
 // [a1 - a0, a2 - a0, a3 - a0] of values a at the corners: Dm for rest positions, Ds for positions, the rate of Ds for
 // velocities.
 inline Mat3 EdgeMatrix(const NodalVector& values, const Tetrahedron& corners) {
@@ -59,6 +77,17 @@ inline Mat3 EdgeMatrix(const CornerValues& corners) {
   Mat3 edges;
   for (int c = 0; c < 3; ++c) edges.col(c) = corners[c + 1] - corners[0];
   return edges;
+}
+
+// The edges of the whole element as a parallelepiped, from values at its nodes: those at the corner of a tetrahedron,
+// the mean ones of a hexahedron.
+template <std::size_t kNodes>
+Mat3 MeanEdges(const std::array<Vec3, kNodes>& nodes) {
+  if constexpr (kNodes == 8) {
+    return TrilinearSlopes(nodes, Vec3::Constant(0.5));
+  } else {
+    return EdgeMatrix(CornerValues{nodes[0], nodes[1], nodes[2], nodes[3]});
+  }
 }
 
 inline double Determinant(const Mat3& F) { return F.col(0).dot(F.col(1).cross(F.col(2))); }

@@ -26,10 +26,6 @@ ChunkTask<double> MatrixTaskOf(const TetModel& model, const IncrementalPotential
   return task;
 }
 
-const ElementKernels<double>& KernelsOf(const TetModel& model, const ForceWorkspace& workspace) {
-  return model.order() == ElementOrder::kLinear ? workspace.kernels->linear : workspace.kernels->quadratic;
-}
-
 // As the kernels' forces, but with UntanglingLaw and element by element.
 template <class Element>
 ChunkReport UntanglingForces(const TetModel& model, const NodalVector& x, const Chunk& chunk, double* force,
@@ -161,7 +157,7 @@ ElementEvaluation EvaluateElements(const TetModel& model, const IncrementalPoten
     ChunkTask<double> task = MatrixTaskOf(model, potential, x, acting, chunk);
     task.sums = Numbers(force);
     task.slot_sums = workspace.slot_sums.data();
-    workspace.reports[c] = KernelsOf(model, workspace).forces(task);
+    workspace.reports[c] = KernelsOf<double>(model, *workspace.kernels).forces(task);
   });
   AddSlots<3>(sharing, workspace.slot_sums.data(), team, Numbers(force));
   ElementEvaluation total;
@@ -196,7 +192,8 @@ void AssembleStiffness(const TetModel& model, const IncrementalPotential& potent
           }
         });
       } else {
-        KernelsOf(model, workspace).stiffness(MatrixTaskOf(model, potential, x, acting, chunk), blocks);
+        KernelsOf<double>(model, *workspace.kernels)
+            .stiffness(MatrixTaskOf(model, potential, x, acting, chunk), blocks);
       }
       for (std::size_t i = 0; i < targets.size(); ++i) {
         const Eigen::Map<const Mat3> block(&sums[9 * i]);

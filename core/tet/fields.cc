@@ -29,12 +29,16 @@ struct FieldInputs {
   }
 };
 
-// The elastic energy of the patches per volume of an element at barycentric coordinates L [J/m^3].
-double PatchEnergyDensity(const FieldInputs& inputs, std::size_t e, const std::array<double, 4>& L) {
+// The weights of an element's patches at a point of it (Element::kPatches).
+using PatchWeights = std::array<double, 4>;
+
+// The elastic energy of the patches per volume of an element [J/m^3].
+template <class Element>
+double PatchEnergyDensity(const FieldInputs& inputs, std::size_t e, const PatchWeights& L) {
   const VolumePatches& patches = inputs.model.patches();
   if (patches.empty() || patches.of_element[e][0] == VolumePatches::kNone) return 0;
   double sum = 0;
-  for (int c = 0; c < 4; ++c) {
+  for (int c = 0; c < Element::kPatches; ++c) {
     const std::int32_t n = patches.of_element[e][c];
     sum += L[c] * PatchEnergy{patches.modulus[n]}.Value(inputs.patches.ratio[n]);
   }
@@ -42,18 +46,18 @@ double PatchEnergyDensity(const FieldInputs& inputs, std::size_t e, const std::a
 }
 
 // The pressure of the patches there [Pa].
-double PressureAt(const FieldInputs& inputs, std::size_t e, const std::array<double, 4>& L) {
+template <class Element>
+double PressureAt(const FieldInputs& inputs, std::size_t e, const PatchWeights& L) {
   const VolumePatches& patches = inputs.model.patches();
   if (patches.empty() || patches.of_element[e][0] == VolumePatches::kNone) return 0;
   double sum = 0;
-  for (int c = 0; c < 4; ++c) sum += L[c] * inputs.patches.pressure[patches.of_element[e][c]];
+  for (int c = 0; c < Element::kPatches; ++c) sum += L[c] * inputs.patches.pressure[patches.of_element[e][c]];
   return sum;
 }
 
 // A point of an element, from its deformation gradient.
 template <class Element, FieldSource kFrom, class Law>
-MaterialPoint PointOf(const FieldInputs& inputs, const Law& law, std::size_t e, const Mat3& F,
-                      const std::array<double, 4>& L) {
+MaterialPoint PointOf(const FieldInputs& inputs, const Law& law, std::size_t e, const Mat3& F, const PatchWeights& L) {
   MaterialPoint point;
   point.F = F;
   point.J = Determinant(F);
@@ -61,7 +65,7 @@ MaterialPoint PointOf(const FieldInputs& inputs, const Law& law, std::size_t e, 
   point.line_of_action = inputs.line_of_action;
   if constexpr (kFrom == FieldSource::kStress || kFrom == FieldSource::kFibreStress) {
     FibreState fibre = FibreAt<Element>(inputs.model, e, inputs.drive, 0);
-    const double pressure = PressureAt(inputs, e, L);
+    const double pressure = PressureAt<Element>(inputs, e, L);
     const Mat3 P = law.Stress(F, fibre);
     point.sigma = P * F.transpose() / point.J + pressure * Mat3::Identity();
     if constexpr (kFrom == FieldSource::kFibreStress) {
@@ -72,15 +76,16 @@ MaterialPoint PointOf(const FieldInputs& inputs, const Law& law, std::size_t e, 
   }
   if constexpr (kFrom == FieldSource::kEnergy) {
     point.energy_density =
-        law.Energy(F, FibreAt<Element>(inputs.model, e, inputs.drive, 0)) + PatchEnergyDensity(inputs, e, L);
+        law.Energy(F, FibreAt<Element>(inputs.model, e, inputs.drive, 0)) + PatchEnergyDensity<Element>(inputs, e, L);
   }
   return point;
 }
 
 template <class Element>
-std::array<double, 4> QuadraturePoint(int q) {
-  return {Element::Barycentric(q, 0), Element::Barycentric(q, 1), Element::Barycentric(q, 2),
-          Element::Barycentric(q, 3)};
+PatchWeights WeightsAtPoint(int q) {
+  PatchWeights weights = {};
+  for (int c = 0; c < Element::kPatches; ++c) weights[c] = Element::PatchWeight(q, c);
+  return weights;
 }
 
 // Calls call.operator()<source>() with a source of elements' fields as a constant.
@@ -90,6 +95,15 @@ decltype(auto) WithSource(FieldSource from, const Call& call) {
   if (from == FieldSource::kFibreStress) return call.template operator()<FieldSource::kFibreStress>();
   if (from == FieldSource::kEnergy) return call.template operator()<FieldSource::kEnergy>();
   return call.template operator()<FieldSource::kDeformation>();
+}
+
+// The part of a point in the average over its element: in hexahedra, whose points have different volumes, by volume.
+template <class Element>
+double PartOfPoint(const TetModel& model, std::size_t e, int q) {
+  if constexpr (Element::kNodes != 8) return Element::kPointWeight;
+  double whole = 0;
+  for (int p = 0; p < Element::kPoints; ++p) whole += model.rest_volume()[Element::kPoints * e + p];
+  return model.rest_volume()[Element::kPoints * e + q] / whole;
 }
 
 // Averages over the points of each element of a body, in the order of its mesh.
@@ -105,13 +119,14 @@ std::vector<double> OverElements(const FieldInputs& inputs, std::size_t body_ind
       if (group.body != body_index) continue;
       ForElementsOfGroup(model, group, team, [&](const auto& law, std::size_t e) {
         const auto positions = ValuesOf<Element>(model, e, inputs.x);
-        double* const of_element = &values[components * static_cast<std::size_t>(model.source_tetrahedron()[e])];
+        double* const of_element = &values[components * static_cast<std::size_t>(model.source_element()[e])];
         for (int q = 0; q < Element::kPoints; ++q) {
+          const double part = PartOfPoint<Element>(model, e, q);
           const Mat3 F = GradientAt<Element>(model, e, positions, q);
-          const MaterialPoint point = PointOf<Element, kFrom>(inputs, law, e, F, QuadraturePoint<Element>(q));
+          const MaterialPoint point = PointOf<Element, kFrom>(inputs, law, e, F, WeightsAtPoint<Element>(q));
           std::array<double, kMostComponents> at_point;
           PutField(field, point, at_point.data());
-          for (std::size_t c = 0; c < components; ++c) of_element[c] += Element::kPointWeight * at_point[c];
+          for (std::size_t c = 0; c < components; ++c) of_element[c] += part * at_point[c];
         }
       });
     }
@@ -132,7 +147,7 @@ std::vector<double> FromMeans(OutputField field, const std::vector<double>& mean
 // Forces on the mesh's nodes, indexed as the model's; those of mid-edge nodes are halved between the ends of the edge.
 NodalVector OnMeshNodes(const TetModel& model, const TetBody& body, const NodalVector& forces) {
   NodalVector lumped = forces;
-  if (model.order() == ElementOrder::kLinear) return lumped;
+  if (model.order() != ElementOrder::kQuadratic) return lumped;
   std::vector<bool> done(model.nodes(), false);
   for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
     const auto nodes = model.NodesOf<QuadraticElement>(e);
@@ -164,17 +179,19 @@ std::vector<double> AtNodes(const TetBody& body, const NodalVector& vectors) {
   return values;
 }
 
-// The element of a probe: its index in the model, and the barycentric coordinates.
+// The element of a probe: its index in the model, and the coordinates in it: barycentric ones of a tetrahedron, three
+// from 0 to 1 of a hexahedron.
 struct TetPlace {
   std::size_t element = 0;
   std::array<double, 4> L = {};
+  Vec3 within = Vec3::Zero();
 };
 
 TetPlace PlaceIn(const TetModel& model, const Probe& probe) {
   const TetBody& body = model.bodies()[probe.body];
   const ProbePlace place = PlaceOf(probe, body.source->shape);
-  TetPlace result = {body.tet_begin, {}};
-  while (model.source_tetrahedron()[result.element] != place.element) ++result.element;
+  TetPlace result = {body.tet_begin, {}, place.coordinates};
+  while (model.source_element()[result.element] != place.element) ++result.element;
   const Vec3& c = place.coordinates;
   result.L = {1 - c.sum(), c[0], c[1], c[2]};
   return result;
@@ -184,10 +201,11 @@ TetPlace PlaceIn(const TetModel& model, const Probe& probe) {
 template <class Element>
 Vec3 ValueAt(const TetModel& model, const TetPlace& place, const NodalVector& values) {
   const auto at = ValuesOf<Element>(model, place.element, values);
+  if constexpr (Element::kNodes == 8) return TrilinearValue(at, place.within);
   const auto& L = place.L;
   Vec3 sum = Vec3::Zero();
   for (int c = 0; c < 4; ++c) sum += (Element::kNodes == 4 ? L[c] : L[c] * (2 * L[c] - 1)) * at[c];
-  if constexpr (Element::kNodes > 4) {
+  if constexpr (Element::kNodes == 10) {
     for (std::size_t k = 0; k < kTetEdges.size(); ++k) sum += 4 * L[kTetEdges[k][0]] * L[kTetEdges[k][1]] * at[4 + k];
   }
   return sum;
@@ -198,9 +216,16 @@ Mat3 EdgesAt(const TetModel& model, const TetPlace& place, const NodalVector& va
   const auto at = ValuesOf<Element>(model, place.element, values);
   if constexpr (Element::kNodes == 4) {
     return EdgeMatrix(at);
+  } else if constexpr (Element::kNodes == 8) {
+    return TrilinearSlopes(at, place.within);
   } else {
     return EdgeMatrix(CornersAt(at, place.L));
   }
+}
+
+template <class Element>
+PatchWeights PatchWeightsAt(const TetPlace& place) {
+  return Element::kPatches == 4 ? place.L : PatchWeights{1};
 }
 
 template <FieldSource kFrom>
@@ -215,7 +240,9 @@ std::vector<double> AtPlace(const FieldInputs& inputs, const TetPlace& place, Ou
         EdgesAt<Element>(model, place, inputs.x) * EdgesAt<Element>(model, place, model.rest_positions()).inverse();
     std::visit(
         [&](const auto& laws) {
-          PutField(field, PointOf<Element, kFrom>(inputs, laws[model.law_of()[e]], e, F, place.L), values.data());
+          PutField(field,
+                   PointOf<Element, kFrom>(inputs, laws[model.law_of()[e]], e, F, PatchWeightsAt<Element>(place)),
+                   values.data());
         },
         group->laws);
   });

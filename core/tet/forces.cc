@@ -93,13 +93,13 @@ void AddDiagonal(const TetModel& model, const TetBody& body, const NodalVector& 
 }
 
 // An element's share of the patches' energy [J]: the energy density of each patch times the volume of the element's
-// corner.
+// part in it.
 template <class Element>
 double PatchEnergyOf(const TetModel& model, const ForceWorkspace& workspace, std::size_t e) {
   const VolumePatches& patches = model.patches();
   if (patches.empty() || patches.of_element[e][0] == VolumePatches::kNone) return 0;
   double energy = 0;
-  for (int c = 0; c < 4; ++c) {
+  for (int c = 0; c < Element::kPatches; ++c) {
     const std::int32_t n = patches.of_element[e][c];
     energy += model.CornerVolume<Element>(e, c) * PatchEnergy{patches.modulus[n]}.Value(workspace.ratio[n]);
   }
@@ -183,7 +183,7 @@ bool UpdatePatches(const TetModel& model, const NodalVector& x, ThreadTeam& team
   workspace.slot_sums.resize(std::max(workspace.slot_sums.size(), sharing.slots.size()));
   VisitKernels(model, *workspace.kernels, [&]<class S>(const ElementKernels<S>& kernels) {
     ForChunks(model, team, [&](const Chunk& chunk, std::size_t) {
-      if (sharing.target[chunk.node_begin] == Sharing::kNone) return;
+      if (!HasPatches(model, chunk)) return;
       ChunkTask<S> task = TaskOf<S>(model, chunk, sharing);
       task.x = Numbers(x);
       task.sums = workspace.raw_ratio.data();

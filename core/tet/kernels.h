@@ -17,8 +17,9 @@ struct ChunkTask {
   std::size_t elements = 0;
   const std::int32_t* nodes = nullptr;
   std::size_t node_count = 0;
-  const std::int32_t* patch = nullptr;   // for each node of the chunk; null without patches
-  const std::int32_t* target = nullptr;  // target of each sum, see Sharing
+  const std::int32_t* patch = nullptr;          // for each node of the chunk; null without patches
+  const std::int32_t* element_patch = nullptr;  // of hexahedra: for each slot of the chunk
+  const std::int32_t* target = nullptr;         // target of each sum, see Sharing
 
   const void* law = nullptr;           // null: no law
   int law_kind = 0;                    // index in Material
@@ -64,7 +65,7 @@ template <class S>
 struct ElementKernels {
   // Forces on nodes, minus the derivative of the energy; ChunkReport.
   ChunkReport (*forces)(const ChunkTask<S>&);
-  // For each patch: integral of L_c J over the chunk's elements [m^3].
+  // For each patch: integral of its weight times J over the chunk's elements [m^3].
   void (*corner_volumes)(const ChunkTask<S>&);
   // The change of these integrals under displacements p.
   void (*corner_volume_changes)(const ChunkTask<S>&);
@@ -78,8 +79,8 @@ struct ElementKernels {
 using PatchPressureKernel = void (*)(std::size_t count, const double* modulus, const double* theta, double* pressure);
 
 struct Kernels {
-  ElementKernels<double> linear, quadratic;
-  ElementKernels<float> linear_float, quadratic_float;
+  ElementKernels<double> linear, quadratic, hexahedral;
+  ElementKernels<float> linear_float, quadratic_float, hexahedral_float;
   PatchPressureKernel patch_pressure;
 };
 // The set must be available on this machine.

@@ -181,6 +181,25 @@ struct ChunkKernels {
   using Row = typename R::Row;
   using Wide = typename R::Wide;
   static constexpr int kNodes = Shape::kNodes, kPoints = Shape::kPoints;
+  static constexpr bool kIsHexahedron = kNodes == 8;
+
+  // The slopes of the shape functions of a hexahedron, dN_a/dxi_d at point q.
+  struct SlopeTable {
+    constexpr SlopeTable() {
+      if constexpr (kIsHexahedron) {
+        for (int q = 0; q < kPoints; ++q) {
+          for (int a = 0; a < kNodes; ++a) {
+            for (int d = 0; d < 3; ++d) at[q][a][d] = Shape::Slope(q, a, d);
+          }
+        }
+      }
+    }
+    double at[kIsHexahedron ? kPoints : 1][kIsHexahedron ? kNodes : 1][3] = {};
+  };
+  static const double* SlopesOf(int q, int a) {
+    static constexpr SlopeTable kTable;
+    return kTable.at[q][a];
+  }
 
   // Rows of the nodes of a chunk.
   struct alignas(64) NodeRows {
@@ -251,8 +270,35 @@ struct ChunkKernels {
     }
   }
 
+  // The fourth number of the nodes of a hexahedron is that of its patch, if any, in the place of its first node.
+  static void SetPatchValues(const ChunkTask<S>& task, const double* of_patch, std::size_t b, NodeValues& values) {
+    if constexpr (kIsHexahedron) {
+      if (of_patch == nullptr) return;
+      const std::int32_t* patch = task.element_patch + b * kBlock;
+      for (int k = 0; k < kBlock; ++k) {
+        values.at[0][3][k] = patch[k] != Sharing::kNone ? static_cast<S>(of_patch[patch[k]]) : S(0);
+      }
+    }
+  }
+
+  // sum_a x_a (x) dN_a/dxi at point q of a hexahedron.
+  static Matrix3<L> HexahedralEdges(const NodeValues& values, int q, int k) {
+    Matrix3<L> edges;
+    for (int i = 0; i < 3; ++i) {
+      L sum[3] = {0.0, 0.0, 0.0};
+      for (int a = 0; a < kNodes; ++a) {
+        const L x = L::Load(&values.at[a][i][k]);
+        const double* slope = SlopesOf(q, a);
+        for (int d = 0; d < 3; ++d) sum[d] += slope[d] * x;
+      }
+      for (int d = 0; d < 3; ++d) edges(i, d) = sum[d];
+    }
+    return edges;
+  }
+
   // [y1 - y0, y2 - y0, y3 - y0] of the corners y at point q.
   static Matrix3<L> Edges(const NodeValues& values, int q, int k) {
+    if constexpr (kIsHexahedron) return HexahedralEdges(values, q, k);
     Matrix3<L> edges;
     for (int i = 0; i < 3; ++i) {
       L y[4];
@@ -290,6 +336,19 @@ struct ChunkKernels {
   // Adds the corner forces [f1 f2 f3] = -V P Dm^-T, f0 = -(f1 + f2 + f3), to the nodes.
   static void AddForces(const Matrix3<L>& P, const RestPoint<S>& rest, int q, int k, NodeValues& nodes) {
     const Matrix3<L> f = (-L::Load(&rest.volume[k]) * P) * ::fascicle::Transpose(LoadMatrix<L>(rest.Dm_inverse, k));
+    if constexpr (kIsHexahedron) {
+      for (int a = 0; a < kNodes; ++a) {
+        const double* slope = SlopesOf(q, a);
+        for (int i = 0; i < 3; ++i) {
+          const L part = slope[0] * f(i, 0) + slope[1] * f(i, 1) + slope[2] * f(i, 2);
+          (L::Load(&nodes.at[a][i][k]) + part).Store(&nodes.at[a][i][k]);
+        }
+      }
+    } else {
+      AddCornerForces(f, q, k, nodes);
+    }
+  }
+  static void AddCornerForces(const Matrix3<L>& f, int q, int k, NodeValues& nodes) {
     for (int i = 0; i < 3; ++i) {
       const L corners[4] = {-(f(i, 0) + f(i, 1) + f(i, 2)), f(i, 0), f(i, 1), f(i, 2)};
       for (int c = 0; c < 4; ++c) {
@@ -311,8 +370,9 @@ struct ChunkKernels {
 
   // The fourth number at point q: the pressure of the patches.
   static L FourthAt(const NodeValues& values, int q, int k) {
+    if constexpr (kIsHexahedron) return L::Load(&values.at[0][3][k]);
     L sum = 0.0;
-    for (int c = 0; c < 4; ++c) sum += Shape::Barycentric(q, c) * L::Load(&values.at[c][3][k]);
+    for (int c = 0; c < Shape::kPatches; ++c) sum += Shape::PatchWeight(q, c) * L::Load(&values.at[c][3][k]);
     return sum;
   }
 
@@ -411,6 +471,7 @@ struct ChunkKernels {
         Prefetch(task, next + kBlocksAhead);
         const std::uint16_t* local = task.local + next * kNodes * kBlock;
         Gather(x, local, positions[at]);
+        SetPatchValues(task, task.pressure, next, positions[at]);
         if (needs_previous) Gather(before, local, previous[at]);
         if (viscous && task.v != nullptr) Gather(velocity, local, rates[at]);
         for (int q = 0; q < kPoints; ++q) {
@@ -526,6 +587,18 @@ struct ChunkKernels {
       for (int c = 0; c < 4; ++c) sums[local[c * kBlock + lane]] += volumes[c][lane];
     }
   }
+  // Sums over the points of hexahedra, for their patches.
+  template <class AtPoint>
+  static void WritePatchVolumes(const ChunkTask<S>& task, const AtPoint& at_point, std::size_t b) {
+    alignas(64) S volumes[kBlock];
+    for (int k = 0; k < kBlock; k += L::kLanes) {
+      L sum = 0.0;
+      for (int q = 0; q < kPoints; ++q) sum += at_point(q, k);
+      sum.Store(&volumes[k]);
+    }
+    const int elements = ElementsOf(task, b);
+    for (int lane = 0; lane < elements; ++lane) task.sums[task.element_patch[b * kBlock + lane]] = volumes[lane];
+  }
   static int ElementsOf(const ChunkTask<S>& task, std::size_t b) {
     const std::size_t left = task.elements - b * kBlock;
     return left < kBlock ? static_cast<int>(left) : kBlock;
@@ -543,9 +616,13 @@ struct ChunkKernels {
       const std::uint16_t* local = task.local + b * kNodes * kBlock;
       Gather(x, local, positions);
       const auto at_point = [&](int q, int k) { return kVolumePerEdges * Determinant(Edges(positions, q, k)); };
-      AddCornerVolumes(at_point, local, ElementsOf(task, b), sums);
+      if constexpr (kIsHexahedron) {
+        WritePatchVolumes(task, at_point, b);
+      } else {
+        AddCornerVolumes(at_point, local, ElementsOf(task, b), sums);
+      }
     }
-    WriteNumbers(task, sums);
+    if (!kIsHexahedron) WriteNumbers(task, sums);
   }
 
   [[gnu::flatten]] static void CornerVolumeChanges(const ChunkTask<S>& task) {
@@ -562,9 +639,13 @@ struct ChunkKernels {
       const auto at_point = [&](int q, int k) {
         return kVolumePerEdges * Contract(Cofactor(Edges(positions, q, k)), Edges(changes, q, k));
       };
-      AddCornerVolumes(at_point, local, ElementsOf(task, b), sums);
+      if constexpr (kIsHexahedron) {
+        WritePatchVolumes(task, at_point, b);
+      } else {
+        AddCornerVolumes(at_point, local, ElementsOf(task, b), sums);
+      }
     }
-    WriteNumbers(task, sums);
+    if (!kIsHexahedron) WriteNumbers(task, sums);
   }
 
   // F (I + e a0 a0^T) with a small e > 0. At a kink of a fibre curve, especially at rest, this selects the tangent of
@@ -588,6 +669,8 @@ struct ChunkKernels {
       const std::uint16_t* local = task.local + b * kNodes * kBlock;
       Gather(x, local, positions);
       Gather(p, local, changes);
+      SetPatchValues(task, task.pressure, b, positions);
+      SetPatchValues(task, task.pressure_change, b, changes);
       if (kNodes != 4) Clear(forces);
       SetActivation(task, task.fibres[b], point);
       for (int q = 0; q < kPoints; ++q) {
@@ -693,6 +776,43 @@ struct ChunkKernels {
     blocks[0] = -1 * (blocks[PairOf(1, 0)] + blocks[PairOf(2, 0)] + blocks[PairOf(3, 0)]);
   }
 
+  // Adds the blocks of one point of a hexahedron, node by node.
+  static void AddHexahedralBlocks(const TangentMatrix<L>& H, const L& volume, const Matrix3<L>& Dm_inverse, int q,
+                                  int k, MatrixEntries& entries) {
+    // Rest gradients of the shape functions.
+    L gradient[kNodes][3];
+    for (int a = 0; a < kNodes; ++a) {
+      const double* slope = SlopesOf(q, a);
+      for (int l = 0; l < 3; ++l) {
+        gradient[a][l] = slope[0] * Dm_inverse(0, l) + slope[1] * Dm_inverse(1, l) + slope[2] * Dm_inverse(2, l);
+      }
+    }
+    for (int b = 0; b < kNodes; ++b) {
+      // Derivative of P with respect to each component of node b.
+      Matrix3<L> change[3];
+      for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 3; ++i) {
+          for (int m = 0; m < 3; ++m) {
+            L sum = 0.0;
+            for (int l = 0; l < 3; ++l) {
+              const int row = 3 * j + i, column = 3 * l + m;
+              sum += H[row <= column ? H.At(row, column) : H.At(column, row)] * gradient[b][l];
+            }
+            change[j](i, m) = volume * sum;
+          }
+        }
+      }
+      for (int a = b; a < kNodes; ++a) {
+        S(*block)[kBlock] = entries.of[PairOf(a, b)];
+        for (int m = 0; m < 9; ++m) {
+          const L part =
+              gradient[a][0] * change[0].m[m] + gradient[a][1] * change[1].m[m] + gradient[a][2] * change[2].m[m];
+          (L::Load(&block[m][k]) + part).Store(&block[m][k]);
+        }
+      }
+    }
+  }
+
   static void Clear(MatrixEntries& entries) {
     for (int i = 0; i < kPairs; ++i) {
       for (int m = 0; m < 9; ++m) {
@@ -783,6 +903,7 @@ struct ChunkKernels {
       Prefetch(task, b + kBlocksAhead);
       const std::uint16_t* local = task.local + b * kNodes * kBlock;
       Gather(x, local, positions);
+      SetPatchValues(task, task.pressure, b, positions);
       if (needs_previous) Gather(before, local, previous);
       if (kNodes != 4) Clear(entries);
       SetActivation(task, task.fibres[b], point);
@@ -793,10 +914,15 @@ struct ChunkKernels {
         LawList<L, Material>::kKernels[task.law_kind].tangent(task.law, point, H);
         for (int k = 0; k < kBlock; k += L::kLanes) {
           const Matrix3<L> F = LoadMatrix<L>(point.F.m, k);
-          Matrix3<L> corner_blocks[10];
-          SetCornerBlocks(TangentAt(task, H, F, positions, previous, rest, q, k), L::Load(&rest.volume[k]),
-                          LoadMatrix<L>(rest.Dm_inverse, k), corner_blocks);
-          AddBlocks(corner_blocks, q, k, entries);
+          if constexpr (kIsHexahedron) {
+            AddHexahedralBlocks(TangentAt(task, H, F, positions, previous, rest, q, k), L::Load(&rest.volume[k]),
+                                LoadMatrix<L>(rest.Dm_inverse, k), q, k, entries);
+          } else {
+            Matrix3<L> corner_blocks[10];
+            SetCornerBlocks(TangentAt(task, H, F, positions, previous, rest, q, k), L::Load(&rest.volume[k]),
+                            LoadMatrix<L>(rest.Dm_inverse, k), corner_blocks);
+            AddBlocks(corner_blocks, q, k, entries);
+          }
         }
       }
       AddToChunk(entries, b, chunk);
@@ -834,8 +960,13 @@ template <class Set>
 constexpr Kernels KernelsOf() {
   using D = Lanes<double, Set>;
   using F = Lanes<float, Set>;
-  return {ElementKernelsOf<D, LinearShape>(), ElementKernelsOf<D, QuadraticShape>(), ElementKernelsOf<F, LinearShape>(),
-          ElementKernelsOf<F, QuadraticShape>(), &PatchPressures<D>};
+  return {ElementKernelsOf<D, LinearShape>(),
+          ElementKernelsOf<D, QuadraticShape>(),
+          ElementKernelsOf<D, HexahedralShape>(),
+          ElementKernelsOf<F, LinearShape>(),
+          ElementKernelsOf<F, QuadraticShape>(),
+          ElementKernelsOf<F, HexahedralShape>(),
+          &PatchPressures<D>};
 }
 
 }  // namespace fascicle

@@ -5,6 +5,10 @@
 namespace fascicle {
 
 TetModel::TetModel(const Scene& scene, std::stop_token stop) : scene_(&scene) {
+  VisitElement([this]<class Element>(Element) {
+    nodes_per_element_ = Element::kNodes;
+    points_per_element_ = Element::kPoints;
+  });
   TetModelBuilder(scene, *this, std::move(stop)).Build();
 }
 
@@ -49,7 +53,7 @@ NodalVector TetModel::InitialPositions() const {
     const std::vector<Vec3>& displacement = body.source->tet().initial_displacement;
     if (displacement.empty()) continue;
     for (std::size_t n = 0; n < displacement.size(); ++n) x[body.node_begin + n] += displacement[n];
-    if (order() == ElementOrder::kLinear) continue;
+    if (order() != ElementOrder::kQuadratic) continue;
     for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
       for (int k = 0; k < 6; ++k) {
         const auto& [i, j] = kTetEdges[k];

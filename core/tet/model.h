@@ -28,7 +28,8 @@ template <class... Laws>
 std::variant<std::vector<Laws>...> LawTableOf(const std::variant<Laws...>&);
 using LawTable = decltype(LawTableOf(std::declval<Material>()));
 
-// A body's ranges in the model's arrays. Nodes: those of its mesh in their order, then mid-edge nodes.
+// A body's ranges in the model's arrays. Elements, tetrahedra or hexahedra, are counted by tet_begin and tet_end.
+// Nodes: those of its mesh in their order, then mid-edge nodes.
 struct TetBody {
   const Body* source = nullptr;
   std::size_t node_begin = 0, node_end = 0;
@@ -81,23 +82,26 @@ class TetModel {
   const Scene& scene() const { return *scene_; }
   const std::vector<TetBody>& bodies() const { return bodies_; }
   std::size_t nodes() const { return rest_positions_.size(); }
-  std::size_t tetrahedra() const { return tetrahedra_.size(); }
+  std::size_t elements() const { return source_element_.size(); }
 
   const NodalVector& rest_positions() const { return rest_positions_; }  // X [m]
   // X plus the bodies' initial displacements [m].
   NodalVector InitialPositions() const;
-  const std::vector<Tetrahedron>& corners() const { return tetrahedra_; }
+  const std::vector<Tetrahedron>& corners() const { return tetrahedra_; }  // of tetrahedra; empty for hexahedra
   ElementOrder order() const { return scene_->tet.element; }
-  // Calls visitor(LinearElement{}) or visitor(QuadraticElement{}).
+  // Calls visitor(LinearElement{}), visitor(QuadraticElement{}) or visitor(HexahedralElement{}).
   template <class Visitor>
   decltype(auto) VisitElement(const Visitor& visitor) const {
+    if (order() == ElementOrder::kHexahedral) return visitor(HexahedralElement{});
     return order() == ElementOrder::kLinear ? visitor(LinearElement{}) : visitor(QuadraticElement{});
   }
-  // The nodes of an element: its corners, then its mid-edge nodes.
+  // The nodes of an element: its corners, then its mid-edge nodes; of a hexahedron, in the order of Hexahedron.
   template <class Element>
   std::array<std::int32_t, Element::kNodes> NodesOf(std::size_t tet) const {
     if constexpr (Element::kNodes == 4) {
       return tetrahedra_[tet];
+    } else if constexpr (Element::kNodes == 8) {
+      return hexahedra_[tet];
     } else {
       std::array<std::int32_t, Element::kNodes> nodes;
       std::copy(tetrahedra_[tet].begin(), tetrahedra_[tet].end(), nodes.begin());
@@ -105,12 +109,12 @@ class TetModel {
       return nodes;
     }
   }
-  int nodes_per_element() const { return order() == ElementOrder::kLinear ? 4 : 10; }
-  int points_per_element() const { return order() == ElementOrder::kLinear ? 1 : 4; }
+  int nodes_per_element() const { return nodes_per_element_; }
+  int points_per_element() const { return points_per_element_; }
   const std::vector<TetGroup>& groups() const { return groups_; }
   const std::vector<std::int32_t>& law_of() const { return law_of_; }
   // Number of each element in its body's mesh.
-  const std::vector<std::int32_t>& source_tetrahedron() const { return source_tetrahedron_; }
+  const std::vector<std::int32_t>& source_element() const { return source_element_; }
   const VolumePatches& patches() const { return patches_; }
 
   // The activation of an element: its own one of Controls::activations times its factor.
@@ -144,16 +148,18 @@ class TetModel {
   DmInverses Dm_inverse() const { return {*this}; }
   RestVolumes rest_volume() const { return {*this}; }
   Fibres fibres() const { return {*this}; }  // a0; zero without fibres
-  // The integral of the barycentric coordinate L_c over an element at rest [m^3].
+  // The integral of the weight of an element's c-th patch over the element at rest [m^3].
   template <class Element>
   double CornerVolume(std::size_t tet, int c) const {
     double volume = 0;
     for (int q = 0; q < Element::kPoints; ++q) {
-      volume += Element::Barycentric(q, c) * rest_volume()[Element::kPoints * tet + q];
+      volume += Element::PatchWeight(q, c) * rest_volume()[Element::kPoints * tet + q];
     }
     return volume;
   }
-  const std::vector<double>& mass() const { return mass_; }  // lumped: see Element::kMassShare [kg]
+  const std::vector<double>& mass() const {
+    return mass_;
+  }  // lumped: see Element::kMassShare; of hexahedra, row sums [kg]
   // 1/m [1/kg]; zero for prescribed components.
   const NodalVector& inverse_mass() const { return inverse_mass_; }
   // Rayleigh damping of each node: mass_damping of its body [1/s].
@@ -188,9 +194,11 @@ class TetModel {
   std::vector<TetBody> bodies_;
   std::vector<TetGroup> groups_;
   NodalVector rest_positions_;
-  std::vector<Tetrahedron> tetrahedra_;
+  int nodes_per_element_ = 0, points_per_element_ = 0;
+  std::vector<Tetrahedron> tetrahedra_;                  // for both kinds of tetrahedra
+  std::vector<Hexahedron> hexahedra_;                    // for hexahedra
   std::vector<std::array<std::int32_t, 6>> edge_nodes_;  // for quadratic elements
-  std::vector<std::int32_t> source_tetrahedron_;
+  std::vector<std::int32_t> source_element_;
   std::vector<std::int32_t> law_of_;
   VolumePatches patches_;
   ElementChunks chunks_;

@@ -38,12 +38,14 @@ const Material& MaterialOf(const Body& body, std::size_t tet) {
 // of 0.3, which does not lock, all of it. Beyond, a multiple of the stresses that may crush a single element: its shear
 // modulus and the active stress of its fibres at rest, which may be a hundred times larger. Quadratic elements tolerate
 // a ten times larger multiple before they stiffen, and need it, because each of their points may be crushed separately.
+// Hexahedra keep nothing: mean dilatation.
 template <class Law>
 double ElementVolumeModulus(const Law& law, ElementOrder order) {
   constexpr double kDoesNotLock = 1.5;
   const double kept = order == ElementOrder::kLinear ? 0.3 : 3;
   const double modulus = law.VolumeModulus(), shear = law.ShearModulus();
   if (modulus <= kDoesNotLock * (1 + 1e-12) * shear) return modulus;
+  if (order == ElementOrder::kHexahedral) return 0;
   const double active_stress = law.Stress(Mat3::Identity(), FibreState{Vec3::UnitX(), 1}).norm();
   return std::min(modulus, kept * (shear + active_stress));
 }
@@ -134,8 +136,8 @@ void TetModelBuilder::AddNodes(const Body& body, TetBody& entry) {
 
 void TetModelBuilder::AddElements(const Body& body, TetBody& entry) {
   const TetShape& shape = body.tet();
-  const std::size_t count = shape.mesh.tetrahedra.size();
-  entry.tet_begin = model_.tetrahedra();
+  const std::size_t count = ElementCount(shape.mesh);
+  entry.tet_begin = model_.elements();
   entry.tet_end = entry.tet_begin + count;
   std::vector<LawKey> laws(count);
   for (std::size_t t = 0; t < count; ++t) laws[t] = {MaterialOf(body, t).index(), PartOf(shape.materials, t)};
@@ -157,16 +159,20 @@ void TetModelBuilder::AddElements(const Body& body, TetBody& entry) {
   AddGroups(body, entry, laws);
 }
 
-// Adds tetrahedron `tet` of the body's mesh.
+// Adds element `tet` of the body's mesh.
 void TetModelBuilder::AddElement(const Body& body, const TetBody& entry, std::int32_t tet) {
   const TetShape& shape = body.tet();
-  Tetrahedron shifted;
-  for (int c = 0; c < 4; ++c) {
-    shifted[c] = shape.mesh.tetrahedra[tet][c] + static_cast<std::int32_t>(entry.node_begin);
+  const auto shifted = [&](auto nodes) {
+    for (std::int32_t& n : nodes) n += static_cast<std::int32_t>(entry.node_begin);
+    return nodes;
+  };
+  const std::size_t e = model_.elements();
+  if (model_.order() == ElementOrder::kHexahedral) {
+    model_.hexahedra_.push_back(shifted(shape.mesh.hexahedra[tet]));
+  } else {
+    model_.tetrahedra_.push_back(shifted(shape.mesh.tetrahedra[tet]));
   }
-  const std::size_t e = model_.tetrahedra();
-  model_.tetrahedra_.push_back(shifted);
-  model_.source_tetrahedron_.push_back(tet);
+  model_.source_element_.push_back(tet);
   fibres_.push_back(shape.fibres.empty() ? Vec3(Vec3::Zero()) : shape.fibres[tet]);
   activation_of_.push_back(static_cast<std::int32_t>(entry.activation) + PartOf(shape.activations, tet));
   activation_scale_.push_back(shape.activation_scale.empty() ? 1 : shape.activation_scale[tet]);
@@ -174,14 +180,21 @@ void TetModelBuilder::AddElement(const Body& body, const TetBody& entry, std::in
     const auto element_nodes = model_.NodesOf<Element>(e);
     const double volume = AddPoints<Element>(e);
     for (int a = 0; a < Element::kNodes; ++a) {
-      model_.mass_[element_nodes[a]] += body.density * volume * Element::kMassShare[a];
+      if constexpr (Element::kNodes == 8) {
+        for (int q = 0; q < Element::kPoints; ++q) {
+          model_.mass_[element_nodes[a]] +=
+              body.density * rest_volume_[Element::kPoints * e + q] * Element::Value(q, a);
+        }
+      } else {
+        model_.mass_[element_nodes[a]] += body.density * volume * Element::kMassShare[a];
+      }
     }
   });
 }
 
 // Groups the body's elements, which are sorted, by the kind of their law.
 void TetModelBuilder::AddGroups(const Body& body, const TetBody& entry, std::span<const LawKey> laws) {
-  const auto kind = [&](std::size_t e) { return laws[model_.source_tetrahedron_[e]].first; };
+  const auto kind = [&](std::size_t e) { return laws[model_.source_element_[e]].first; };
   model_.law_of_.resize(entry.tet_end);
   for (std::size_t begin = entry.tet_begin; begin < entry.tet_end;) {
     std::size_t end = begin;
@@ -205,7 +218,7 @@ void TetModelBuilder::FillGroup(const Body& body, TetGroup& group) {
     std::vector<double> given_by_law;
     for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
       HeedStop();
-      const Material& material = MaterialOf(body, model_.source_tetrahedron_[e]);
+      const Material& material = MaterialOf(body, model_.source_element_[e]);
       const auto [place, is_new] = places.try_emplace(&material, static_cast<std::int32_t>(laws.size()));
       if (is_new) {
         const Law& law = std::get<Law>(material);
@@ -220,7 +233,7 @@ void TetModelBuilder::FillGroup(const Body& body, TetGroup& group) {
     }
     group.laws = std::move(laws);
   };
-  std::visit(fill, MaterialOf(body, model_.source_tetrahedron_[group.tet_begin]));
+  std::visit(fill, MaterialOf(body, model_.source_element_[group.tet_begin]));
   AddPatches(group, given);
 }
 
@@ -245,15 +258,16 @@ double TetModelBuilder::AddPoints(std::size_t tet) {
 void TetModelBuilder::AddPatches(const TetGroup& group, std::span<const double> given) {
   model_.patches_.of_element.resize(
       group.tet_end, {VolumePatches::kNone, VolumePatches::kNone, VolumePatches::kNone, VolumePatches::kNone});
-  std::map<std::int32_t, std::int32_t> patch_of_node;
+  std::map<std::int32_t, std::int32_t> patch_of_owner;  // by node, or by hexahedron
   const std::size_t first = model_.patches_.size();
   for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
     HeedStop();
     const double modulus = given[e - group.tet_begin];
     if (modulus == 0) continue;
-    for (int c = 0; c < 4; ++c) {
-      const auto [place, is_new] =
-          patch_of_node.try_emplace(model_.tetrahedra_[e][c], static_cast<std::int32_t>(model_.patches_.size()));
+    const bool has_own = model_.order() == ElementOrder::kHexahedral;
+    for (int c = 0; c < (has_own ? 1 : 4); ++c) {
+      const std::int32_t owner = has_own ? static_cast<std::int32_t>(e) : model_.tetrahedra_[e][c];
+      const auto [place, is_new] = patch_of_owner.try_emplace(owner, static_cast<std::int32_t>(model_.patches_.size()));
       if (is_new) {
         model_.patches_.rest_volume.push_back(0);
         model_.patches_.modulus.push_back(0);
@@ -263,7 +277,7 @@ void TetModelBuilder::AddPatches(const TetGroup& group, std::span<const double> 
       const double volume = model_.VisitElement([&]<class Element>(Element) {
         double sum = 0;
         for (int q = 0; q < Element::kPoints; ++q) {
-          sum += Element::Barycentric(q, c) * rest_volume_[Element::kPoints * e + q];
+          sum += Element::PatchWeight(q, c) * rest_volume_[Element::kPoints * e + q];
         }
         return sum;
       });
@@ -279,7 +293,7 @@ void TetModelBuilder::AddPatches(const TetGroup& group, std::span<const double> 
 // volumes.
 void TetModelBuilder::SetSmoothing() {
   std::vector<std::map<std::int32_t, double>> rows(model_.patches_.size());
-  for (std::size_t e = 0; e < model_.tetrahedra(); ++e) {
+  for (std::size_t e = 0; e < model_.elements(); ++e) {
     HeedStop();
     const VolumePatches::Corners& corners = model_.patches_.of_element[e];
     if (corners[0] == VolumePatches::kNone) continue;
@@ -306,7 +320,7 @@ void TetModelBuilder::SetInverseMass() {
 void TetModelBuilder::SetNodeUses() {
   std::vector<std::int32_t> element_nodes;
   model_.VisitElement([&]<class Element>(Element) {
-    for (std::size_t e = 0; e < model_.tetrahedra(); ++e) {
+    for (std::size_t e = 0; e < model_.elements(); ++e) {
       for (const std::int32_t n : model_.NodesOf<Element>(e)) element_nodes.push_back(n);
     }
   });
@@ -318,12 +332,12 @@ void TetModelBuilder::SetNodeUses() {
 // Vectors that grew element by element have excess capacity.
 void TetModelBuilder::DropExcessCapacity() {
   const auto shrink = [](auto&... vectors) { (vectors.shrink_to_fit(), ...); };
-  shrink(model_.rest_positions_, model_.tetrahedra_, model_.edge_nodes_, model_.source_tetrahedron_, model_.law_of_,
-         model_.mass_, model_.mass_damping_);
+  shrink(model_.rest_positions_, model_.tetrahedra_, model_.hexahedra_, model_.edge_nodes_, model_.source_element_,
+         model_.law_of_, model_.mass_, model_.mass_damping_);
   VolumePatches& patches = model_.patches_;
   shrink(patches.of_element, patches.rest_volume, patches.modulus, patches.row, patches.neighbour, patches.weight);
   ElementChunks& chunks = model_.chunks_;
-  shrink(chunks.chunks, chunks.nodes, chunks.local, chunks.slot, chunks.patch);
+  shrink(chunks.chunks, chunks.nodes, chunks.local, chunks.slot, chunks.patch, chunks.element_patch);
 }
 
 }  // namespace fascicle

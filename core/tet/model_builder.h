@@ -60,6 +60,7 @@ class TetModelBuilder {
   MeanPosition MeanOf(const Region& region, const TetBody& body) const;
   void AddPositionLoad(const Load& load, const TetBody& body);
   void AddSupports(std::int32_t body_index);
+  std::map<std::int32_t, double> SurfaceAreas(const TetBody& body) const;
   void AddContactNodes(const TetBody& body);
 
   // The mid-edge node between nodes i and j of a quadratic element.

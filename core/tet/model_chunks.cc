@@ -8,7 +8,7 @@ namespace fascicle {
 void TetModelBuilder::SortIntoChunks(const TetMesh& mesh, const TetBody& entry, std::span<const LawKey> laws,
                                      std::span<std::int32_t> sorted) {
   std::vector<Vec3> middles;
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) middles.push_back(Centroid(mesh, t));
+  for (std::size_t e = 0; e < ElementCount(mesh); ++e) middles.push_back(ElementCentroid(mesh, e));
   std::vector<std::size_t> last_count(entry.node_end - entry.node_begin, 0);
   std::size_t counts = 0;
   const auto count_nodes = [&](std::span<const std::int32_t> elements) {
@@ -20,6 +20,10 @@ void TetModelBuilder::SortIntoChunks(const TetMesh& mesh, const TetBody& entry, 
       last_count[n] = counts;
     };
     for (const std::int32_t t : elements) {
+      if (!mesh.hexahedra.empty()) {
+        for (const std::int32_t n : mesh.hexahedra[t]) see(n);
+        continue;
+      }
       for (const std::int32_t n : mesh.tetrahedra[t]) see(n);
       if (model_.edge_nodes_.empty()) continue;
       for (const std::int32_t n : model_.edge_nodes_[entry.tet_begin + t]) see(n - entry.node_begin);
@@ -47,11 +51,15 @@ void TetModelBuilder::AddLocalNumbers(const Chunk& chunk, std::span<const std::i
     if (e == model_.chunks_.slot.size()) model_.chunks_.slot.push_back(static_cast<std::int32_t>(slot));
     const auto element_nodes = model_.NodesOf<Element>(e);
     const bool has_patch = !model_.patches_.empty() && model_.patches_.of_element[e][0] != VolumePatches::kNone;
+    if constexpr (Element::kPatches == 1) {
+      model_.chunks_.element_patch.push_back(has_patch ? model_.patches_.of_element[e][0] : Sharing::kNone);
+    }
     for (int a = 0; a < Element::kNodes; ++a) {
       const std::int32_t local = local_of[element_nodes[a]];
       model_.chunks_.local[(Element::kNodes * (slot / kBlock) + a) * kBlock + slot % kBlock] =
           static_cast<std::uint16_t>(local);
-      if (has_patch && a < 4) model_.chunks_.patch[chunk.node_begin + local] = model_.patches_.of_element[e][a];
+      if (has_patch && Element::kPatches == 4 && a < 4)
+        model_.chunks_.patch[chunk.node_begin + local] = model_.patches_.of_element[e][a];
     }
   }
 }
@@ -92,7 +100,9 @@ void TetModelBuilder::SetChunks() {
     }
   });
   model_.chunks_.node_sums = Sharing(model_.chunks_.nodes, model_.nodes());
-  if (!model_.patches_.empty()) model_.chunks_.patch_sums = Sharing(model_.chunks_.patch, model_.patches_.size());
+  if (!model_.patches_.empty() && model_.chunks_.element_patch.empty()) {
+    model_.chunks_.patch_sums = Sharing(model_.chunks_.patch, model_.patches_.size());
+  }
 }
 
 template <class S>

@@ -3,6 +3,13 @@
 #include "core/tet/model_builder.h"
 
 namespace fascicle {
+namespace {
+
+Quad Shifted(const Quad& quad, std::int32_t first) {
+  return {first + quad[0], first + quad[1], first + quad[2], first + quad[3]};
+}
+
+}  // namespace
 
 // The nodes of a region, ascending: those of the mesh and, for quadratic elements, mid-edge nodes. A mid-edge node
 // belongs to the region if both ends of its edge do and the edge lies on the boundary or in an element all of whose
@@ -11,7 +18,7 @@ std::vector<std::int32_t> TetModelBuilder::NodesOfRegion(const Region& region, c
   const auto first = static_cast<std::int32_t>(body.node_begin);
   std::vector<std::int32_t> nodes;
   for (const std::int32_t n : region.nodes) nodes.push_back(first + n);
-  if (model_.order() == ElementOrder::kLinear) return nodes;
+  if (model_.order() != ElementOrder::kQuadratic) return nodes;
   std::vector<bool> inside(body.node_end - body.node_begin, false);
   for (const std::int32_t n : region.nodes) inside[n] = true;
   std::set<std::int32_t> middles;
@@ -35,15 +42,24 @@ LoadedRegion TetModelBuilder::LoadedRegionIn(const Region& region, const TetBody
   const auto first = static_cast<std::int32_t>(body.node_begin);
   LoadedRegion loaded;
   loaded.nodes = NodesOfRegion(region, body);
+  if (model_.order() == ElementOrder::kHexahedral) {
+    for (const Quad& side : region.sides) {
+      loaded.faces.push_back(LoadedSide(Shifted(side, first), model_.rest_positions_));
+    }
+    for (const auto& [node, volume] : VolumesOfHexahedra(region, body.source->tet().mesh)) {
+      loaded.volumes[first + node] = volume;
+    }
+    return loaded;
+  }
   for (const Triangle& t : region.triangles) {
     const Triangle n = {first + t[0], first + t[1], first + t[2]};
     const Vec3& X0 = model_.rest_positions_[n[0]];
-    LoadedRegion::Face& face = loaded.faces.emplace_back();
-    face.area = 0.5 * (model_.rest_positions_[n[1]] - X0).cross(model_.rest_positions_[n[2]] - X0);
-    face.count = 3;
+    std::array<std::int32_t, 4> nodes = {};
     for (int c = 0; c < 3; ++c) {
-      face.nodes[c] = model_.order() == ElementOrder::kLinear ? n[c] : MiddleOf(n[c], n[(c + 1) % 3]);
+      nodes[c] = model_.order() == ElementOrder::kLinear ? n[c] : MiddleOf(n[c], n[(c + 1) % 3]);
     }
+    loaded.faces.emplace_back(0.5 * (model_.rest_positions_[n[1]] - X0).cross(model_.rest_positions_[n[2]] - X0), 3,
+                              nodes);
   }
   AddVolumes(region, body, loaded);
   return loaded;
@@ -84,6 +100,12 @@ void TetModelBuilder::AddLoads(const TetBody& body) {
 std::vector<PressureFace> TetModelBuilder::FacesOf(const Region& region, const TetBody& body) const {
   const auto first = static_cast<std::int32_t>(body.node_begin);
   std::vector<PressureFace> faces;
+  if (model_.order() == ElementOrder::kHexahedral) {
+    for (const Quad& side : region.sides) {
+      for (int c = 0; c < 4; ++c) (c == 0 ? faces.emplace_back() : faces.back()).nodes[c] = first + side[c];
+    }
+    return faces;
+  }
   for (const Triangle& t : region.triangles) {
     PressureFace& face = faces.emplace_back();
     for (int c = 0; c < 3; ++c) {
@@ -165,10 +187,19 @@ void TetModelBuilder::AddSupports(std::int32_t body_index) {
   }
 }
 
-void TetModelBuilder::AddContactNodes(const TetBody& body) {
+// The surface area that each node has a share of [m^2].
+std::map<std::int32_t, double> TetModelBuilder::SurfaceAreas(const TetBody& body) const {
   const auto first = static_cast<std::int32_t>(body.node_begin);
+  const TetMesh& mesh = body.source->tet().mesh;
   std::map<std::int32_t, double> areas;
-  for (const Triangle& t : BoundaryTriangles(body.source->tet().mesh)) {
+  if (model_.order() == ElementOrder::kHexahedral) {
+    for (const Quad& side : BoundaryOfHexahedra(mesh, stop_).quads) {
+      const LoadedRegion::Face face = LoadedSide(Shifted(side, first), model_.rest_positions_);
+      for (int c = 0; c < 4; ++c) areas[face.nodes[c]] += face.share[c];
+    }
+    return areas;
+  }
+  for (const Triangle& t : BoundaryTriangles(mesh)) {
     const Triangle n = {first + t[0], first + t[1], first + t[2]};
     const Vec3& X0 = model_.rest_positions_[n[0]];
     const double area = 0.5 * (model_.rest_positions_[n[1]] - X0).cross(model_.rest_positions_[n[2]] - X0).norm();
@@ -179,9 +210,13 @@ void TetModelBuilder::AddContactNodes(const TetBody& body) {
       if (model_.order() == ElementOrder::kQuadratic) areas[MiddleOf(n[c], n[(c + 1) % 3])] += area / 4;
     }
   }
+  return areas;
+}
+
+void TetModelBuilder::AddContactNodes(const TetBody& body) {
   const double modulus =
       std::visit([](const auto& law) { return law.BulkModulus() + 4 * law.ShearModulus() / 3; }, body.source->material);
-  for (const auto& [node, area] : areas) {
+  for (const auto& [node, area] : SurfaceAreas(body)) {
     model_.contact_nodes_.push_back({node, modulus * area * area * body.source->density / model_.mass_[node]});
   }
 }

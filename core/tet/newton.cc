@@ -23,7 +23,7 @@ constexpr int kMaxUntangling = 200;
 constexpr double kUntanglingHold = 1e-3;
 
 // Whether every element has a positive Jacobian at its corners, too: a quadratic element may be folded there although
-// its quadrature points are not.
+// its quadrature points are not. Corners of hexahedra, which may be flat at rest, are not looked at.
 bool AllUpright(const TetModel& model, const NodalVector& x) {
   return std::all_of(model.corners().begin(), model.corners().end(),
                      [&](const Tetrahedron& tet) { return Determinant(EdgeMatrix(x, tet)) > 0; });

@@ -25,7 +25,7 @@ double ModulusOf(const Material& material) {
 double ModulusOf(const TetModel& model, const Body& body, std::size_t element) {
   const Parts<Material>& parts = body.tet().materials;
   if (parts.of.empty()) return ModulusOf(body.material);
-  const std::int32_t part = parts.of[static_cast<std::size_t>(model.source_tetrahedron()[element])];
+  const std::int32_t part = parts.of[static_cast<std::size_t>(model.source_element()[element])];
   return ModulusOf(part == 0 ? body.material : parts.more[static_cast<std::size_t>(part - 1)]);
 }
 

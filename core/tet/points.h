@@ -45,7 +45,7 @@ double PatchPressure(const VolumePatches& patches, std::span<const double> press
   const VolumePatches::Corners& at = patches.of_element[tet];
   if (at[0] == VolumePatches::kNone) return 0;
   double sum = 0;
-  for (int c = 0; c < 4; ++c) sum += Element::Barycentric(q, c) * pressure[at[c]];
+  for (int c = 0; c < Element::kPatches; ++c) sum += Element::PatchWeight(q, c) * pressure[at[c]];
   return sum;
 }
 

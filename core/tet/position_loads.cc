@@ -7,7 +7,8 @@
 namespace fascicle {
 namespace {
 
-// Shape functions and their derivatives at a point of a reference triangle with area 1/2, and the point's weight.
+// Shape functions and their derivatives at a point of a reference triangle with area 1/2, or of the unit square, and
+// the point's weight.
 template <int kNodes>
 struct FacePoint {
   double weight;
@@ -34,12 +35,29 @@ std::array<FacePoint<6>, 6> QuadraticFacePoints() {
           QuadraticFacePoint(1 - 2 * kB, kB, kWeightB), QuadraticFacePoint(kB, 1 - 2 * kB, kWeightB)};
 }
 
+// 2 x 2 Gauss points, exact for N_a (x,1 x x,2) of a bilinear side.
+std::array<FacePoint<4>, 4> BilinearFacePoints() {
+  constexpr double kNear = 0.21132486540518711775;  // (1 - 1/sqrt(3)) / 2
+  const auto point = [](double u, double v) -> FacePoint<4> {
+    return {0.25, {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v}, {v - 1, 1 - v, v, -v}, {u - 1, -u, u, 1 - u}};
+  };
+  return {point(kNear, kNear), point(1 - kNear, kNear), point(1 - kNear, 1 - kNear), point(kNear, 1 - kNear)};
+}
+
 // Calls visit(points of a face) for faces of the given order.
 template <class Visit>
 void WithFacePoints(ElementOrder order, const Visit& visit) {
   static const auto linear = LinearFacePoints();
   static const auto quadratic = QuadraticFacePoints();
-  order == ElementOrder::kLinear ? visit(linear) : visit(quadratic);
+  static const auto bilinear = BilinearFacePoints();
+  switch (order) {
+    case ElementOrder::kLinear:
+      return visit(linear);
+    case ElementOrder::kQuadratic:
+      return visit(quadratic);
+    case ElementOrder::kHexahedral:
+      return visit(bilinear);
+  }
 }
 
 template <int kNodes>
@@ -81,7 +99,10 @@ void AddPressureStiffness(double pressure, const PressureFace& face, const FaceP
 
 // The integral of N_a N_b over a linear face is not that of its one point: A/12, and A/6 for a = b.
 double Shared(const FacePoint<3>&, int a, int b) { return (a == b ? 2 : 1) / 24.0; }
-double Shared(const FacePoint<6>& point, int a, int b) { return point.weight * point.N[a] * point.N[b]; }
+template <int kNodes>
+double Shared(const FacePoint<kNodes>& point, int a, int b) {
+  return point.weight * point.N[a] * point.N[b];
+}
 
 template <int kNodes>
 void AddSprings(const PressureFace& face, const FacePoint<kNodes>& point, const NodalVector& X, const Vec3& stiffness,

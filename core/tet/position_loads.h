@@ -20,7 +20,7 @@ class TetModel;
 // All are multiplied by the scale of their load.
 
 // A face of the surface: three corners and, for quadratic elements, the nodes between corners 0 and 1, 1 and 2, 2 and
-// 0; counter-clockwise seen from outside.
+// 0; of hexahedra, four corners. Counter-clockwise seen from outside.
 struct PressureFace {
   std::array<std::int32_t, 6> nodes = {};
 };

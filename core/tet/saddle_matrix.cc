@@ -64,13 +64,13 @@ void SaddleAssembly::FindPattern(const std::stop_token& stop) {
   };
   const std::vector<LineSpringLoad>& lines = model_.position_loads().line_springs;
   if (lines.empty()) {
-    matrix_.pattern = PatternOfElements(model_.nodes(), model_.tetrahedra(), of_element);
+    matrix_.pattern = PatternOfElements(model_.nodes(), model_.elements(), of_element);
   } else {
     // A line spring couples its nodes as if they were those of one element.
     std::vector<std::vector<std::int32_t>> coupled;
     for (const LineSpringLoad& line : lines) coupled.push_back(fascicle::NodesOf(line));
-    matrix_.pattern = PatternOfElements(model_.nodes(), model_.tetrahedra() + coupled.size(), [&](std::size_t e) {
-      if (e >= model_.tetrahedra()) return coupled[e - model_.tetrahedra()];
+    matrix_.pattern = PatternOfElements(model_.nodes(), model_.elements() + coupled.size(), [&](std::size_t e) {
+      if (e >= model_.elements()) return coupled[e - model_.elements()];
       const auto nodes = of_element(e);
       return std::vector<std::int32_t>(nodes.begin(), nodes.end());
     });
@@ -83,7 +83,9 @@ void SaddleAssembly::FindPattern(const std::stop_token& stop) {
   const auto for_corners = [&](const auto& visit) {
     for (std::size_t e = 0; e < patches.of_element.size(); ++e) {
       if (patches.of_element[e][0] == VolumePatches::kNone) continue;
-      for (int c = 0; c < 4; ++c) visit(patches.of_element[e][c], static_cast<std::int32_t>(4 * e + c));
+      for (int c = 0; c < Element::kPatches; ++c) {
+        visit(patches.of_element[e][c], static_cast<std::int32_t>(4 * e + c));
+      }
     }
   };
   for_corners([&](std::int32_t n, std::int32_t) { ++corner_begin_[n + 1]; });
@@ -196,7 +198,7 @@ void SaddleAssembly::AssembleVolumes(const NodalVector& x, ThreadTeam& team) {
       for (int q = 0; q < Element::kPoints; ++q) {
         const Mat3 cofactor = Cofactor(GradientAt<Element>(model_, e, values, q));
         const auto G = ShapeGradients<Element>(model_, e, q);
-        const double weight = Element::Barycentric(q, corners_[k] % 4) * model_.rest_volume()[Element::kPoints * e + q];
+        const double weight = Element::PatchWeight(q, corners_[k] % 4) * model_.rest_volume()[Element::kPoints * e + q];
         for (int a = 0; a < kNodes; ++a) {
           raw_B_[volume_places_[kNodes * static_cast<std::size_t>(k) + a]] += weight * (cofactor * G.col(a));
         }

@@ -15,12 +15,12 @@ constexpr int kMaxIterations = 100;
 constexpr double kLeastForCg = 1e-3;
 constexpr int kMaxSaddleIterations = 1000;
 
-// Interpolation from the corners of quadratic elements to all of their nodes, along straight edges; nothing for linear
+// Interpolation from the corners of quadratic elements to all of their nodes, along straight edges; nothing for other
 // elements.
 std::optional<Prolongation> FromCorners(const TetModel& model, const FreeComponents& free) {
-  if (model.order() == ElementOrder::kLinear) return std::nullopt;
+  if (model.order() != ElementOrder::kQuadratic) return std::nullopt;
   std::vector<std::array<std::int32_t, 2>> ends(model.nodes(), {kNone, kNone});
-  for (std::size_t e = 0; e < model.tetrahedra(); ++e) {
+  for (std::size_t e = 0; e < model.elements(); ++e) {
     const auto nodes = model.NodesOf<QuadraticElement>(e);
     for (int c = 0; c < 4; ++c) ends[nodes[c]] = {nodes[c], kNone};
     for (int k = 0; k < 6; ++k) ends[nodes[4 + k]] = {nodes[kTetEdges[k][0]], nodes[kTetEdges[k][1]]};

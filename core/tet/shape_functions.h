@@ -1,10 +1,11 @@
 #ifndef FASCICLE_CORE_TET_SHAPE_FUNCTIONS_H_
 #define FASCICLE_CORE_TET_SHAPE_FUNCTIONS_H_
 
+#include "core/geometry/hexahedron.h"
 #include "core/geometry/quadratic_tetrahedron.h"
 
-// Constants of the two elements: nodes, quadrature points and shape functions. Plain numbers, because both element.h,
-// which uses Eigen, and the vectorized kernels need them. All functions are always inlined, since kernels of several
+// Constants of the elements: nodes, quadrature points and shape functions. Plain numbers, because both element.h, which
+// uses Eigen, and the vectorized kernels need them. All functions are always inlined, since kernels of several
 // instruction sets must share no code.
 namespace fascicle {
 
@@ -23,6 +24,9 @@ struct LinearShape {
 
   // Barycentric coordinate of corner c at point q.
   [[gnu::always_inline]] static constexpr double Barycentric(int /*q*/, int /*c*/) { return 0.25; }
+  // Patches of an element (volume_patches.h), and the weight of the c-th of them at point q.
+  static constexpr int kPatches = 4;
+  [[gnu::always_inline]] static constexpr double PatchWeight(int q, int c) { return Barycentric(q, c); }
   // Weight of node a in corner c of the linear tetrahedron at point q; see element.h.
   [[gnu::always_inline]] static constexpr double CornerWeight(int /*q*/, int c, int a) { return c == a ? 1 : 0; }
 };
@@ -39,12 +43,51 @@ struct QuadraticShape {
                                                 4. / 27, 4. / 27, 4. / 27, 4. / 27, 4. / 27};
 
   [[gnu::always_inline]] static constexpr double Barycentric(int q, int c) { return q == c ? kNearCorner : kFarCorner; }
+  static constexpr int kPatches = 4;
+  [[gnu::always_inline]] static constexpr double PatchWeight(int q, int c) { return Barycentric(q, c); }
   [[gnu::always_inline]] static constexpr double CornerWeight(int q, int c, int a) {
     if (a < 4) return a == c ? 4 * Barycentric(q, c) - 1 : 0;
     const auto& edge = kEdgeEnds[a - 4];
     if (edge[0] == c) return 4 * Barycentric(q, edge[1]);
     return edge[1] == c ? 4 * Barycentric(q, edge[0]) : 0;
   }
+};
+
+// Eight nodes in the order of VTK: counter-clockwise around the lower side, then around the upper one. Trilinear, with
+// 2 x 2 x 2 Gauss points. The dilatation is that of the whole element: one patch (mean dilatation [Simo, Taylor &
+// Pister 1985], Q1/P0).
+//
+// The reference cube is scaled to the volume of the reference tetrahedron, 1/6, so that det E / 6 is a volume for all
+// elements, with E = sum_a x_a (x) dN_a/dxi in place of a tetrahedron's edges. In the notation of element.h, corner 0
+// of the linear tetrahedron is the origin, and corner c the c-th column of E.
+struct HexahedralShape {
+  static constexpr int kNodes = 8;
+  static constexpr int kPoints = 8;
+  static constexpr double kPointWeight = 0.125;
+  static constexpr int kPatches = 1;
+  [[gnu::always_inline]] static constexpr double PatchWeight(int /*q*/, int /*c*/) { return 1; }
+
+  // The coordinates of point q, from 0 to 1 along each axis.
+  [[gnu::always_inline]] static constexpr double Place(int q, int d) { return (q >> d & 1) != 0 ? 1 - kNear : kNear; }
+  // The factor of a node at coordinate x along an axis.
+  [[gnu::always_inline]] static constexpr double Factor(bool is_far, double x) { return is_far ? x : 1 - x; }
+  // The shape function of node a at point q.
+  [[gnu::always_inline]] static constexpr double Value(int q, int a) {
+    return Factor(IsFarNode(a, 0), Place(q, 0)) * Factor(IsFarNode(a, 1), Place(q, 1)) *
+           Factor(IsFarNode(a, 2), Place(q, 2));
+  }
+  // Its derivative along axis d of the scaled cube.
+  [[gnu::always_inline]] static constexpr double Slope(int q, int a, int d) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    return (IsFarNode(a, d) ? kScale : -kScale) * Factor(IsFarNode(a, e), Place(q, e)) *
+           Factor(IsFarNode(a, f), Place(q, f));
+  }
+  [[gnu::always_inline]] static constexpr double CornerWeight(int q, int c, int a) {
+    return c == 0 ? 0 : Slope(q, a, c - 1);
+  }
+
+  static constexpr double kNear = 0.21132486540518711775;  // (1 - 1/sqrt(3)) / 2
+  static constexpr double kScale = 1.8171205928321396589;  // cbrt(6): inverse edge of the scaled cube
 };
 
 }  // namespace fascicle

@@ -62,7 +62,7 @@ void TetStiffness::ApplyToPatches(const TetModel& model, const NodalVector& p, T
   std::vector<double>& change = workspace.raw_ratio;
   VisitKernels(model, *workspace.kernels, [&]<class S>(const ElementKernels<S>& kernels) {
     ForChunks(model, team, [&](const Chunk& chunk, std::size_t) {
-      if (sharing.target[chunk.node_begin] == Sharing::kNone) return;
+      if (!HasPatches(model, chunk)) return;
       ChunkTask<S> task = TaskOf<S>(model, chunk, sharing);
       task.x = Numbers(*x_);
       task.p = Numbers(p);

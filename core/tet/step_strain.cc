@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/tet/element.h"
+#include "core/tet/points.h"
 
 namespace fascicle {
 namespace {
@@ -49,10 +49,11 @@ StepStrain LargestStepStrain(const TetModel& model, const NodalVector& before, c
     std::vector<ElementStrain> elements;
     elements.reserve(body.tet_end - body.tet_begin);
     for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
-      const Tetrahedron& corners = model.corners()[e];
-      const Mat3 edges = EdgeMatrix(before, corners);
-      elements.push_back({StrainBetween(edges, EdgeMatrix(after, corners)), std::abs(edges.determinant()) / 6,
-                          model.source_tetrahedron()[e]});
+      model.VisitElement([&]<class Element>(Element) {
+        const Mat3 edges = MeanEdges(ValuesOf<Element>(model, e, before));
+        elements.push_back({StrainBetween(edges, MeanEdges(ValuesOf<Element>(model, e, after))),
+                            std::abs(edges.determinant()) / 6, model.source_element()[e]});
+      });
     }
     const StepStrain of_body = ExceededByAShare(b, elements);
     if (of_body.value > largest.value) largest = of_body;

@@ -14,7 +14,7 @@ struct StepStrain {
   std::int64_t element = -1;  // in the body's mesh; -1: none
 };
 
-// Of the body in which it is largest. By the corners of each element, with valid positions `before`.
+// Of the body in which it is largest. By the edges of each element (MeanEdges), with valid positions `before`.
 StepStrain LargestStepStrain(const TetModel& model, const NodalVector& before, const NodalVector& after);
 
 }  // namespace fascicle

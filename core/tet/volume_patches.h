@@ -9,10 +9,10 @@
 
 namespace fascicle {
 
-// Nodal averages of the volume ratio, against volumetric locking.
+// Averages of the volume ratio, against volumetric locking.
 //
-// A patch is the dual region of a corner node among the elements of one group, weighted by the corner's barycentric
-// coordinate L_n:
+// Of hexahedra: the mean over each element (mean dilatation). Of tetrahedra: nodal averages. Their patch is the dual
+// region of a corner node among the elements of one group, weighted by the corner's barycentric coordinate L_n:
 //   V_n = sum of the integrals of L_n over those elements at rest,   theta_n = (1/V_n) sum of the integrals of L_n J.
 // Most of the volume energy of a nearly incompressible law acts on theta_n, U = k/2 (ln theta)^2, instead of each
 // element's J: there are about six linear elements for each node, too many constraints for its three displacements.
@@ -22,7 +22,8 @@ namespace fascicle {
 // nodes to elements to nodes (the cyclic smoothing of [Onishi & Amaya 2017]). This operator W is self-adjoint in the
 // inner product weighted by V. See README.md. Immutable once built.
 struct VolumePatches {
-  // The patch at each corner of an element; kNone in elements that keep their whole volume energy.
+  // The patch at each corner of a tetrahedron, or that of a hexahedron in the first place (Element::kPatches); kNone in
+  // elements that keep their whole volume energy.
   using Corners = std::array<std::int32_t, 4>;
   static constexpr std::int32_t kNone = -1;
 

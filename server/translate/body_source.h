@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/base/problems.h"
+#include "core/geometry/shapes.h"
 #include "fascicle/v1/scene.pb.h"
 #include "server/translate/translate.h"
 
@@ -19,6 +20,8 @@ struct BodySource {
   std::int64_t& budget;  // elements left for the body; reduced by its number of elements
   const TranslateTools& tools;
   int refinements = 0;  // times that each element is divided
+  // Whether bodies of the tet method keep their hexahedra.
+  Cells cells = Cells::kTetrahedra;
 };
 
 // Adds a problem for each of the named fields that the body has, because its shape does not support them.

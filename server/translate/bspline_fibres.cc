@@ -138,7 +138,7 @@ FibreField TranslateBsplineFibres(const BodySource& source, const std::string& p
       source.tools, [&] { return InputsOf(source, mesh->mesh, regions); }, compute);
   if (!computed) return {};
   for (const std::string& note : computed->notes) notes.push_back(path + ": " + note);
-  return std::move(computed->fibres);
+  return OfElements(mesh->mesh, std::move(computed->fibres));
 }
 
 }  // namespace fascicle::server

@@ -74,24 +74,26 @@ std::optional<ShapeSize> CheckShape(const v1::Mesh& mesh, const std::string& pat
   return size;
 }
 
-TetMesh MakeShape(const v1::Mesh& mesh, double metres) {
+TetMesh MakeShape(const v1::Mesh& mesh, double metres, Cells cells) {
   switch (mesh.source_case()) {
     case v1::Mesh::kFusiform: {
       const v1::FusiformShape& shape = mesh.fusiform();
       return MakeFusiform({shape.length() * metres, shape.belly_radius() * metres, shape.end_radius() * metres,
-                           shape.divisions_across(), shape.divisions_along()});
+                           shape.divisions_across(), shape.divisions_along()},
+                          cells);
     }
     case v1::Mesh::kTorus: {
       const v1::TorusShape& shape = mesh.torus();
       return MakeTorus({shape.major_radius() * metres, shape.minor_radius() * metres, shape.divisions_around(),
-                        shape.divisions_across()});
+                        shape.divisions_across()},
+                       cells);
     }
     case v1::Mesh::kSphere:
-      return MakeSphere(mesh.sphere().radius() * metres, mesh.sphere().divisions());
+      return MakeSphere(mesh.sphere().radius() * metres, mesh.sphere().divisions(), cells);
     case v1::Mesh::kBox: {
       const v1::BoxShape& shape = mesh.box();
       return MakeBox(ToVec3(shape.origin()) * metres, ToVec3(shape.size()) * metres,
-                     {shape.divisions(0), shape.divisions(1), shape.divisions(2)});
+                     {shape.divisions(0), shape.divisions(1), shape.divisions(2)}, cells);
     }
     case v1::Mesh::kFile:
     case v1::Mesh::kImage:

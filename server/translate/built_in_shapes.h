@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/base/problems.h"
-#include "core/geometry/tet_mesh.h"
+#include "core/geometry/shapes.h"
 #include "fascicle/v1/scene.pb.h"
 
 namespace fascicle::server {
@@ -21,7 +21,7 @@ struct ShapeSize {
 std::optional<ShapeSize> CheckShape(const v1::Mesh& mesh, const std::string& path, Problems& problems);
 
 // Builds a shape that CheckShape has accepted; `metres` is its length unit.
-TetMesh MakeShape(const v1::Mesh& mesh, double metres);
+TetMesh MakeShape(const v1::Mesh& mesh, double metres, Cells cells);
 
 }  // namespace fascicle::server
 

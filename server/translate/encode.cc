@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "core/geometry/hexahedron.h"
 #include "server/translate/translate.h"
 
 namespace fascicle::server {
@@ -33,8 +34,21 @@ v1::FieldValues::Location LocationOf(FieldLocation location) {
   return v1::FieldValues::LOCATION_UNSPECIFIED;
 }
 
+// Hexahedra in the order of bricks.
+std::vector<Brick> BricksOf(const std::vector<Hexahedron>& hexahedra) {
+  std::vector<Brick> bricks(hexahedra.size());
+  for (std::size_t h = 0; h < hexahedra.size(); ++h) {
+    for (std::size_t c = 0; c < 8; ++c) bricks[h][c] = hexahedra[h][static_cast<std::size_t>(kBrickOrder[c])];
+  }
+  return bricks;
+}
+
 void EncodeShape(const TetShape& shape, v1::BodyGeometry& geometry) {
-  geometry.set_tetrahedra(Bytes(shape.mesh.tetrahedra));
+  if (shape.mesh.hexahedra.empty()) {
+    geometry.set_tetrahedra(Bytes(shape.mesh.tetrahedra));
+  } else {
+    geometry.set_bricks(Bytes(BricksOf(shape.mesh.hexahedra)));
+  }
   geometry.set_fibres(Bytes(shape.fibres));
 }
 

@@ -35,7 +35,7 @@ FibreField TranslateHarmonic(const BodySource& source, const std::string& path, 
     return ComputedFibres{std::move(fibres), {}};
   };
   auto computed = Kept<ComputedFibres>(source.tools, inputs, compute);
-  return computed ? std::move(computed->fibres) : FibreField();
+  return computed ? OfElements(mesh->mesh, std::move(computed->fibres)) : FibreField();
 }
 
 FibreField TranslateField(const BodySource& source, const std::string& path, const TranslatedTetrahedra* mesh,

@@ -50,7 +50,8 @@ std::optional<TetMesh> ReadMeshFile(const BodySource& source, const std::string&
   Problems own;
   const MeshFile file = {.name = mesh.file().path(),
                          .bytes = *bytes,
-                         .element_bytes = element_bytes ? *element_bytes : std::string_view()};
+                         .element_bytes = element_bytes ? *element_bytes : std::string_view(),
+                         .solids = source.cells == Cells::kHexahedra ? Solids::kKeep : Solids::kSplit};
   MeshRemarks remarks;
   auto read = ReadMesh(file, own, source.tools.stop, &remarks);
   AddNotes(remarks.notes, file_path, notes);
@@ -144,7 +145,7 @@ std::optional<TetMesh> TetrahedraOfShape(const BodySource& source, const std::st
   if (!shape || !Spend(shape->tetrahedra, "tetrahedra", source.budget, shape->path, "use fewer divisions", problems)) {
     return std::nullopt;
   }
-  return MakeShape(source.wire.mesh(), MetresIn(source.wire.unit()));
+  return MakeShape(source.wire.mesh(), MetresIn(source.wire.unit()), source.cells);
 }
 
 std::optional<BrickMesh> BricksOfBox(const BodySource& source, const std::string& path, Problems& problems) {

@@ -30,6 +30,7 @@ Stepping ToStepping(v1::Stepping stepping) {
 ElementOrder ToElement(v1::Element element, Stepping stepping) {
   if (element == v1::ELEMENT_LINEAR) return ElementOrder::kLinear;
   if (element == v1::ELEMENT_QUADRATIC) return ElementOrder::kQuadratic;
+  if (element == v1::ELEMENT_HEXAHEDRAL) return ElementOrder::kHexahedral;
   const bool is_explicit = stepping == Stepping::kExplicit || stepping == Stepping::kMixed;
   return is_explicit ? ElementOrder::kLinear : ElementOrder::kQuadratic;
 }

@@ -18,17 +18,32 @@ void RepeatForParts(std::vector<Value>& values) {
   values = std::move(repeated);
 }
 
+// Takes the refined mesh; new nodes are in the middle of those of `between`.
+template <class Between>
+void TakeRefined(TetMesh mesh, const Between& between, TetShape& shape) {
+  if (!shape.initial_displacement.empty()) {
+    std::vector<Vec3>& u = shape.initial_displacement;
+    for (const auto& nodes : between) {
+      Vec3 sum = Vec3::Zero();
+      for (const std::int32_t n : nodes) sum += u[static_cast<std::size_t>(n)];
+      u.emplace_back(sum / static_cast<double>(nodes.size()));
+    }
+  }
+  shape.mesh = std::move(mesh);
+}
+
 void RefineShape(TetShape& shape, const std::stop_token& stop) {
-  RefinedTetrahedra fine = Refined(shape.mesh, stop);
   RepeatForParts(shape.fibres);
   RepeatForParts(shape.materials.of);
   RepeatForParts(shape.activations.of);
   RepeatForParts(shape.activation_scale);
-  if (!shape.initial_displacement.empty()) {
-    std::vector<Vec3>& u = shape.initial_displacement;
-    for (const auto& [i, j] : fine.ends) u.push_back(0.5 * (u[i] + u[j]));
+  if (shape.mesh.hexahedra.empty()) {
+    RefinedTetrahedra fine = Refined(shape.mesh, stop);
+    TakeRefined(std::move(fine.mesh), fine.ends, shape);
+  } else {
+    RefinedHexahedra fine = RefinedIntoHexahedra(shape.mesh, stop);
+    TakeRefined(std::move(fine.mesh), fine.between, shape);
   }
-  shape.mesh = std::move(fine.mesh);
 }
 
 void RefineShape(VoxelShape& shape, const std::stop_token& stop) {
@@ -51,7 +66,7 @@ void RefineShape(VoxelShape& shape, const std::stop_token& stop) {
       stop);
 }
 
-std::int64_t ElementsOf(const TetShape& shape) { return static_cast<std::int64_t>(shape.mesh.tetrahedra.size()); }
+std::int64_t ElementsOf(const TetShape& shape) { return static_cast<std::int64_t>(ElementCount(shape.mesh)); }
 std::int64_t ElementsOf(const VoxelShape& shape) { return static_cast<std::int64_t>(shape.mesh.bricks.size()); }
 
 // Whether the budget allows the parts, which it then pays.

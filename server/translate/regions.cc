@@ -143,13 +143,10 @@ bool TranslateWithin(const v1::Region& region, const Names& names, std::size_t o
   return complete;
 }
 
-std::vector<Triangle> FacesOf(const TetMesh& mesh, const std::stop_token& stop) {
-  return BoundaryTriangles(mesh, stop);
-}
 std::vector<Quad> FacesOf(const BrickMesh& mesh, const std::stop_token& stop) { return BoundaryQuads(mesh, stop); }
 // The surface as a mesh without elements.
 TetMesh FacesOf(const TriangleMesh& mesh, const std::stop_token&) {
-  return {mesh.nodes, {}, {}, {}, {}, {}, {}, {}, {}};
+  return {mesh.nodes, {}, {}, {}, {}, {}, {}, {}, {}, {}};
 }
 
 template <class Mesh, class Faces>
@@ -177,19 +174,30 @@ RegionSelectors TranslateRegions(const v1::Body& body, const std::string& body_p
   return result;
 }
 
+// The boundary of hexahedra, or the triangles of other meshes.
+template <class Select>
+void VisitFaces(const TetMesh& mesh, const std::stop_token& stop, const Select& select) {
+  mesh.hexahedra.empty() ? select(BoundaryTriangles(mesh, stop)) : select(BoundaryOfHexahedra(mesh, stop));
+}
+template <class Mesh, class Select>
+void VisitFaces(const Mesh& mesh, const std::stop_token& stop, const Select& select) {
+  select(FacesOf(mesh, stop));
+}
+
 template <class Mesh>
 std::vector<Region> SelectRegions(const RegionSelectors& selectors, const Mesh& mesh, const std::stop_token& stop) {
   std::vector<Region> regions;
   if (selectors.entries.empty()) return regions;
-  const auto faces = FacesOf(mesh, stop);
-  for (const RegionSelectors::Entry& entry : selectors.entries) {
-    ThrowIfStopped(stop);
-    Region region;
-    region.name = entry.name;
-    if (entry.selector) region = Select(mesh, faces, entry.name, *entry.selector);
-    for (const std::size_t other : entry.within) region = Intersection(region, regions[other]);
-    regions.push_back(std::move(region));
-  }
+  VisitFaces(mesh, stop, [&](const auto& faces) {
+    for (const RegionSelectors::Entry& entry : selectors.entries) {
+      ThrowIfStopped(stop);
+      Region region;
+      region.name = entry.name;
+      if (entry.selector) region = Select(mesh, faces, entry.name, *entry.selector);
+      for (const std::size_t other : entry.within) region = Intersection(region, regions[other]);
+      regions.push_back(std::move(region));
+    }
+  });
   return regions;
 }
 template std::vector<Region> SelectRegions(const RegionSelectors& selectors, const TetMesh& mesh,

@@ -14,7 +14,7 @@ bool TranslateTetShape(const BodySource& source, const RegionSelectors& selector
   auto tetrahedra = TranslateTetrahedra(source, Method::kTet, body.notes, structure);
   std::optional<std::size_t> elements, nodes;
   if (tetrahedra) {
-    elements = tetrahedra->mesh.tetrahedra.size();
+    elements = ElementCount(tetrahedra->mesh);
     nodes = tetrahedra->mesh.nodes.size();
     body.regions = SelectRegions(selectors, tetrahedra->mesh, source.tools.stop);
     CheckRegions(source.wire, source.path, selectors, body.regions, tetrahedra->mesh, structure);

@@ -74,6 +74,8 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   result->floors = TranslateFloors(filled, found);
   result->squeezes = TranslatePlaneForceFields(filled, found);
 
+  const bool hexahedral = result->method == Method::kTet && result->tet.element == ElementOrder::kHexahedral;
+  const Cells cells = hexahedral ? Cells::kHexahedra : Cells::kTetrahedra;
   Names names("body");
   std::vector<bool> complete;
   std::vector<std::string> sources;  // of the surfaces of bodies
@@ -82,8 +84,8 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     ThrowIfStopped(tools.stop);
     const std::string path = IndexPath("bodies", static_cast<std::size_t>(i));
     names.Add(filled.bodies(i).name(), JoinPath(path, "name"), found);
-    TranslatedBody body =
-        TranslateBody({filled.bodies(i), path, assets, budget, tools, refinements}, result->method, found);
+    const BodySource source = {filled.bodies(i), path, assets, budget, tools, refinements, cells};
+    TranslatedBody body = TranslateBody(source, result->method, found);
     complete.push_back(body.complete);
     sources.push_back(SourcePath(filled.bodies(i).mesh(), path));
     AddCurvedEdgesNote(result->tet, path, body.body);

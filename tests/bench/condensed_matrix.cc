@@ -40,7 +40,7 @@ void CondensedMatrix::FindNeighbours() {
       }
     }
   };
-  for (std::size_t e = 0; e < model_.tetrahedra(); ++e) {
+  for (std::size_t e = 0; e < model_.elements(); ++e) {
     auto nodes = model_.NodesOf<Element>(e);
     for (std::int32_t& node : nodes) node = unknown_[node];
     couple(nodes);
@@ -131,9 +131,9 @@ void CondensedMatrix::AddElements(const FibreDrive& drive, const NodalVector& x,
                 const std::int32_t node = unknown_[nodes[a]];
                 if (node < 0) continue;
                 const Vec3 change = volume * (cofactor * G.col(a));
-                for (int c = 0; c < 4; ++c) {
+                for (int c = 0; c < Element::kPatches; ++c) {
                   const std::int32_t patch = patches.of_element[e][c];
-                  patch_gradients_[patch][PlaceOf(patch_nodes_[patch], node)] += Element::Barycentric(q, c) * change;
+                  patch_gradients_[patch][PlaceOf(patch_nodes_[patch], node)] += Element::PatchWeight(q, c) * change;
                 }
               }
             }

@@ -97,7 +97,7 @@ class ScalarReference {
         corners_(model.corners()),
         nodes_(model.nodes()),
         patches_(model.patches()) {
-    for (std::size_t e = 0; e < model.tetrahedra(); ++e) {
+    for (std::size_t e = 0; e < model.elements(); ++e) {
       Dm_inverse_.push_back(model.Dm_inverse()[e].template cast<Scalar>());
       volume_.push_back(static_cast<Scalar>(model.rest_volume()[e]));
       fibres_.push_back(model.fibres()[e].template cast<Scalar>());

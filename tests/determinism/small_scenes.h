@@ -19,13 +19,15 @@ inline Scene BusyScene(Stepping stepping, ElementOrder element, int across) {
                                        .belly_radius = 0.012,
                                        .end_radius = 0.006,
                                        .divisions_across = across,
-                                       .divisions_along = 16}),
+                                       .divisions_along = 16},
+                                      CellsOf(element)),
                          Muscle(std::array{5e2, 5e2, 2e5, 3e4, 1.4, 0.05, 6.6, 1.4}));
   muscle.tet().fibres = ConstantFibres(muscle.tet().mesh, Vec3::UnitZ());
   muscle.constraints = {Fix(kZ0), Fix(kZ1)};
   muscle.activation = {{0, 0.005}, {0, 1}, Curve::Interpolation::kSmooth};
   muscle.damping = {.mass_proportional = 10, .viscosity = 2};
-  Body bar = BoxBody(Vec3(0.06, 0.02, 0.02), {12, across, across}, CorotatedLinear(std::array{1e4, 0.3}));
+  Body bar =
+      BoxBody(Vec3(0.06, 0.02, 0.02), {12, across, across}, CorotatedLinear(std::array{1e4, 0.3}), CellsOf(element));
   Constraint turn = Fix(kX1);
   turn.motion.rotation = Rotation{Vec3(0, 0.01, 0.01), Vec3::UnitX(), Curve{{0, 0.01}, {0, 0.2}}};
   bar.constraints = {Fix(kX0), turn};
@@ -87,10 +89,10 @@ struct NamedScene {
 inline NamedScene TetScene(const std::string& name, Stepping stepping, ElementOrder element) {
   // Implicit and quadratic steps take longer: they get fewer elements, and explicit quadratic ones a shorter time.
   const bool is_explicit = stepping == Stepping::kExplicit || stepping == Stepping::kMixed;
-  const bool is_linear = element == ElementOrder::kLinear;
-  NamedScene named = {"tet_" + name + (is_linear ? "_linear" : "_quadratic"),
-                      BusyScene(stepping, element, is_explicit && is_linear ? 8 : 2)};
-  if (is_explicit && !is_linear) {
+  const bool is_quadratic = element == ElementOrder::kQuadratic;
+  const char* suffix = is_quadratic ? "_quadratic" : element == ElementOrder::kLinear ? "_linear" : "_hexahedral";
+  NamedScene named = {"tet_" + name + suffix, BusyScene(stepping, element, is_explicit && !is_quadratic ? 8 : 2)};
+  if (is_explicit && is_quadratic) {
     named.scene.duration /= 4;
     named.scene.output.frame_interval /= 4;
   }
@@ -110,7 +112,7 @@ inline NamedScene EulerianSceneOf(const std::string& name, VolumeTreatment volum
 
 inline std::vector<NamedScene> SmallScenes() {
   std::vector<NamedScene> scenes;
-  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
+  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral}) {
     scenes.push_back(TetScene("explicit", Stepping::kExplicit, element));
     scenes.push_back(TetScene("mixed", Stepping::kMixed, element));
     scenes.push_back(TetScene("backward_euler", Stepping::kBackwardEuler, element));

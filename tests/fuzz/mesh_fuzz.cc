@@ -36,7 +36,7 @@ void ReadAnything(std::string_view data) {
   MeshFile file;
   file.name = kNames[static_cast<unsigned char>(data[0]) % std::size(kNames)];
   file.bytes = data.substr(1);
-  file.split_solids = data.size() % 2 == 0;
+  file.solids = static_cast<Solids>(data.size() % 2);
   // TetGen's two files, separated by a zero.
   if (const std::size_t cut = file.bytes.find('\0'); file.name == "m.node" && cut != std::string_view::npos) {
     file.element_bytes = file.bytes.substr(cut + 1);

@@ -22,13 +22,14 @@ inline Region FullRegion() {
           {{0, 1, 2}},
           {0},
           {{0, 1, 3, 2}},
+          {{0, 1, 3, 2}},
           {TagSelector{1}, PlaneSelector{Vec3::Zero(), Vec3::UnitX()}, BoxSelector{Vec3::Zero(), Vec3::Ones()},
            SphereSelector{Vec3::Zero(), 1}, SideSelector{Vec3::UnitX(), 0.1, 0.2}}};
 }
 
 inline TetShape FullTetShape() {
   TetShape shape;
-  shape.mesh = MakeBox(Vec3::Zero(), Vec3::Ones(), {1, 1, 1});
+  shape.mesh = MakeBox(Vec3::Zero(), Vec3::Ones(), {1, 1, 1}, Cells::kHexahedra);
   shape.mesh.tetrahedron_tags = {1, 1, 1, 1, 1, 1};
   shape.mesh.tagged_triangles = {{0, 1, 2}};
   shape.mesh.triangle_tags = {1};

@@ -14,25 +14,26 @@ namespace fascicle::testing {
 inline MooneyRivlin NearlyIncompressible() { return MooneyRivlin(std::array{0.03e6, 0.01e6, 80e6}); }  // K/mu = 1000
 
 // 10 x 1 x 1 mm, clamped at x = 0, with a downward dead load on the other end [N]; 10 n x n x n hexahedra.
-inline Body CantileverBody(int n, const Material& law, double force, const Curve& scale) {
-  Body body = BoxBody(Vec3(0.01, 0.001, 0.001), {10 * n, n, n}, law);
+inline Body CantileverBody(int n, const Material& law, double force, const Curve& scale,
+                           Cells cells = Cells::kTetrahedra) {
+  Body body = BoxBody(Vec3(0.01, 0.001, 0.001), {10 * n, n, n}, law, cells);
   body.constraints = {Fix(kX0)};
   body.loads.push_back({kX1, Traction{Vec3(0, 0, -force / 1e-6)}, scale, {}});
   return body;
 }
 // Problem a.
-inline Body NeoHookeanCantilever(int n, const Curve& scale) {
-  return CantileverBody(n, NeoHookean(std::array{1e9, 0.3}), 1, scale);
+inline Body NeoHookeanCantilever(int n, const Curve& scale, Cells cells = Cells::kTetrahedra) {
+  return CantileverBody(n, NeoHookean(std::array{1e9, 0.3}), 1, scale, cells);
 }
 // Problem f.
-inline Body LockingCantilever(int n, const Curve& scale) {
-  return CantileverBody(n, NearlyIncompressible(), 5e-4, scale);
+inline Body LockingCantilever(int n, const Curve& scale, Cells cells = Cells::kTetrahedra) {
+  return CantileverBody(n, NearlyIncompressible(), 5e-4, scale, cells);
 }
 inline const Vec3 kCantileverTip(0.01, 0.0005, 0.0005);
 
 // Problem b: a cube of 10 mm whose top is displaced upwards along `lift` [m]; n^3 hexahedra.
-inline Body ClampedCube(int n, const Material& law, const Curve& lift) {
-  Body body = BoxBody(Vec3::Constant(0.01), {n, n, n}, law);
+inline Body ClampedCube(int n, const Material& law, const Curve& lift, Cells cells = Cells::kTetrahedra) {
+  Body body = BoxBody(Vec3::Constant(0.01), {n, n, n}, law, cells);
   Constraint top = Fix(kZ1);
   top.motion.translation[2] = lift;
   body.constraints = {Fix(kZ0), top};
@@ -44,6 +45,7 @@ template <class Map>
 void Place(const Map& place, TetMesh& mesh) {
   std::set<std::array<std::int32_t, 2>> edges;
   for (const Tetrahedron& tet : mesh.tetrahedra) {
+    if (!mesh.hexahedra.empty()) break;
     for (const auto& [a, b] : kTetEdges) {
       const auto [i, j] = std::minmax(tet[a], tet[b]);
       if (!edges.insert({i, j}).second) continue;
@@ -55,16 +57,16 @@ void Place(const Map& place, TetMesh& mesh) {
 
 // Problem d: a muscle with rounded-square cross-section and fixed ends, n x n x lengthwise hexahedra of parameter
 // space.
-inline Body ReferenceMuscle(int n, int lengthwise, const Curve& activation) {
+inline Body ReferenceMuscle(int n, int lengthwise, const Curve& activation, Cells cells = Cells::kTetrahedra) {
   const auto place = [](const Vec3& p) {
     const double radius = 0.006 + 0.008 * std::pow(std::sin(std::numbers::pi * p[2]), 2);  // [m]
     return Vec3(radius * p[0] * std::sqrt(1 - 0.3 * p[1] * p[1]), radius * p[1] * std::sqrt(1 - 0.3 * p[0] * p[0]),
                 0.1 * p[2]);
   };
-  TetMesh mesh = MakeBox(Vec3(-1, -1, 0), Vec3(2, 2, 1), {n, n, lengthwise});
+  TetMesh mesh = MakeBox(Vec3(-1, -1, 0), Vec3(2, 2, 1), {n, n, lengthwise}, cells);
   FibreField fibres;
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-    const Vec3 centroid = Centroid(mesh, t), along(0, 0, 1e-6);
+  for (std::size_t e = 0; e < ElementCount(mesh); ++e) {
+    const Vec3 centroid = ElementCentroid(mesh, e), along(0, 0, 1e-6);
     fibres.push_back((place(centroid + along) - place(centroid - along)).normalized());
   }
   Place(place, mesh);
@@ -74,7 +76,9 @@ inline Body ReferenceMuscle(int n, int lengthwise, const Curve& activation) {
   body.activation = activation;
   return body;
 }
-inline Body ReferenceMuscle(int n, const Curve& activation) { return ReferenceMuscle(n, 4 * n, activation); }
+inline Body ReferenceMuscle(int n, const Curve& activation, Cells cells = Cells::kTetrahedra) {
+  return ReferenceMuscle(n, 4 * n, activation, cells);
+}
 inline const Vec3 kMuscleBelly(0.014, 0, 0.05);
 
 }  // namespace fascicle::testing

@@ -52,7 +52,7 @@ struct TetBox {
     return x;
   }
 
-  double Megatets() const { return 1e-6 * static_cast<double>(model.tetrahedra()); }
+  double Megatets() const { return 1e-6 * static_cast<double>(model.elements()); }
 
   const Scene scene;
   const TetModel model{scene};

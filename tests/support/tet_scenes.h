@@ -21,7 +21,13 @@ inline Body MakeBody(std::string name, TetMesh mesh, Material material) {
   body.name = std::move(name);
   body.tet().mesh = std::move(mesh);
   body.material = std::move(material);
-  const std::vector<Triangle> surface = BoundaryTriangles(body.tet().mesh);
+  const TetMesh& of_body = body.tet().mesh;
+  const std::vector<Triangle> surface = BoundaryTriangles(of_body);
+  const HexahedralBoundary boundary = BoundaryOfHexahedra(of_body);
+  const auto select = [&](std::string region, const Selector& selector) {
+    body.regions.push_back(of_body.hexahedra.empty() ? SelectRegion(of_body, surface, std::move(region), selector)
+                                                     : SelectRegion(of_body, boundary, std::move(region), selector));
+  };
   Vec3 low = body.tet().mesh.nodes[0], high = low;
   for (const Vec3& X : body.tet().mesh.nodes) {
     low = low.cwiseMin(X);
@@ -30,16 +36,22 @@ inline Body MakeBody(std::string name, TetMesh mesh, Material material) {
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 normal = Vec3::Unit(axis);
     const std::string letter(1, "xyz"[axis]);
-    body.regions.push_back(SelectRegion(body.tet().mesh, surface, letter + "0", PlaneSelector{low, -normal}));
-    body.regions.push_back(SelectRegion(body.tet().mesh, surface, letter + "1", PlaneSelector{high, normal}));
+    select(letter + "0", PlaneSelector{low, -normal});
+    select(letter + "1", PlaneSelector{high, normal});
   }
   return body;
 }
 
 enum Side { kX0, kX1, kY0, kY1, kZ0, kZ1 };
 
-inline Body BoxBody(const Vec3& size, const std::array<int, 3>& divisions, Material material) {
-  return MakeBody("box", MakeBox(Vec3::Zero(), size, divisions), std::move(material));
+// The cells that an element needs.
+inline Cells CellsOf(ElementOrder element) {
+  return element == ElementOrder::kHexahedral ? Cells::kHexahedra : Cells::kTetrahedra;
+}
+
+inline Body BoxBody(const Vec3& size, const std::array<int, 3>& divisions, Material material,
+                    Cells cells = Cells::kTetrahedra) {
+  return MakeBody("box", MakeBox(Vec3::Zero(), size, divisions, cells), std::move(material));
 }
 
 inline Constraint Fix(Side side, std::array<bool, 3> axes = {true, true, true}) {

@@ -11,7 +11,7 @@ namespace {
 using namespace fascicle::testing;
 
 Scene MuscleScene(ElementOrder element, LinearSolver solver, Stepping stepping = Stepping::kQuasiStatic) {
-  Scene scene = StaticScene(ReferenceMuscle(3, Ramp(1)), element);
+  Scene scene = StaticScene(ReferenceMuscle(3, Ramp(1), CellsOf(element)), element);
   scene.tet.linear_solver = solver;
   scene.tet.stepping = stepping;
   return scene;
@@ -83,7 +83,7 @@ TEST_P(IterativeTest, DynamicStepsToo) {
 
 // A soft box that falls from one side: inertia dominates and nothing locks, so conjugate gradients are used.
 Scene FallingScene(ElementOrder element, LinearSolver solver) {
-  Body body = BoxBody(Vec3::Constant(0.1), {6, 6, 6}, NeoHookean(std::array{1e4, 0.3}));
+  Body body = BoxBody(Vec3::Constant(0.1), {6, 6, 6}, NeoHookean(std::array{1e4, 0.3}), CellsOf(element));
   body.constraints = {Fix(kX0)};
   Scene scene = StaticScene(std::move(body), element);
   scene.gravity.acceleration = Vec3(0, 0, -9.81);
@@ -126,9 +126,12 @@ TEST_P(IterativeTest, ConjugateGradientsGiveTheSameBitsForAnyThreadsAndAfterARes
   EXPECT_EQ(run(1, true), reference);
 }
 
-INSTANTIATE_TEST_SUITE_P(Elements, IterativeTest, ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic),
+INSTANTIATE_TEST_SUITE_P(Elements, IterativeTest,
+                         ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral),
                          [](const auto& element) {
-                           return element.param == ElementOrder::kLinear ? "linear" : "quadratic";
+                           return element.param == ElementOrder::kLinear      ? "linear"
+                                  : element.param == ElementOrder::kQuadratic ? "quadratic"
+                                                                              : "hexahedral";
                          });
 
 // Problem d at 3 and 37 thousand unknown components.

@@ -80,11 +80,11 @@ TEST(PressureTest, InflatesATubeAsTheClosedFormSays) {
 // A strip bent by a pressure on its free face, whose rim is free: the force has no potential. The equilibrium is that
 // of the final shape, and the pressure is normal to it.
 TEST(PressureTest, FollowsAStripWithAFreeRim) {
-  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
-    Body body = BoxBody(Vec3(0.04, 0.005, 0.002), {16, 2, 2}, NeoHookean(std::array{1e5, 0.3}));
+  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral}) {
+    Body body = BoxBody(Vec3(0.04, 0.005, 0.002), {16, 2, 2}, NeoHookean(std::array{1e5, 0.3}), CellsOf(element));
     body.constraints = {Fix(kX0)};
-    // Linear elements are stiffer in bending.
-    body.loads = {PressureOn(kZ0, element == ElementOrder::kLinear ? 6 : 2)};
+    // Linear elements and hexahedra are stiffer in bending.
+    body.loads = {PressureOn(kZ0, element == ElementOrder::kQuadratic ? 2 : 6)};
     SteppedRun run(StaticScene(std::move(body), element));
     ASSERT_TRUE(run.To(1));
     const Vec3 tip = run.DisplacementAt(Vec3(0.04, 0.0025, 0.001));
@@ -99,10 +99,12 @@ TEST(PressureTest, FollowsAStripWithAFreeRim) {
 
 // A bar that hangs from its upper end, under gravity or under a body force of the same size.
 Scene HangingBar(const Material& law, bool by_gravity, ElementOrder element) {
-  Body body = BoxBody(Vec3(0.01, 0.01, 0.04), {2, 2, 6}, law);
+  Body body = BoxBody(Vec3(0.01, 0.01, 0.04), {2, 2, 6}, law, CellsOf(element));
   body.constraints = {Fix(kZ1, {false, false, true}), Fix(kX0, {true, false, false}), Fix(kY0, {false, true, false})};
-  body.regions.push_back(SelectRegion(body.tet().mesh, BoundaryTriangles(body.tet().mesh), "all",
-                                      PlaneSelector{Vec3(0, 0, -1), Vec3::UnitZ()}));
+  const TetMesh& mesh = body.tet().mesh;
+  const PlaneSelector everywhere{Vec3(0, 0, -1), Vec3::UnitZ()};
+  body.regions.push_back(mesh.hexahedra.empty() ? SelectRegion(mesh, BoundaryTriangles(mesh), "all", everywhere)
+                                                : SelectRegion(mesh, BoundaryOfHexahedra(mesh), "all", everywhere));
   Load load;
   load.region = 6;
   load.kind = BodyForce{Vec3(0, 0, -9.81 * 1060)};
@@ -113,15 +115,17 @@ Scene HangingBar(const Material& law, bool by_gravity, ElementOrder element) {
 }
 const Vec3 kLowerEnd(0.005, 0.005, 0);
 
-// Linear elements: lumped masses are the integrals of the shape functions.
+// Linear elements and hexahedra: lumped masses are the integrals of the shape functions.
 TEST(BodyForceTest, EqualsGravity) {
   const Material law = NeoHookean(std::array{1e4, 0.3});
-  SteppedRun gravity(HangingBar(law, true, ElementOrder::kLinear));
-  SteppedRun force(HangingBar(law, false, ElementOrder::kLinear));
-  ASSERT_TRUE(gravity.To(1) && force.To(1));
-  const double weight = 9.81 * 1060 * 4e-6, tip = gravity.DisplacementAt(kLowerEnd).z();
-  EXPECT_NEAR(force.Reaction(0).z(), weight, 1e-7 * weight);
-  EXPECT_NEAR(force.DisplacementAt(kLowerEnd).z(), tip, 1e-7 * std::abs(tip));
+  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kHexahedral}) {
+    SteppedRun gravity(HangingBar(law, true, element));
+    SteppedRun force(HangingBar(law, false, element));
+    ASSERT_TRUE(gravity.To(1) && force.To(1));
+    const double weight = 9.81 * 1060 * 4e-6, tip = gravity.DisplacementAt(kLowerEnd).z();
+    EXPECT_NEAR(force.Reaction(0).z(), weight, 1e-7 * weight);
+    EXPECT_NEAR(force.DisplacementAt(kLowerEnd).z(), tip, 1e-7 * std::abs(tip));
+  }
 }
 
 // Quadratic elements: without lateral strain, u = rho g (L^2 - z^2) / 2E, which they can represent.
@@ -138,8 +142,8 @@ TEST(BodyForceTest, StretchesABarAsTheClosedFormSays) {
 // A block on springs without supports, pulled by a traction on the same face: it moves by F/k on every axis, as
 // a whole.
 TEST(SpringsTest, HoldABlock) {
-  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic}) {
-    Body body = BoxBody(Vec3(0.01, 0.01, 0.02), {2, 2, 4}, NeoHookean(std::array{1e6, 0.3}));
+  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral}) {
+    Body body = BoxBody(Vec3(0.01, 0.01, 0.02), {2, 2, 4}, NeoHookean(std::array{1e6, 0.3}), CellsOf(element));
     Load springs;
     springs.region = kZ0;
     springs.kind = Springs{Vec3(50, 60, 200)};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry/hexahedron.h"
 #include "core/geometry/shapes.h"
 
 namespace fascicle::client {
@@ -119,6 +120,27 @@ TEST(FibreArchitectureTest, TakesVolumesFromTheFieldIfThereIsOne) {
   body.fields = {{"volume_ratio", "1", {""}, false, std::vector<double>(6, 1.5)}};
   EXPECT_NEAR(FibreArchitectureOf(body, std::nullopt, true)->volume, 1.5, 1e-12);
   EXPECT_NEAR(FibreArchitectureOf(body, std::nullopt, false)->volume, 1, 1e-12);
+}
+
+// The same muscle of hexahedra.
+TEST(FibreArchitectureTest, OfHexahedra) {
+  const TetMesh box = MakeBox(Vec3::Zero(), Vec3(0.02, 0.01, 0.1), {3, 2, 11}, Cells::kHexahedra);
+  BodySnapshot body = SnapshotOfMesh(box, Vec3(0.1, 0, 1), Mat3::Identity());
+  const auto of_tetrahedra = FibreArchitectureOf(body, std::nullopt, false);
+  body.shape.tetrahedra.clear();
+  for (const Hexahedron& h : box.hexahedra) {
+    auto& brick = body.shape.bricks.emplace_back();
+    for (std::size_t c = 0; c < 8; ++c)
+      brick[c] = static_cast<std::uint32_t>(h[static_cast<std::size_t>(kBrickOrder[c])]);
+  }
+  body.shape.fibres.resize(box.hexahedra.size());
+  body.fields = {{"volume_ratio", "1", {""}, false, std::vector<double>(box.hexahedra.size(), 1.25)}};
+  const auto of_hexahedra = FibreArchitectureOf(body, std::nullopt, false);
+  ASSERT_TRUE(of_hexahedra && of_tetrahedra);
+  EXPECT_NEAR(of_hexahedra->length, of_tetrahedra->length, 1e-3 * of_tetrahedra->length);
+  EXPECT_NEAR(of_hexahedra->pennation, of_tetrahedra->pennation, 1e-9);
+  EXPECT_NEAR(of_hexahedra->volume, 2e-5, 1e-17);
+  EXPECT_NEAR(FibreArchitectureOf(body, std::nullopt, true)->volume, 2.5e-5, 1e-17);
 }
 
 TEST(FibreArchitectureTest, NeedsFibres) {

@@ -80,6 +80,52 @@ TEST(VtkSeriesWriter, WritesWhatVtkReadsBack) {
   }
 }
 
+// Hexahedra: cells in VTK's order, with a fibre and a value each.
+TEST(VtkSeriesWriter, WritesHexahedraWithTheirFibres) {
+  v1::Geometry geometry;
+  v1::BodyGeometry& body = *geometry.add_bodies();
+  body.set_name("bar");
+  std::vector<double> positions;
+  for (int n = 0; n < 12; ++n) {
+    positions.insert(positions.end(), {1.0 * (n % 3), 1.0 * (n / 3 % 2) + 0.1 * n, 1.0 * (n / 6)});
+  }
+  const std::vector<std::uint32_t> bricks = {0, 1, 3, 4, 6, 7, 9, 10, 1, 2, 4, 5, 7, 8, 10, 11};
+  body.set_positions(Bytes(positions));
+  body.set_bricks(Bytes(bricks));
+  body.set_fibres(Bytes(std::vector<double>{1, 0, 0, 0, 0.6, 0.8}));
+  v1::Frame frame;
+  v1::BodyFrame& of_body = *frame.add_bodies();
+  of_body.set_positions(Bytes(positions));
+  v1::FieldValues& field = *of_body.add_fields();
+  field.set_name("volume_ratio");
+  field.set_location(v1::FieldValues::LOCATION_BRICK);
+  field.set_components(1);
+  field.set_values(Bytes(std::vector<double>{1.5, 0.5}));
+  const TemporaryFolder folder;
+  VtkSeriesWriter writer(geometry, folder.path());
+  writer.Add(frame);
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName((folder / "frames/bar_000000.vtu").c_str());
+  reader->Update();
+  vtkUnstructuredGrid& grid = *reader->GetOutput();
+  ASSERT_EQ(grid.GetNumberOfCells(), 2);
+  const std::vector<std::vector<vtkIdType>> expected = {{0, 1, 4, 3, 6, 7, 10, 9}, {1, 2, 5, 4, 7, 8, 11, 10}};
+  for (vtkIdType c = 0; c < 2; ++c) {
+    EXPECT_EQ(grid.GetCellType(c), 12);  // VTK_HEXAHEDRON
+    vtkIdType count;
+    const vtkIdType* nodes;
+    grid.GetCellPoints(c, count, nodes);
+    EXPECT_EQ(std::vector<vtkIdType>(nodes, nodes + count), expected[static_cast<std::size_t>(c)]);
+  }
+  vtkDataArray* fibre = grid.GetCellData()->GetArray("rest_fibre");
+  vtkDataArray* ratio = grid.GetCellData()->GetArray("volume_ratio");
+  ASSERT_TRUE(fibre && ratio);
+  EXPECT_EQ(fibre->GetComponent(1, 2), 0.8);
+  EXPECT_EQ(ratio->GetTuple1(1), 0.5);
+  body.set_fibres(Bytes(std::vector<double>{1, 0, 0}));
+  EXPECT_THROW(DecodeGeometry(geometry), std::runtime_error);
+}
+
 // Bodies of the eulerian method: triangles, and every field at the nodes.
 TEST(VtkSeriesWriter, WritesSurfacesAsTriangles) {
   v1::Geometry geometry;

@@ -68,7 +68,7 @@ const std::vector<Mistake>& Mistakes() {
       {"ElementOfThreeNodes", "2,3,4,5<", "2,3,4<", "<elem id=\"2\"", "elem `2`", "has 3 numbers where 4", ""},
       {"ElementWithANodeTwice", "2,3,4,5<", "2,3,5,5<", "<elem id=\"2\"", "elem `2`", "has a node twice", ""},
       {"InvertedElement", "2,3,4,5<", "3,2,4,5<", "<elem id=\"2\"", "elem `2`", "inverted or flat", "mesh"},
-      {"Hexahedra", "type=\"tet4\"", "type=\"hex8\"", "<Elements", "Elements `block`", "`hex8`", "--split-hexahedra"},
+      {"Wedges", "type=\"tet4\"", "type=\"penta6\"", "<Elements", "Elements `block`", "`penta6`", "--split-hexahedra"},
       {"HigherOrder", "type=\"tet4\"", "type=\"tet15\"", "<Elements", "Elements `block`", "`tet15`", "tet10"},
       {"SetOfUnknownNode", "\"bottom\">1,2,3", "\"bottom\">1,2,30", "<NodeSet name=\"bottom\"", "NodeSet `bottom`",
        "node 30", ""},

@@ -342,6 +342,25 @@ TEST_P(ReferenceTetrahedraTest, HexahedraBecomeTheTetrahedraOfTheReference) {
   EXPECT_EQ(found, expected);
 }
 
+// Without being split, they are kept: the same elements in the same order.
+TEST_P(ReferenceTetrahedraTest, HexahedraAreKept) {
+  problem_ = ReadReference("d_fusiform_isometric");
+  if (!problem_) GTEST_SKIP() << Skipped();
+  const FebMesh model = MeshOf(problem_->at("full_fields_coarse").at("hex8"));
+  FebWriter feb(GetParam().version, model);
+  feb.AddNodeSet("origin", feb.Nodes(kBottom));
+  feb.Fix("origin", "xyz");
+  feb.SetMaterial("uncoupled solid mixture", MuscleOf(problem_->at("material")));
+  const ImportedScene imported = Import(feb.Model());
+  EXPECT_EQ(imported.scene.tet().element(), v1::ELEMENT_HEXAHEDRAL);
+  const TetMesh file = MeshFileOf(imported);
+  ASSERT_EQ(file.hexahedra.size(), model.elements.size());
+  for (std::size_t h = 0; h < file.hexahedra.size(); ++h) {
+    for (std::size_t a = 0; a < 8; ++a) EXPECT_EQ(file.hexahedra[h][a], model.elements[h][a]);
+  }
+  ExpectRegion(imported.scene.bodies(0), file, "origin", kBottom);
+}
+
 std::string NameOf(const ::testing::TestParamInfo<Case>& instance) {
   return instance.param.element + "_" + instance.param.version.substr(0, 1);
 }

@@ -187,6 +187,31 @@ TEST_F(RenderTest, BricksAreDrawnInTheColoursOfTheirField) {
   EXPECT_NE(ReadPng(path).pixels, image.pixels);
 }
 
+// Fibres along x and z of a stretched row of hexahedra are drawn as lines through them.
+TEST_F(RenderTest, FibresOfHexahedraAreDrawn) {
+  Bricks row(6);
+  std::vector<double> along, across;
+  for (int e = 0; e < 6; ++e) {
+    along.insert(along.end(), {1, 0, 0});
+    across.insert(across.end(), {0, 0, 1});
+  }
+  PictureOptions options = Small();
+  options.fibres = true;
+  const std::string path = folder_ / "fibres.png";
+  std::vector<Image> images;
+  for (const std::vector<double>& fibres : {along, across}) {
+    row.geometry.mutable_bodies(0)->set_fibres(Bytes(fibres));
+    DrawPicture(row.geometry, row.frames[1], options, path);
+    images.push_back(ReadPng(path));
+  }
+  options.fibres = false;
+  DrawPicture(row.geometry, row.frames[1], options, path);
+  images.push_back(ReadPng(path));
+  EXPECT_NE(images[0].pixels, images[1].pixels);
+  EXPECT_NE(images[0].pixels, images[2].pixels);
+  EXPECT_NE(images[1].pixels, images[2].pixels);
+}
+
 // A cube of triangles whose upper side, coloured by its nodes, rises in frame 1.
 struct Triangles {
   v1::Geometry geometry;

@@ -202,7 +202,8 @@ struct WithRemarks {
 WithRemarks ReadAll(const std::string& name, const std::string& bytes, bool split = false) {
   WithRemarks result;
   Problems problems;
-  result.mesh = ReadMesh({.name = name, .bytes = bytes, .split_solids = split}, problems, {}, &result.remarks);
+  result.mesh = ReadMesh({.name = name, .bytes = bytes, .solids = split ? Solids::kSplit : Solids::kKeep}, problems, {},
+                         &result.remarks);
   EXPECT_TRUE(problems.empty()) << name << ": " << problems.ToString();
   return result;
 }
@@ -313,7 +314,7 @@ TEST(MeshIoTest, SolidsOfVtk) {
     for (std::size_t t = 0; t < mesh->tetrahedra.size(); ++t) EXPECT_GT(SignedVolume(*mesh, t), 0) << cell;
   }
   Problems problems;
-  EXPECT_FALSE(ReadMesh({.name = "m.vtk", .bytes = file("0 1 2 3 4 5 6 7", 42), .split_solids = true}, problems));
+  EXPECT_FALSE(ReadMesh({.name = "m.vtk", .bytes = file("0 1 2 3 4 5 6 7", 42), .solids = Solids::kSplit}, problems));
 }
 
 TEST(MeshIoTest, SolidsOfMedit) {

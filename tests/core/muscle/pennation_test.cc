@@ -70,7 +70,7 @@ TEST_F(PennationTest, CountsFibresAlongTheNormal) {
   Pennate(mesh_, {.angle = 0.4, .normal = Vec3::UnitX(), .mirror_point = {}}, fibres, problems_);
   ASSERT_EQ(problems_.count(), 1u);
   EXPECT_EQ(problems_.kept()[0].path, "normal");
-  EXPECT_THAT(problems_.kept()[0].message, HasSubstr("of 2 tetrahedra"));
+  EXPECT_THAT(problems_.kept()[0].message, HasSubstr("of 2 elements"));
 }
 
 }  // namespace

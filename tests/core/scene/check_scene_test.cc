@@ -76,7 +76,7 @@ TEST(CheckSceneTest, FibresOfAnotherMesh) {
 TEST(CheckSceneTest, FibreThatIsNoDirection) {
   Scene scene = GoodScene();
   scene.bodies[0].tet().fibres[5] *= 2;
-  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 5"));
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("element 5"));
 }
 
 // Two families of fibres need a plane: the body's reference direction must not be that of a fibre.
@@ -92,7 +92,7 @@ TEST(CheckSceneTest, FibresAlongTheReferenceDirection) {
   EXPECT_TRUE(none.empty()) << none.ToString();
   body.tet().fibres[5] = -Vec3::UnitZ();
   EXPECT_EQ(ProblemOf(scene).path, "bodies[0].fibres");
-  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 5"));
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("element 5"));
   // With gamma = 0 there is no plane; a part without families does not need it.
   body.material = law(0, 1);
   CheckScene(scene, none);
@@ -105,7 +105,7 @@ TEST(CheckSceneTest, FibresAlongTheReferenceDirection) {
   EXPECT_TRUE(none.empty()) << none.ToString();
   // Without a reference direction, no element has it.
   body.material = law(0.6, 0);
-  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("tetrahedron 0"));
+  EXPECT_THAT(ProblemOf(scene).message, HasSubstr("element 0"));
 }
 
 TEST(CheckSceneTest, FibresThatOnlyAPartNeeds) {

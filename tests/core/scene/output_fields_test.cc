@@ -171,13 +171,15 @@ TEST(OutputFieldsTest, DirectionsAreOfUnitLengthOrZero) {
 TEST(OutputFieldsTest, PlacesAreThoseOfTheMethod) {
   const OutputFieldInfo& velocity = InfoOf(OutputField::kVelocity);
   const OutputFieldInfo& stress = InfoOf(OutputField::kCauchyStress);
-  const std::array methods = {Method::kTet, Method::kVoxel, Method::kEulerian};
   const std::array elements = {FieldLocation::kTetrahedron, FieldLocation::kBrick, FieldLocation::kNode};
   const std::array<std::size_t, 3> nodes = {8, 12, 8}, places = {6, 2, 8};
-  const std::vector<Scene> scenes = testing::FullScenes();
+  std::vector<Scene> scenes = testing::FullScenes();
+  EXPECT_EQ(LocationOf(stress, scenes[0].bodies[0].shape), FieldLocation::kBrick) << "of hexahedra";
+  EXPECT_EQ(PlacesOf(stress, scenes[0].bodies[0].shape), 1u);
+  scenes[0].bodies[0].tet().mesh.hexahedra.clear();
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_EQ(LocationOf(velocity, methods[k]), FieldLocation::kNode);
-    EXPECT_EQ(LocationOf(stress, methods[k]), elements[k]);
+    EXPECT_EQ(LocationOf(velocity, scenes[k].bodies[0].shape), FieldLocation::kNode);
+    EXPECT_EQ(LocationOf(stress, scenes[k].bodies[0].shape), elements[k]);
     EXPECT_EQ(PlacesOf(velocity, scenes[k].bodies[0].shape), nodes[k]);
     EXPECT_EQ(PlacesOf(stress, scenes[k].bodies[0].shape), places[k]);
   }

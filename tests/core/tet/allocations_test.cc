@@ -85,7 +85,7 @@ TEST(MemoryTest, LessThan400BytesForATetrahedron) {
     TetStepper solver(model, team);
     TetState state = solver.InitialState();
     ASSERT_EQ(solver.Advance(state, scene.duration).problem, StepProblem::kNone);
-    const double bytes = static_cast<double>(BytesInUse() - before) / static_cast<double>(model.tetrahedra());
+    const double bytes = static_cast<double>(BytesInUse() - before) / static_cast<double>(model.elements());
     RecordProperty(precision == Precision::kDouble ? "bytes" : "bytes_single", std::to_string(bytes));
     std::printf("%s: %.0f bytes a tetrahedron\n", precision == Precision::kDouble ? "double" : "single", bytes);
     EXPECT_LT(bytes, precision == Precision::kDouble ? 400 : 350);

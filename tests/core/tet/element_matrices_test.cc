@@ -37,8 +37,7 @@ struct LoadedMatrix : Setting {
   ThreadTeam team{1};
   ForceWorkspace workspace;
   BlockPattern pattern = model.VisitElement([&]<class Element>(Element) {
-    return PatternOfElements(model.nodes(), model.tetrahedra(),
-                             [&](std::size_t e) { return model.NodesOf<Element>(e); });
+    return PatternOfElements(model.nodes(), model.elements(), [&](std::size_t e) { return model.NodesOf<Element>(e); });
   });
   StiffnessLayout layout{model, pattern};
   // Previous contents do not affect the result.
@@ -145,7 +144,8 @@ TEST_P(ElementMatricesTest, SideBySideAsElementByElement) {
 
 INSTANTIATE_TEST_SUITE_P(Laws, ElementMatricesTest,
                          ::testing::Combine(::testing::Range(0, kLawsOfKernels),
-                                            ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic),
+                                            ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic,
+                                                              ElementOrder::kHexahedral),
                                             ::testing::Values(VolumeForm::kNodal, VolumeForm::kElement)));
 
 NodalVector Product(LoadedMatrix& s, const NodalVector& p) {
@@ -179,7 +179,8 @@ TEST_P(DerivativesTest, BlocksAreThoseOfTheForce) {
   EXPECT_NEAR((energy_ahead - energy_behind) / (2 * h), -Dot(s.team, force, p), 1e-6 * LargestNorm(force));
 }
 INSTANTIATE_TEST_SUITE_P(Potentials, DerivativesTest,
-                         ::testing::Combine(::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic),
+                         ::testing::Combine(::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic,
+                                                              ElementOrder::kHexahedral),
                                             ::testing::Bool()));
 
 // In several chunks: the matrix is symmetric, its product equals the matrix-free one, and its bits do not depend on the
@@ -187,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(Potentials, DerivativesTest,
 class AssembleStiffnessTest : public ::testing::TestWithParam<ElementOrder> {};
 
 TEST_P(AssembleStiffnessTest, AddsEveryBlockInItsPlace) {
-  LoadedMatrix s(LawsOfKernels()[5], GetParam(), VolumeForm::kElement, GetParam() == ElementOrder::kLinear ? 11 : 6);
+  LoadedMatrix s(LawsOfKernels()[5], GetParam(), VolumeForm::kElement, GetParam() == ElementOrder::kQuadratic ? 6 : 11);
   ASSERT_GT(s.model.chunks().chunks.size(), 1u);
   std::vector<BlockValues> results;
   for (const int threads : {1, 2, 3}) {
@@ -235,7 +236,7 @@ TEST_P(AssembleStiffnessTest, AddsEveryBlockInItsPlace) {
   EXPECT_LT(LargestDifference(product, expected), 1e-12 * LargestNorm(expected));
 }
 INSTANTIATE_TEST_SUITE_P(Elements, AssembleStiffnessTest,
-                         ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic));
+                         ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral));
 
 }  // namespace
 }  // namespace fascicle

@@ -14,6 +14,13 @@ namespace {
 
 using namespace fascicle::testing;
 
+double VolumeOfElement(const TetMesh& mesh, std::size_t e) {
+  if (mesh.hexahedra.empty()) return SignedVolume(mesh, e);
+  double volume = 0;
+  for (std::size_t t = 6 * e; t < 6 * e + 6; ++t) volume += SignedVolume(mesh, t);
+  return volume;
+}
+
 Material MuscleLaw() { return Muscle(std::array{5e2, 5e2, 1e5, 3e4, 1.2, 0.05, 6.6, 1.4}); }
 
 class TetFieldsTest : public ::testing::TestWithParam<ElementOrder> {
@@ -25,7 +32,7 @@ class TetFieldsTest : public ::testing::TestWithParam<ElementOrder> {
       controls.motions.resize(2);
     }
     static Scene SceneOf(ElementOrder order) {
-      Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, MuscleLaw());
+      Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, MuscleLaw(), CellsOf(order));
       body.constraints = {Fix(kX0), Fix(kX1)};
       Scene scene = StaticScene(std::move(body), order);
       scene.output.line_of_action = Vec3::UnitX();
@@ -73,7 +80,7 @@ TEST_P(TetFieldsTest, OfAnAffineDeformationAreThoseOfItsGradient) {
       const double scale = info.from == FieldSource::kDeformation ? 1 : 1e5;
       if (info.field == OutputField::kPrincipalStressDirections) continue;  // of either sign
       const std::vector<double> values = block.Of(info.field);
-      ASSERT_EQ(values.size(), info.components * 72);
+      ASSERT_EQ(values.size(), info.components * (GetParam() == ElementOrder::kHexahedral ? 12 : 72));
       for (std::size_t i = 0; i < values.size(); ++i) {
         EXPECT_NEAR(values[i], expected[i % info.components], 1e-10 * scale) << info.name;
       }
@@ -109,7 +116,7 @@ TEST_P(TetFieldsTest, EnergyDensityAddsUpToTheEnergy) {
   double sum = 0;
   const std::vector<double> densities = block.Of(OutputField::kStrainEnergyDensity);
   for (std::size_t e = 0; e < densities.size(); ++e) {
-    sum += densities[e] * SignedVolume(block.run.scene.bodies[0].tet().mesh, e);
+    sum += densities[e] * VolumeOfElement(block.run.scene.bodies[0].tet().mesh, e);
   }
   EXPECT_NEAR(sum, energy, 1e-12 * std::abs(energy));
 }
@@ -136,7 +143,7 @@ TEST(TetProbeTest, AQuadraticElementIsInterpolatedExactly) {
 
 // The nodal reactions add up to the reaction and its moment; internal forces add up to nothing.
 TEST_P(TetFieldsTest, NodalForcesAddUp) {
-  Body body = BoxBody(Vec3(0.03, 0.01, 0.01), {3, 1, 1}, NeoHookean(std::array{1e4, 0.3}));
+  Body body = BoxBody(Vec3(0.03, 0.01, 0.01), {3, 1, 1}, NeoHookean(std::array{1e4, 0.3}), CellsOf(GetParam()));
   body.constraints = {Fix(kX0)};
   body.loads.push_back({kX1, Traction{Vec3(0, 0, -50)}, Ramp(1), {}});
   SteppedRun run(StaticScene(std::move(body), GetParam()));
@@ -156,7 +163,8 @@ TEST_P(TetFieldsTest, NodalForcesAddUp) {
   EXPECT_LT(sum_of(OutputField::kInternalForce).norm(), 1e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(Elements, TetFieldsTest, ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic));
+INSTANTIATE_TEST_SUITE_P(Elements, TetFieldsTest,
+                         ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral));
 
 }  // namespace
 }  // namespace fascicle

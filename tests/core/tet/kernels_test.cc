@@ -28,14 +28,14 @@ struct PlainForces {
     const TetModel& model = s.model;
     const VolumePatches& patches = model.patches();
     std::vector<double> theta(patches.size(), 0.0), smooth(patches.size()), own(patches.size()), acting(patches.size());
-    for (std::size_t e = 0; e < model.tetrahedra() && !patches.empty(); ++e) {
+    for (std::size_t e = 0; e < model.elements() && !patches.empty(); ++e) {
       if (patches.of_element[e][0] == VolumePatches::kNone) continue;
       for (int q = 0; q < Element::kPoints; ++q) {
         const double J = Determinant(GradientAt<Element>(model, e, ValuesOf<Element>(model, e, s.x), q));
-        for (int c = 0; c < 4; ++c) {
+        for (int c = 0; c < Element::kPatches; ++c) {
           const std::int32_t n = patches.of_element[e][c];
           theta[n] +=
-              Element::Barycentric(q, c) * model.rest_volume()[Element::kPoints * e + q] * J / patches.rest_volume[n];
+              Element::PatchWeight(q, c) * model.rest_volume()[Element::kPoints * e + q] * J / patches.rest_volume[n];
         }
       }
     }
@@ -74,10 +74,10 @@ struct PlainForces {
           },
           group.laws);
     }
-    for (std::size_t e = 0; e < model.tetrahedra() && !patches.empty(); ++e) {
+    for (std::size_t e = 0; e < model.elements() && !patches.empty(); ++e) {
       if (patches.of_element[e][0] == VolumePatches::kNone) continue;
       const std::size_t body = e >= model.bodies()[1].tet_begin;
-      for (int c = 0; c < 4; ++c) {
+      for (int c = 0; c < Element::kPatches; ++c) {
         const std::int32_t n = patches.of_element[e][c];
         energy[body] += model.CornerVolume<Element>(e, c) * PatchEnergy{patches.modulus[n]}.Value(smooth[n]);
       }
@@ -124,7 +124,8 @@ TEST_P(KernelsTest, EnergyIsThatOfTheLaws) {
 
 INSTANTIATE_TEST_SUITE_P(Laws, KernelsTest,
                          ::testing::Combine(::testing::Range(0, kLawsOfKernels),
-                                            ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic),
+                                            ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic,
+                                                              ElementOrder::kHexahedral),
                                             ::testing::Values(VolumeForm::kNodal, VolumeForm::kElement)));
 
 // All instruction sets and any number of threads: the same bits.
@@ -132,7 +133,10 @@ class SameBitsTest : public ::testing::TestWithParam<std::tuple<int, ElementOrde
 
 TEST_P(SameBitsTest, AnySetAnyThreads) {
   const auto [law, element] = GetParam();
-  const Setting s(LawsOfKernels()[law], element, VolumeForm::kNodal, element == ElementOrder::kLinear ? 9 : 8);
+  const Setting s(LawsOfKernels()[law], element, VolumeForm::kNodal,
+                  element == ElementOrder::kLinear      ? 9
+                  : element == ElementOrder::kQuadratic ? 8
+                                                        : 14);
   ASSERT_GT(s.model.chunks().chunks.size(), 5u);
   NodalVector first, first_product;
   double power = 0;
@@ -161,7 +165,8 @@ TEST_P(SameBitsTest, AnySetAnyThreads) {
 
 INSTANTIATE_TEST_SUITE_P(Laws, SameBitsTest,
                          ::testing::Combine(::testing::Range(0, kLawsOfKernels),
-                                            ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic)));
+                                            ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic,
+                                                              ElementOrder::kHexahedral)));
 
 // In single precision: forces to six digits of the largest, the same bits with any set and threads.
 class SingleTest : public ::testing::TestWithParam<std::tuple<int, ElementOrder>> {};
@@ -196,7 +201,8 @@ TEST_P(SingleTest, ForcesToSixDigits) {
 }
 INSTANTIATE_TEST_SUITE_P(Laws, SingleTest,
                          ::testing::Combine(::testing::Range(0, kLawsOfKernels),
-                                            ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic)));
+                                            ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic,
+                                                              ElementOrder::kHexahedral)));
 
 // A muscle between fixed ends that contracts to full activation and vibrates: single precision against double.
 TEST(SingleTest, ContractionFollowsDouble) {

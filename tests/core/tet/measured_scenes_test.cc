@@ -19,7 +19,7 @@ void ExpectValid(const Scene& scene) {
 TEST(MeasuredScenes, TheBoxIsValid) {
   const TetBox box(2, Muscle(kMuscle), VolumeForm::kNodal);
   ExpectValid(box.scene);
-  EXPECT_EQ(box.model.tetrahedra(), 6u * 2 * 2 * 2);
+  EXPECT_EQ(box.model.elements(), 6u * 2 * 2 * 2);
   EXPECT_GT(VolumeRatiosOf(box.model, 0, box.Bent()).smallest, 0.5) << "bent, but not crushed";
 }
 
@@ -37,7 +37,7 @@ TEST(MeasuredScenes, TheIsometricMusclePulls) {
   SteppedRun run(IsometricMuscle(kMuscleGrids[0]));
   ExpectValid(run.scene);
   EXPECT_EQ(run.FreeComponents(), static_cast<std::size_t>(kMuscleGrids[0].FreeComponents()));
-  EXPECT_EQ(run.model.tetrahedra(), static_cast<std::size_t>(kMuscleGrids[0].Tetrahedra()));
+  EXPECT_EQ(run.model.elements(), static_cast<std::size_t>(kMuscleGrids[0].Tetrahedra()));
   ASSERT_TRUE(run.To(0.3));
   EXPECT_NEAR(run.Reaction(1)[2], 25.2, 0.04 * 25.2);  // [N] on the finest grid; this one, the coarsest, is 3 % off
 }

@@ -19,9 +19,9 @@ inline constexpr int kLawsOfKernels = kLaws + 1;
 inline Scene MixedScene(const Material& law, ElementOrder element, VolumeForm volume, int divisions) {
   Scene scene;
   for (int b = 0; b < 2; ++b) {
-    Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {divisions + b, divisions, divisions}, law);
+    Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {divisions + b, divisions, divisions}, law, CellsOf(element));
     body.name += static_cast<char>('a' + b);
-    const NodalVector directions = RandomVectors(body.tet().mesh.tetrahedra.size(), 21 + b);
+    const NodalVector directions = RandomVectors(ElementCount(body.tet().mesh), 21 + b);
     for (const Vec3& direction : directions) body.tet().fibres.push_back((direction + Vec3(2, 0, 0)).normalized());
     for (std::size_t t = 0; t < directions.size(); ++t) {
       body.tet().activations.of.push_back(static_cast<std::int32_t>(t % 2));

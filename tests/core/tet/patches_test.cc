@@ -1,4 +1,4 @@
-// Volume ratios averaged around nodes, for both elements.
+// Volume ratios averaged around nodes, or over hexahedra.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -17,11 +17,13 @@ using namespace fascicle::testing;
 
 const Vec3 kPatchSize(0.03, 0.02, 0.02);
 
-std::string NameOf(ElementOrder element) { return element == ElementOrder::kLinear ? "linear" : "quadratic"; }
+std::string NameOf(ElementOrder element) {
+  return element == ElementOrder::kLinear ? "linear" : element == ElementOrder::kQuadratic ? "quadratic" : "hexahedral";
+}
 
 // A box whose interior nodes are displaced.
-TetMesh IrregularBox(const std::array<int, 3>& divisions) {
-  TetMesh mesh = MakeBox(Vec3::Zero(), kPatchSize, divisions);
+TetMesh IrregularBox(const std::array<int, 3>& divisions, ElementOrder element) {
+  TetMesh mesh = MakeBox(Vec3::Zero(), kPatchSize, divisions, CellsOf(element));
   std::vector<bool> inside(mesh.nodes.size(), true);
   for (const Triangle& t : BoundaryTriangles(mesh)) {
     for (const std::int32_t n : t) inside[n] = false;
@@ -57,9 +59,9 @@ class PatchesTest : public ::testing::TestWithParam<ElementOrder> {};
 
 // A linear displacement on an irregular mesh: no force on interior nodes.
 TEST_P(PatchesTest, LinearDisplacementIsInEquilibrium) {
-  Patched box(GetParam(), NearlyIncompressible(), IrregularBox({4, 3, 3}));
+  Patched box(GetParam(), NearlyIncompressible(), IrregularBox({4, 3, 3}, GetParam()));
   const NodalVector& X = box.model->rest_positions();
-  ASSERT_EQ(box.model->patches().size(), 80u);
+  ASSERT_EQ(box.model->patches().size(), GetParam() == ElementOrder::kHexahedral ? 36u : 80u);
   Mat3 F;
   F << 1.2, 0.1, -0.05, 0.02, 0.9, 0.1, 0.1, -0.1, 1.1;
   NodalVector x;
@@ -72,7 +74,7 @@ TEST_P(PatchesTest, LinearDisplacementIsInEquilibrium) {
     ++inner;
     EXPECT_LT(force[n].norm(), 1e-12 * LargestNorm(force)) << "node " << n;
   }
-  EXPECT_GE(inner, GetParam() == ElementOrder::kLinear ? 12 : 175);
+  EXPECT_GE(inner, GetParam() == ElementOrder::kQuadratic ? 175 : 12);
 }
 
 std::vector<Material> PatchedLaws() {
@@ -82,7 +84,7 @@ std::vector<Material> PatchedLaws() {
 // f = -dPhi/dx against a sixth-order central difference, at corners and, for quadratic elements, at mid-edge nodes.
 TEST_P(PatchesTest, ForceIsMinusGradientOfEnergy) {
   for (const Material& law : PatchedLaws()) {
-    Patched box(GetParam(), law, IrregularBox({3, 2, 2}));
+    Patched box(GetParam(), law, IrregularBox({3, 2, 2}, GetParam()));
     const NodalVector x = Shaken(box.model->rest_positions(), 3e-4, 7);
     const NodalVector force = box.ForceAt(x);
     const double h = 3e-7;
@@ -104,7 +106,7 @@ TEST_P(PatchesTest, ForceIsMinusGradientOfEnergy) {
 // K p against a difference of forces; K is stored in float.
 TEST_P(PatchesTest, StiffnessIsDerivativeOfForce) {
   for (const Material& law : PatchedLaws()) {
-    Patched box(GetParam(), law, IrregularBox({3, 2, 2}));
+    Patched box(GetParam(), law, IrregularBox({3, 2, 2}, GetParam()));
     const NodalVector x = Shaken(box.model->rest_positions(), 3e-4, 7);
     TetStiffness stiffness;
     stiffness.Set(*box.model, box.activation, x, box.team, box.workspace);
@@ -124,6 +126,9 @@ TEST_P(PatchesTest, StiffnessIsDerivativeOfForce) {
   }
 }
 
+// The element of a tetrahedron.
+std::size_t ElementOf(const TetMesh& mesh, std::size_t t) { return mesh.hexahedra.empty() ? t : t / 6; }
+
 // Rms difference between neighbouring elements relative to the rms deviation from the mean.
 double RelativeJump(const TetMesh& mesh, const std::vector<double>& values) {
   std::map<Triangle, std::vector<std::size_t>> faces;
@@ -134,7 +139,7 @@ double RelativeJump(const TetMesh& mesh, const std::vector<double>& values) {
         if (c != opposite) face[k++] = mesh.tetrahedra[t][c];
       }
       std::sort(face.begin(), face.end());
-      faces[face].push_back(t);
+      faces[face].push_back(ElementOf(mesh, t));
     }
   }
   double mean = 0, variance = 0, jumps = 0;
@@ -142,7 +147,7 @@ double RelativeJump(const TetMesh& mesh, const std::vector<double>& values) {
   for (const double value : values) mean += value / static_cast<double>(values.size());
   for (const double value : values) variance += (value - mean) * (value - mean) / static_cast<double>(values.size());
   for (const auto& [face, sides] : faces) {
-    if (sides.size() != 2) continue;
+    if (sides.size() != 2 || sides[0] == sides[1]) continue;
     ++inner;
     jumps += std::pow(values[sides[0]] - values[sides[1]], 2);
   }
@@ -152,7 +157,9 @@ double RelativeJump(const TetMesh& mesh, const std::vector<double>& values) {
 // If pressures alternate from node to node, neighbours differ by more than the spread of the field.
 TEST_P(PatchesTest, PressuresOfABentBeamDoNotAlternate) {
   const bool linear = GetParam() == ElementOrder::kLinear;
-  SteppedRun run(StaticScene(LockingCantilever(linear ? 4 : 2, Ramp(1)), GetParam()));
+  // Pressures that are constant in each of two hexahedra across the beam would have the signs of its two halves.
+  SteppedRun run(StaticScene(
+      LockingCantilever(GetParam() == ElementOrder::kQuadratic ? 2 : 4, Ramp(1), CellsOf(GetParam())), GetParam()));
   ASSERT_TRUE(run.To(1));
   Controls controls;
   controls.activations = {0};
@@ -163,7 +170,8 @@ TEST_P(PatchesTest, PressuresOfABentBeamDoNotAlternate) {
   EXPECT_LT(jump, linear ? 0.45 : 0.6);
 }
 
-INSTANTIATE_TEST_SUITE_P(Elements, PatchesTest, ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic),
+INSTANTIATE_TEST_SUITE_P(Elements, PatchesTest,
+                         ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral),
                          [](const auto& element) { return NameOf(element.param); });
 
 // The numerical inf-sup test [Chapelle & Bathe 1993]: the stationary values of
@@ -187,7 +195,7 @@ Eigen::VectorXd InfSupValues(ElementOrder order, int n, bool smooth) {
   std::array<Eigen::MatrixXd, 3> B;
   B.fill(Eigen::MatrixXd::Zero(count, size));
   model.VisitElement([&]<class Element>(Element) {
-    for (std::size_t e = 0; e < model.tetrahedra(); ++e) {
+    for (std::size_t e = 0; e < model.elements(); ++e) {
       const auto nodes = model.NodesOf<Element>(e);
       for (int q = 0; q < Element::kPoints; ++q) {
         const auto gradients = ShapeGradients<Element>(model, e, q);
@@ -199,8 +207,8 @@ Eigen::VectorXd InfSupValues(ElementOrder order, int n, bool smooth) {
             const int j = unknown[nodes[b]];
             if (j >= 0) A(i, j) += volume * gradients.col(a).dot(gradients.col(b));
           }
-          for (int c = 0; c < 4; ++c) {
-            const double share = volume * Element::Barycentric(q, c);
+          for (int c = 0; c < Element::kPatches; ++c) {
+            const double share = volume * Element::PatchWeight(q, c);
             for (int axis = 0; axis < 3; ++axis) B[axis](i, patches.of_element[e][c]) += share * gradients(axis, a);
           }
         }

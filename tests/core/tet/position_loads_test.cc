@@ -17,10 +17,11 @@ constexpr double kPressure = 3e3;
 
 // A box of 2 x 2 x 1 hexahedra with a pressure on the given side, or on all of its surface.
 Scene PressedBox(ElementOrder element, std::optional<Side> side) {
-  Body body = BoxBody(Vec3(0.02, 0.02, 0.01), {2, 2, 1}, NeoHookean(std::array{1e4, 0.3}));
+  Body body = BoxBody(Vec3(0.02, 0.02, 0.01), {2, 2, 1}, NeoHookean(std::array{1e4, 0.3}), CellsOf(element));
   Region whole;
   whole.name = "surface";
   whole.triangles = BoundaryTriangles(body.tet().mesh);
+  whole.sides = BoundaryOfHexahedra(body.tet().mesh).quads;
   for (std::size_t n = 0; n < body.tet().mesh.nodes.size(); ++n) whole.nodes.push_back(static_cast<std::int32_t>(n));
   body.regions.push_back(whole);
   Load load;
@@ -41,7 +42,7 @@ NodalVector ForcesAt(const TetModel& model, const NodalVector& x) {
 double VolumeAt(const TetModel& model, const NodalVector& x) {
   double volume = 0;
   model.VisitElement([&]<class Element>(Element) {
-    for (std::size_t e = 0; e < model.tetrahedra(); ++e) {
+    for (std::size_t e = 0; e < model.elements(); ++e) {
       std::array<Vec3, Element::kNodes> at;
       const auto nodes = model.NodesOf<Element>(e);
       for (int a = 0; a < Element::kNodes; ++a) at[a] = x[nodes[a]];
@@ -111,9 +112,11 @@ TEST_P(PositionLoadsTest, PressureTurnsWithItsFace) {
 }
 
 TEST_P(PositionLoadsTest, BodyForceHasTheWeightOfItsElements) {
-  Body body = BoxBody(Vec3(0.02, 0.02, 0.01), {2, 2, 1}, NeoHookean(std::array{1e4, 0.3}));
-  body.regions.push_back(SelectRegion(body.tet().mesh, BoundaryTriangles(body.tet().mesh), "half",
-                                      PlaneSelector{Vec3(0.01, 0, 0), Vec3::UnitX()}));
+  Body body = BoxBody(Vec3(0.02, 0.02, 0.01), {2, 2, 1}, NeoHookean(std::array{1e4, 0.3}), CellsOf(GetParam()));
+  const TetMesh& mesh = body.tet().mesh;
+  const PlaneSelector half{Vec3(0.01, 0, 0), Vec3::UnitX()};
+  body.regions.push_back(mesh.hexahedra.empty() ? SelectRegion(mesh, BoundaryTriangles(mesh), "half", half)
+                                                : SelectRegion(mesh, BoundaryOfHexahedra(mesh), "half", half));
   Load load;
   load.region = 6;
   load.kind = BodyForce{Vec3(0, 100, -2e4)};
@@ -133,7 +136,7 @@ TEST_P(PositionLoadsTest, BodyForceHasTheWeightOfItsElements) {
 }
 
 TEST_P(PositionLoadsTest, SpringsPullToTheRestPositions) {
-  Body body = BoxBody(Vec3(0.02, 0.02, 0.01), {2, 2, 1}, NeoHookean(std::array{1e4, 0.3}));
+  Body body = BoxBody(Vec3(0.02, 0.02, 0.01), {2, 2, 1}, NeoHookean(std::array{1e4, 0.3}), CellsOf(GetParam()));
   Load load;
   load.region = kX0;
   load.kind = Springs{Vec3(100, 0, 7)};
@@ -150,8 +153,12 @@ TEST_P(PositionLoadsTest, SpringsPullToTheRestPositions) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, PositionLoadsTest,
-                         ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic),
-                         [](const auto& test) { return test.param == ElementOrder::kLinear ? "linear" : "quadratic"; });
+                         ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral),
+                         [](const auto& test) {
+                           return test.param == ElementOrder::kLinear      ? "linear"
+                                  : test.param == ElementOrder::kQuadratic ? "quadratic"
+                                                                           : "hexahedral";
+                         });
 
 }  // namespace
 }  // namespace fascicle

@@ -57,6 +57,30 @@ TEST(Encode, GeometryCarriesNodesTetrahedraFibresAndRegions) {
   EXPECT_EQ(geometry.series(0).description(), "Elastic energy");
 }
 
+// Hexahedra are encoded as bricks, corner c at (c & 1, c >> 1 & 1, c >> 2), with a fibre each.
+TEST(Encode, HexahedraAreBricks) {
+  v1::Scene wire = BoxScene();
+  for (const double x : {0.0, 3.0, 4.0}) wire.mutable_bodies(0)->mutable_fibres()->mutable_constant()->add_direction(x);
+  wire.mutable_tet()->set_element(v1::ELEMENT_HEXAHEDRAL);
+  const auto scene = Translate(wire);
+  ASSERT_NE(scene, nullptr);
+  const TetMesh& mesh = scene->bodies[0].tet().mesh;
+  const v1::BodyGeometry encoded = EncodeGeometry(*scene, {}).bodies(0);
+  EXPECT_TRUE(encoded.tetrahedra().empty());
+  ASSERT_GT(mesh.hexahedra.size(), 1u);
+  ASSERT_EQ(encoded.bricks().size(), mesh.hexahedra.size() * 32);
+  EXPECT_EQ(encoded.fibres().size(), mesh.hexahedra.size() * 24);
+  for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h) {
+    const Vec3& first = mesh.nodes[IndexAt(encoded.bricks(), 8 * h)];
+    const Vec3 size = mesh.nodes[IndexAt(encoded.bricks(), 8 * h + 7)] - first;
+    for (std::size_t c = 0; c < 8; ++c) {
+      const Vec3 corner(c & 1, c >> 1 & 1, c >> 2);
+      const Vec3 expected = first + size.cwiseProduct(corner);
+      EXPECT_LT((mesh.nodes[IndexAt(encoded.bricks(), 8 * h + c)] - expected).norm(), 1e-12);
+    }
+  }
+}
+
 TEST(Encode, FrameKeepsEveryBit) {
   Frame frame;
   frame.index = 3;

@@ -54,6 +54,34 @@ TEST(RefineBody, PartsTakeWhatTheirElementHas) {
   }
 }
 
+TEST(RefineBody, PartsOfHexahedraTakeWhatTheyHave) {
+  Files files;
+  v1::Scene wire = LadenScene(files);
+  std::string scale;
+  for (int h = 0; h < 24; ++h) scale += std::to_string(h / 200.0) + "\n";
+  wire.mutable_bodies(0)->mutable_activation_scale()->set_asset(files.Add(scale));
+  wire.mutable_tet()->set_element(v1::ELEMENT_HEXAHEDRAL);
+  const auto coarse = Translate(wire, files);
+  wire.set_refinements(2);
+  const auto fine = Translate(wire, files);
+  ASSERT_TRUE(coarse != nullptr && fine != nullptr);
+  const TetShape &before = coarse->bodies[0].tet(), &after = fine->bodies[0].tet();
+  ASSERT_EQ(after.mesh.hexahedra.size(), 64 * 24u);
+  ASSERT_EQ(after.mesh.nodes.size(), 9 * 13 * 17u);
+  EXPECT_NEAR(TotalVolume(after.mesh), TotalVolume(before.mesh), 1e-15);
+  for (std::size_t h = 0; h < 64 * 24; ++h) {
+    ASSERT_EQ(after.materials.of[h], before.materials.of[h / 64]);
+    ASSERT_EQ(after.activations.of[h], before.activations.of[h / 64]);
+    ASSERT_EQ(after.activation_scale[h], before.activation_scale[h / 64]);
+    ASSERT_EQ(after.fibres[h], before.fibres[h / 64]);
+  }
+  ASSERT_EQ(after.initial_displacement.size(), after.mesh.nodes.size());
+  for (std::size_t n = 0; n < after.mesh.nodes.size(); ++n) {
+    ASSERT_NEAR(after.initial_displacement[n].z(), 0.01 * after.mesh.nodes[n].z(), 1e-12);
+  }
+  EXPECT_EQ(fine->bodies[0].regions[0].sides.size(), 8 * 12u);
+}
+
 TEST(RefineBody, RegionsCoverTheSamePart) {
   v1::Scene wire = BoxScene();
   wire.set_refinements(1);

@@ -13,6 +13,7 @@ namespace fascicle::server {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 TEST(TranslateScene, ConvertsLengthsOfABody) {
   v1::Scene wire = BoxScene();
@@ -241,6 +242,85 @@ TEST(TranslateScene, SteppingChoosesTheElementUnlessTheSceneDoes) {
   EXPECT_EQ(method().precision, Precision::kSingle);
   wire.mutable_tet()->set_element(v1::ELEMENT_QUADRATIC);
   EXPECT_EQ(method().element, ElementOrder::kQuadratic);
+}
+
+// Two hexahedra on top of each other, the upper one with the tag 8.
+const char kTwoHexahedra[] = R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+12
+1 0 0 0
+2 10 0 0
+3 10 10 0
+4 0 10 0
+5 0 0 10
+6 10 0 10
+7 10 10 10
+8 0 10 10
+9 0 0 20
+10 10 0 20
+11 10 10 20
+12 0 10 20
+$EndNodes
+$Elements
+3
+1 3 2 1 1 1 4 3 2
+2 5 2 7 7 1 2 3 4 5 6 7 8
+3 5 2 8 8 5 6 7 8 9 10 11 12
+$EndElements
+)";
+
+TEST(TranslateScene, HexahedralElementsKeepHexahedra) {
+  v1::Scene wire = BoxScene();
+  for (const double x : {0.0, 3.0, 4.0}) wire.mutable_bodies(0)->mutable_fibres()->mutable_constant()->add_direction(x);
+  wire.mutable_tet()->set_element(v1::ELEMENT_HEXAHEDRAL);
+  const auto scene = Translate(wire);
+  ASSERT_NE(scene, nullptr);
+  EXPECT_EQ(scene->tet.element, ElementOrder::kHexahedral);
+  const TetShape& shape = scene->bodies[0].tet();
+  ASSERT_GT(shape.mesh.hexahedra.size(), 1u);
+  EXPECT_EQ(shape.mesh.tetrahedra.size(), 6 * shape.mesh.hexahedra.size());
+  EXPECT_EQ(shape.fibres.size(), shape.mesh.hexahedra.size());
+  EXPECT_FALSE(scene->bodies[0].regions[1].sides.empty());
+  EXPECT_EQ(scene->bodies[0].regions[1].triangles.size(), 2 * scene->bodies[0].regions[1].sides.size());
+}
+
+TEST(TranslateScene, HexahedraOfAFileAreKeptOrSplit) {
+  Files files;
+  v1::Scene wire = BoxScene();
+  v1::Body& body = *wire.mutable_bodies(0);
+  body.set_unit(v1::LENGTH_UNIT_MM);
+  body.mutable_mesh()->mutable_file()->set_path("two.msh");
+  body.mutable_mesh()->mutable_file()->set_asset(files.Add(kTwoHexahedra));
+  body.clear_regions();
+  body.clear_constraints();
+  body.clear_loads();
+  v1::Region& upper = *body.add_regions();
+  upper.set_name("upper");
+  upper.set_physical_tag(8);
+  v1::Region& bottom = *body.add_regions();
+  bottom.set_name("bottom");
+  bottom.set_physical_tag(1);
+  v1::RegionMaterial& stiff = *body.add_region_materials();
+  stiff.set_region("upper");
+  stiff.mutable_material()->mutable_neo_hookean()->set_young_modulus(1e5);
+  for (const bool keep : {false, true}) {
+    wire.mutable_tet()->set_element(keep ? v1::ELEMENT_HEXAHEDRAL : v1::ELEMENT_LINEAR);
+    Problems problems;
+    const auto scene = TranslateScene(wire, files.reader(), problems);
+    ASSERT_NE(scene, nullptr) << problems.ToString();
+    const Body& result = scene->bodies[0];
+    EXPECT_EQ(result.tet().mesh.hexahedra.size(), keep ? 2u : 0u);
+    EXPECT_EQ(result.tet().mesh.tetrahedra.size(), 12u);
+    EXPECT_EQ(result.tet().materials.of, keep ? std::vector<std::int32_t>({0, 1})
+                                              : std::vector<std::int32_t>({0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1}));
+    EXPECT_EQ(result.regions[1].triangles.size(), 2u);
+    EXPECT_EQ(result.regions[1].sides.size(), keep ? 1u : 0u);
+    EXPECT_EQ(result.notes.size(), keep ? 0u : 1u);
+    if (keep) continue;
+    EXPECT_THAT(result.notes[0], HasSubstr("2 hexahedra were split into tetrahedra"));
+  }
 }
 
 TEST(TranslateScene, MakesEveryLawWithItsParameters) {
