@@ -443,7 +443,7 @@ TEST_F(CliTest, SchemaTellsUnitsRangesAndDefaults) {
 
 TEST_F(CliTest, MaterialCurvesAsTableAndPlot) {
   const Finished list = Fascicle({"materials", "--json"});
-  EXPECT_EQ(Lines(list.out).size(), 12u);
+  EXPECT_EQ(Lines(list.out).size(), 15u);
   const Finished curve = Fascicle({"materials", "curve", "muscle", "--activation", "0", "1", "--stretch", "1", "1.4",
                                    "--points", "5", "--csv", folder_ / "curve.csv", "--out", folder_ / "curve.png"});
   EXPECT_EQ(curve.exit_code, 0) << curve.err;
