@@ -231,30 +231,38 @@ TEST(Yeoh, FitsTreloarsRubber) {
 
 // --- Fung-type fibres ---
 
-TEST(FungFibre, ClosedForms) {
-  constexpr double kC1 = 3e4, kC2 = 1e4, kK1 = 2e4, kK2 = 0.7;
-  const FungFibre law(std::array{kC1, kC2, kK1, kK2, kRigidBulk});
+// Media and adventitia of a rabbit's carotid artery [Holzapfel, Gasser & Ogden 2000]: c = 3 and 0.3 kPa, k1 = 2.3632
+// and 0.562 kPa, k2 = 0.8393 and 0.7112, with c1 = c/2; and a law with c2.
+class FungFibreSets : public ::testing::TestWithParam<std::array<double, 4>> {};
+
+TEST_P(FungFibreSets, ClosedForms) {
+  const auto [c1, c2, k1, k2] = GetParam();
+  const FungFibre law(std::array{c1, c2, k1, k2, kRigidBulk});
   // Cauchy stress along the fibre, 2 I4 dW/dI4.
-  const auto fibre_stress = [](double I4) {
-    return I4 <= 1 ? 0 : 2 * I4 * kK1 * (I4 - 1) * std::exp(kK2 * (I4 - 1) * (I4 - 1));
+  const auto fibre_stress = [k1 = k1, k2 = k2](double I4) {
+    return I4 <= 1 ? 0 : 2 * I4 * k1 * (I4 - 1) * std::exp(k2 * (I4 - 1) * (I4 - 1));
   };
   const FibreState along{Vec3::UnitX(), 0}, oblique{Vec3(0.6, 0.8, 0), 0};
   for (const double s : kTestedStretches) {
     for (const Vec3& l : {Uniaxial(s), Equibiaxial(s), PureShear(s)}) {
-      const double matrix = 2 * (l[0] * l[0] - l[2] * l[2]) * (kC1 + kC2 * l[1] * l[1]);
+      const double matrix = 2 * (l[0] * l[0] - l[2] * l[2]) * (c1 + c2 * l[1] * l[1]);
       const double expected = matrix + fibre_stress(l[0] * l[0]);
-      EXPECT_NEAR(StressDifference(law, l, 0, 2, along), expected, 1e-10 * (std::abs(expected) + kC1)) << s;
+      EXPECT_NEAR(StressDifference(law, l, 0, 2, along), expected, 1e-10 * (std::abs(expected) + c1)) << s;
       // Fibres in the plane: a = F a0 = (0.6 l_x, 0.8 l_y).
       const double I4 = std::pow(0.6 * l[0], 2) + std::pow(0.8 * l[1], 2);
       const double inclined = matrix + fibre_stress(I4) * std::pow(0.6 * l[0], 2) / I4;
-      EXPECT_NEAR(StressDifference(law, l, 0, 2, oblique), inclined, 1e-10 * (std::abs(inclined) + kC1)) << s;
+      EXPECT_NEAR(StressDifference(law, l, 0, 2, oblique), inclined, 1e-10 * (std::abs(inclined) + c1)) << s;
     }
     // Simple shear: a = (0.6 + 0.8 g, 0.8).
     const double g = s - 1, x = 0.6 + 0.8 * g, I4 = x * x + 0.64;
-    const double expected = 2 * (kC1 + kC2) * g + fibre_stress(I4) * x * 0.8 / I4;
-    EXPECT_NEAR(ShearStress(law, g, oblique), expected, 1e-10 * (std::abs(expected) + kC1)) << s;
+    const double expected = 2 * (c1 + c2) * g + fibre_stress(I4) * x * 0.8 / I4;
+    EXPECT_NEAR(ShearStress(law, g, oblique), expected, 1e-10 * (std::abs(expected) + c1)) << s;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Published, FungFibreSets,
+                         ::testing::Values(std::array{1.5e3, 0.0, 2.3632e3, 0.8393},
+                                           std::array{150.0, 0.0, 562.0, 0.7112}, std::array{3e4, 1e4, 2e4, 0.7}));
 
 TEST(FungFibre, QuadraticInTheLimit) {
   const FungFibre law(std::array{3e4, 0.0, 2e4, 0.0, kRigidBulk});
