@@ -4,6 +4,7 @@
 //   neo-Hookean                                                neo_hookean
 //   isotropic elastic, St.Venant-Kirchhoff                     st_venant_kirchhoff
 //   Mooney-Rivlin; incomp neo-Hookean (c1 = G/2)               mooney_rivlin
+//   muscle material, tendon material                           blemker_muscle, blemker_tendon
 //   Ogden, Yeoh of up to three terms                           ogden, yeoh
 //   trans iso Mooney-Rivlin                                    trans_iso_mooney_rivlin
 //   uncoupled solid mixture of Mooney-Rivlin and
@@ -13,8 +14,8 @@
 //   ... and of these with a fibre of Mooney-Rivlin type and
 //     uncoupled prescribed uniaxial active contraction         trans_iso_mooney_rivlin with active_stress
 //
-// Two have no equal law here, and become the nearest one as a reported change: the shear energy g1 B1^2 + g2 B2^2 of
-// muscle and tendon material [Blemker 2005], and active_contraction [Guccione, McCulloch 1993].
+// One has no equal law here, and becomes the nearest one as a reported change: active_contraction [Guccione, McCulloch
+// 1993].
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -274,31 +275,28 @@ class MaterialReader {
     material_.activation = scale;
   }
 
-  // Muscle or tendon material by itself: along fibres it is the law muscle or tendon; its matrix has another energy, g1
-  // B1^2 + g2 B2^2, with shear moduli 2 g1 along and 2 g2 across the fibres, where Mooney-Rivlin has 2 c1.
+  // Muscle or tendon material by itself, whose matrix has the shear energy g1 B1^2 + g2 B2^2.
   void ReadBlemker(const std::string& type) {
     Parameters parameters(node_, source_);
     const double g1 = parameters.GetOr("g1", 0), g2 = parameters.GetOr("g2", 0);
     parameters.GetOr("g3", 0);
-    const std::string hint = "write an uncoupled solid mixture of Mooney-Rivlin and " + type +
-                             " with g1 and g2 of 0: that is the law " + type.substr(0, 6);
-    if (!(g1 + g2 > 0)) {
-      return source_.Fail(node_, "has no matrix: g1 and g2 are 0, and the law " + type.substr(0, 6) + " needs c1 > 0",
-                          hint);
+    if (!(g1 > 0 && g2 > 0)) {
+      return source_.Fail(node_, "has no matrix: the law " + type.substr(0, 6) + " needs g1 > 0 and g2 > 0",
+                          "write an uncoupled solid mixture of Mooney-Rivlin and " + type + " with g1 and g2 of 0");
     }
-    char text[320];
-    std::snprintf(
-        text, sizeof(text),
-        "has a shear energy in the invariants B1 and B2, for which there is no law here: Mooney-Rivlin with c1 "
-        "= %.6g, the mean of g1 and g2, replaces it; along fibres, too, it resists, with 3 c1 strain^2",
-        0.5 * (g1 + g2));
-    source_.Remark(Notice::Kind::kChanged, node_, text, hint);
-    const MooneyRivlinPart matrix{0.5 * (g1 + g2), 0};
-    const double bulk = BulkModulus(parameters);
+    const auto set_matrix = [&](auto& law) {
+      law.set_along_modulus(Stress(g1));
+      law.set_across_modulus(Stress(g2));
+      law.set_bulk_modulus(Stress(BulkModulus(parameters)));
+    };
     if (type == "muscle material") {
-      MixMuscle(matrix, bulk, node_);
+      v1::BlemkerMuscle& law = *material_.law.mutable_blemker_muscle();
+      set_matrix(law);
+      SetMuscleFibre(node_, law);
     } else {
-      MixTendon(matrix, bulk, node_);
+      v1::BlemkerTendon& law = *material_.law.mutable_blemker_tendon();
+      set_matrix(law);
+      SetTendonFibre(node_, law);
     }
   }
 
@@ -397,11 +395,19 @@ class MaterialReader {
 
   void MixMuscle(const MooneyRivlinPart& matrix, double bulk, pugi::xml_node node) {
     Parameters parameters(node, source_);
-    if (node != node_ && !IsFibreAlone(parameters, "muscle")) return;
+    if (!IsFibreAlone(parameters, "muscle")) return;
     v1::Muscle& law = *material_.law.mutable_muscle();
     law.set_c1(Stress(matrix.c1));
     law.set_c2(Stress(matrix.c2));
     law.set_bulk_modulus(Stress(bulk));
+    SetMuscleFibre(node, law);
+    ReadAxesOf(node);
+  }
+
+  // The fibre terms and the activation of a law of muscle.
+  template <class Law>
+  void SetMuscleFibre(pugi::xml_node node, Law& law) {
+    Parameters parameters(node, source_);
     law.set_peak_stress(Stress(parameters.Get("smax")));
     const double optimal = parameters.Get("Lofl");
     law.set_optimal_stretch(optimal);
@@ -413,21 +419,27 @@ class MaterialReader {
     if (optimal > 0) law.set_passive_transition(transition / optimal);
     material_.activation = parameters.GetDriven("activation");
     ReadFibreOf(node);
-    if (node != node_) ReadAxesOf(node);
   }
 
   void MixTendon(const MooneyRivlinPart& matrix, double bulk, pugi::xml_node node) {
     Parameters parameters(node, source_);
-    if (node != node_ && !IsFibreAlone(parameters, "tendon")) return;
+    if (!IsFibreAlone(parameters, "tendon")) return;
     v1::Tendon& law = *material_.law.mutable_tendon();
     law.set_c1(Stress(matrix.c1));
     law.set_c2(Stress(matrix.c2));
     law.set_bulk_modulus(Stress(bulk));
+    SetTendonFibre(node, law);
+    ReadAxesOf(node);
+  }
+
+  // The fibre terms of a law of tendon.
+  template <class Law>
+  void SetTendonFibre(pugi::xml_node node, Law& law) {
+    Parameters parameters(node, source_);
     law.set_fibre_scale(Stress(parameters.Get("l1")));
     law.set_fibre_exponent(parameters.Get("l2"));
     law.set_transition_stretch(parameters.Get(parameters.Either("lam_max", "lambda")));
     ReadFibreOf(node);
-    if (node != node_) ReadAxesOf(node);
   }
 
   // T0 along the first material axis, which must be the fibre direction; the law has T0 alpha.

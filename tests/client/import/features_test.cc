@@ -221,25 +221,32 @@ TEST(FebioMaterialTest, FibresWithoutASlopeBeyondTheirTransition) {
   EXPECT_THAT(NoticesOf(imported), HasSubstr("note model.feb:1: Material/material `m`/lam_max: is taken as 10"));
 }
 
-TEST(FebioMaterialTest, MuscleMaterialByItselfIsChanged) {
+TEST(FebioMaterialTest, MuscleAndTendonMaterialByThemselves) {
   Pieces pieces;
   pieces.material =
       "<material id=\"1\" name=\"m\" type=\"muscle material\"><g1>0.02</g1><g2>0.04</g2><p1>0.05</p1><p2>6.6</p2>"
       "<Lofl>1.1</Lofl><smax>0.3</smax><lam_max>1.54</lam_max><k>10</k><activation lc=\"1\">0.5</activation>"
       "<fiber type=\"vector\">0,0,1</fiber></material>";
-  EXPECT_THAT(Refusal(pieces), HasSubstr("Mooney-Rivlin with c1 = 0.03, the mean of g1 and g2"));
-  EXPECT_THAT(Refusal(pieces), HasSubstr("write an uncoupled solid mixture of Mooney-Rivlin and muscle material"));
-  const v1::Body body = Import(pieces).scene.bodies(0);
-  EXPECT_DOUBLE_EQ(body.material().muscle().c1(), 0.03e6);
-  EXPECT_EQ(body.material().muscle().c2(), 0);
-  EXPECT_DOUBLE_EQ(body.material().muscle().bulk_modulus(), 10e6);
-  EXPECT_DOUBLE_EQ(body.material().muscle().peak_stress(), 0.3e6);
-  EXPECT_NEAR(body.material().muscle().passive_transition(), 1.4, 1e-15);
+  ImportedScene imported = Import(pieces);
+  EXPECT_EQ(NoticesOf(imported), "");
+  const v1::Body body = imported.scene.bodies(0);
+  const v1::BlemkerMuscle& muscle = body.material().blemker_muscle();
+  EXPECT_DOUBLE_EQ(muscle.along_modulus(), 0.02e6);
+  EXPECT_DOUBLE_EQ(muscle.across_modulus(), 0.04e6);
+  EXPECT_DOUBLE_EQ(muscle.bulk_modulus(), 10e6);
+  EXPECT_DOUBLE_EQ(muscle.peak_stress(), 0.3e6);
+  EXPECT_NEAR(muscle.passive_transition(), 1.4, 1e-15);
   EXPECT_THAT(body.activation().values(), ElementsAre(0, 1));
   pieces.material =
-      "<material id=\"1\" name=\"m\" type=\"tendon material\"><g1>50</g1><g2>50</g2><l1>2.7</l1><l2>46.4</l2>"
-      "<lam_max>1.03</lam_max><k>500</k></material>";
-  EXPECT_DOUBLE_EQ(Import(pieces).scene.bodies(0).material().tendon().c1(), 50e6);
+      "<material id=\"1\" name=\"m\" type=\"tendon material\"><g1>50</g1><g2>60</g2><l1>2.7</l1><l2>46.4</l2>"
+      "<lam_max>1.03</lam_max><k>500</k><fiber type=\"vector\">0,0,1</fiber></material>";
+  imported = Import(pieces);
+  EXPECT_EQ(NoticesOf(imported), "");
+  const v1::BlemkerTendon tendon = imported.scene.bodies(0).material().blemker_tendon();
+  EXPECT_DOUBLE_EQ(tendon.along_modulus(), 50e6);
+  EXPECT_DOUBLE_EQ(tendon.across_modulus(), 60e6);
+  EXPECT_DOUBLE_EQ(tendon.fibre_scale(), 2.7e6);
+  EXPECT_EQ(tendon.transition_stretch(), 1.03);
 }
 
 TEST(FebioMaterialTest, DensityWithoutUnitsTellsThem) {
