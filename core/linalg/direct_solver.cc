@@ -13,7 +13,7 @@ namespace fascicle {
 namespace {
 
 constexpr int kInitialize = -1, kAnalyze = 1, kFactor = 2, kSolve = 3, kEnd = -2;
-// MUMPS's placeholder for the communicator of all processes; there is only one.
+// What MUMPS takes for the communicator of all processes; there is only one process.
 constexpr int kWorld = -987654;
 // EliminationOrder's, which depends on nothing but the pattern.
 constexpr int kGivenOrder = 1;
