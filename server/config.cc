@@ -61,6 +61,12 @@ std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std:
       ->transform(CLI::AsSizeValue(false))
       ->check(CLI::NonNegativeNumber)
       ->default_str("2GiB");
+  app.add_option("--keep-free", config.server.least_free_disk,
+                 "Free disk space below which jobs wait and new ones are refused")
+      ->type_name("SIZE")
+      ->transform(CLI::AsSizeValue(false))
+      ->check(CLI::NonNegativeNumber)
+      ->default_str("2 % of the disk, from 4MiB to 1GiB");
   app.add_option("--checkpoint", checkpoint, "Most work of a job that a crash can lose")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.01, 3600.0))

@@ -1,5 +1,7 @@
 #include "server/embedded_server.h"
 
+#include <arpa/inet.h>
+
 #include <mutex>
 #include <stdexcept>
 #include <string_view>
@@ -8,6 +10,8 @@
 #include <spdlog/logger.h>
 #include <spdlog/sinks/stdout_sinks.h>
 
+#include "fascicle/v1/job.pb.h"
+#include "server/jobs/crash_marks.h"
 #include "server/jobs/job_manager.h"
 #include "server/rpc/rpc_server.h"
 #include "server/store/result_store.h"
@@ -29,9 +33,10 @@ std::string HostOf(const std::string& listen) {
   return listen.substr(0, colon);
 }
 
-bool IsLoopback(std::string_view host) {
-  return host == "localhost" || host == "[::1]" ||
-         (host.starts_with("127.") && host.find_first_not_of("0123456789.") == std::string_view::npos);
+bool IsLoopback(const std::string& host) {
+  in_addr address;  // in network order
+  if (inet_pton(AF_INET, host.c_str(), &address) == 1) return ntohl(address.s_addr) >> 24 == 127;
+  return host == "localhost" || host == "[::1]";
 }
 
 std::shared_ptr<spdlog::logger> DefaultLog() {
@@ -40,13 +45,33 @@ std::shared_ptr<spdlog::logger> DefaultLog() {
   return log;
 }
 
-std::unique_ptr<Store> OpenStore(const std::string& data_directory) {
-  if (data_directory.empty()) return MakeMemoryStore();
+std::unique_ptr<Store> OpenStore(const ServerOptions& options) {
+  if (options.data_directory.empty()) return MakeMemoryStore();
   try {
-    return OpenSqliteStore(data_directory);
+    return OpenSqliteStore(options.data_directory, options.least_free_disk);
   } catch (const StoreError& e) {
-    throw std::runtime_error("cannot use the data directory " + data_directory + ": " + e.what());
+    throw std::runtime_error("cannot use the data directory " + options.data_directory + ": " + e.what());
   }
+}
+
+void LogEvent(spdlog::logger& log, const JobRecord& job, std::string_view event) {
+  std::string text = "job " + job.id + " " + std::string(event);
+  if (job.attempt > 1) text += ", attempt " + std::to_string(job.attempt);
+  if (!job.request_id.empty()) text += ", request " + job.request_id;
+  if (v1::Failure failure; job.state == JobState::kFailed && failure.ParseFromString(job.failure)) {
+    text += ": " + failure.reason() + ": " + failure.message();
+  }
+  log.info("{}", text);
+}
+
+JobManagerOptions JobOptions(const ServerOptions& options, const std::shared_ptr<spdlog::logger>& log) {
+  JobManagerOptions result = {options.workers, options.default_threads, options.checkpoint_interval};
+  result.on_event = [log](const JobRecord& job, std::string_view event) { LogEvent(*log, job, event); };
+  if (!options.record_crashes || options.data_directory.empty()) return result;
+  const std::string crashes = options.data_directory + "/crashes";
+  result.crashes = TakeCrashes(crashes);
+  RecordCrashes(crashes);
+  return result;
 }
 
 std::unique_ptr<ResultStore> OpenResults(const ServerOptions& options) {
@@ -59,11 +84,10 @@ class Server : public EmbeddedServer {
   explicit Server(const ServerOptions& options)
       : host_(HostOf(options.listen)),
         log_(options.log ? options.log : DefaultLog()),
-        store_(OpenStore(options.data_directory)),
+        store_(OpenStore(options)),
         result_store_(OpenResults(options)),
         results_(*result_store_),
-        jobs_(*store_, MakeJobCodec(&results_),
-              JobManagerOptions{options.workers, options.default_threads, options.checkpoint_interval}),
+        jobs_(*store_, MakeJobCodec(&results_), JobOptions(options, log_)),
         rpc_(options.listen, *store_, jobs_, results_, log_, SettingsOf(options)) {
     log_->info("listening on {}, data in {}", address(),
                options.data_directory.empty() ? "memory" : options.data_directory);

@@ -1,5 +1,8 @@
 // fascicled: the server program, a thin layer over EmbeddedServer.
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
@@ -37,11 +40,22 @@ void WatchOverStop(const sigset_t& signals) {
   }).detach();
 }
 
+// Every client needs a descriptor. gRPC stops accepting for good when there are none left.
+void AllowManyFiles() {
+  rlimit files;
+  if (getrlimit(RLIMIT_NOFILE, &files) != 0) return;
+  files.rlim_cur = files.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &files);
+}
+
 int Serve(const fascicle::server::Config& config, const std::shared_ptr<spdlog::logger>& log) {
   const sigset_t signals = BlockStopSignals();
   std::signal(SIGPIPE, SIG_IGN);
+  umask(S_IRWXG | S_IRWXO);  // results belong to the user who runs the server
+  AllowManyFiles();
   fascicle::server::ServerOptions options = config.server;
   options.log = log;
+  options.record_crashes = true;
   if (options.allow_remote)
     log->warn("remote clients are allowed, without TLS or login: use it in trusted networks only");
   const auto server = fascicle::server::EmbeddedServer::Start(options);

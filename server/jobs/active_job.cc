@@ -29,19 +29,16 @@ void ActiveJob::Update(const Change& change) {
   record_ = std::move(changed);
 }
 
-void ActiveJob::UpdateUnstored(const Change& change) {
-  const std::lock_guard update_lock(update_mutex_);
-  const std::lock_guard lock(mutex_);
-  JobRecord changed = record_;
-  FillIn(changed);
-  if (change(changed)) record_ = std::move(changed);
-}
-
 void ActiveJob::SetProgress(const Progress& progress) {
   const auto now = std::chrono::steady_clock::now();
   const std::lock_guard lock(mutex_);
   progress_ = progress;
   eta_.Add(progress.fraction, now);
+}
+
+void ActiveJob::SetWaiting(const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  waiting_ = why;
 }
 
 void ActiveJob::SetFrames(std::shared_ptr<FrameStore> frames) {
@@ -80,6 +77,7 @@ JobView ActiveJob::View(JobRecord stored) const {
   FillIn(record);
   JobView view = ViewOf(std::move(record));
   view.progress = progress_;
+  if (!IsFinal(record_.state)) view.waiting = waiting_;
   if (record_.state == JobState::kRunning) view.eta_seconds = eta_.Seconds(std::chrono::steady_clock::now());
   return view;
 }
@@ -91,6 +89,26 @@ JobView ViewOf(JobRecord record) {
   view.stored_bytes = record.stored_bytes;
   view.record = std::move(record);
   return view;
+}
+
+std::string_view EventOf(JobState state) {
+  switch (state) {
+    case JobState::kQueued:
+      return "queued again";
+    case JobState::kStarting:
+      return "started";
+    case JobState::kRunning:
+      return "running";
+    case JobState::kCancelling:
+      return "asked to stop";
+    case JobState::kSucceeded:
+      return "succeeded";
+    case JobState::kFailed:
+      return "failed";
+    case JobState::kCancelled:
+      return "cancelled";
+  }
+  return "changed";
 }
 
 std::int64_t UnixTimeUs() {

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <stop_token>
 #include <string>
+#include <string_view>
 
 #include "core/scene/scene.h"
 #include "core/sim/simulation.h"
@@ -28,11 +29,11 @@ class ActiveJob {
   // If `change` returns false, nothing happens. Throws StoreError; the record is then unchanged.
   using Change = std::function<bool(JobRecord&)>;
   void Update(const Change& change);
-  // The same without storing, for the end of a job whose store has failed.
-  void UpdateUnstored(const Change& change);
 
   // Called in every step; cheap.
   void SetProgress(const Progress& progress);
+  // Why the run does not go on at present, for users; empty if it does.
+  void SetWaiting(const std::string& why);
   void SetFrames(std::shared_ptr<FrameStore> frames);
   std::shared_ptr<FrameStore> frames() const;
   // The job's scene if it exists already; can be taken once.
@@ -56,12 +57,16 @@ class ActiveJob {
   JobRecord record_;
   Progress progress_;
   EtaEstimator eta_;
+  std::string waiting_;
   std::shared_ptr<FrameStore> frames_;
   std::shared_ptr<const Scene> scene_;
 };
 
 // The view of a record whose job is not active.
 JobView ViewOf(JobRecord record);
+
+// What has happened to a job that is in this state now, for a log.
+std::string_view EventOf(JobState state);
 
 // Time since the Unix epoch [us].
 std::int64_t UnixTimeUs();

@@ -3,6 +3,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/jobs/wait_for_room.h"
+
 namespace fascicle::server {
 namespace {
 
@@ -10,8 +12,10 @@ constexpr std::chrono::seconds kProgressInterval{1};
 
 }  // namespace
 
-FrameWriter::FrameWriter(ActiveJob& job, const JobCodec& codec, RunProfile& profile, std::function<void()> notify)
-    : job_(job),
+FrameWriter::FrameWriter(class Store& store, ActiveJob& job, const JobCodec& codec, RunProfile& profile,
+                         std::function<void()> notify)
+    : store_(store),
+      job_(job),
       frames_(job.frames()),
       codec_(codec),
       profile_(profile),
@@ -57,7 +61,7 @@ void FrameWriter::Loop() {
       changed_.notify_all();
       lock.unlock();
       try {
-        Store(item);
+        StoreFrame(item);
       } catch (...) {
         error = std::current_exception();
       }
@@ -72,24 +76,31 @@ void FrameWriter::Loop() {
   changed_.notify_all();
 }
 
-void FrameWriter::Store(const Item& item) {
+void FrameWriter::StoreFrame(const Item& item) {
   const Frame& frame = item.frame;
   const std::string bytes = Encode(frame);
   const FrameRecord record{frame.index, frame.time, frame.step, static_cast<std::int64_t>(bytes.size()),
                            std::string(frame.digest.begin(), frame.digest.end())};
   // A replaced frame must never be read under the old generation, so the generation is updated first. If this process
   // ends in between, the next one replaces the frame and increments the generation again.
-  if (frame.index < frames_->frame_count()) {
-    const std::vector<FrameRecord> stored = frames_->ListFrames(frame.index, 1);
-    const bool is_same = !stored.empty() && stored.front().digest == record.digest;
-    if (!is_same) job_.Update([](JobRecord& job) { return ++job.generation > 0; });
-  }
+  if (IsStoredDifferently(record)) job_.Update([](JobRecord& job) { return ++job.generation > 0; });
   {
     const StageTimer timer(&profile_.storing, "commit");
-    frames_->PutFrame(record, bytes, item.checkpoint);
+    WriteWhenRoom(store_, job_, [&] { frames_->PutFrame(record, bytes, item.checkpoint); });
   }
   profile_.storing.NoteCpu();
   notify_();
+}
+
+// Whether another frame is stored in the place of this one. A damaged one is not another one: it is written anew.
+bool FrameWriter::IsStoredDifferently(const FrameRecord& record) {
+  if (record.index >= frames_->frame_count()) return false;
+  try {
+    const std::vector<FrameRecord> stored = frames_->ListFrames(record.index, 1);
+    return stored.empty() || stored.front().digest != record.digest;
+  } catch (const DamageError&) {
+    return false;
+  }
 }
 
 std::string FrameWriter::Encode(const Frame& frame) {

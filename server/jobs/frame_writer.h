@@ -17,18 +17,20 @@
 namespace fascicle::server {
 
 // Stores the frames of a run from a thread of its own. The solver continues while a frame is encoded and written, and
-// waits only if kMaxWaiting frames are queued. Also stores progress and profile from time to time.
+// waits only if kMaxWaiting frames are queued, as they are while the disk is full. Also stores progress and profile from time to time.
 class FrameWriter final : public FrameSink {
  public:
   // `job` must have its frame store. `notify` is called after each stored frame. All arguments must outlive the writer.
-  FrameWriter(ActiveJob& job, const JobCodec& codec, RunProfile& profile, std::function<void()> notify);
+  FrameWriter(class Store& store, ActiveJob& job, const JobCodec& codec, RunProfile& profile,
+              std::function<void()> notify);
   // Finishes; errors are ignored.
   ~FrameWriter() override;
 
   bool PutFrame(Frame frame, std::string checkpoint) override;
   void PutProgress(const Progress& progress) override { job_.SetProgress(progress); }
 
-  // Returns when every frame is stored. Throws the error of the first frame that could not be stored.
+  // Returns when every frame is stored. Throws the error of the first frame that could not be stored; Stopped if the job
+  // was asked to stop while the disk was full.
   void Finish();
 
  private:
@@ -40,11 +42,13 @@ class FrameWriter final : public FrameSink {
   };
 
   void Loop();
-  void Store(const Item& item);
+  void StoreFrame(const Item& item);
+  bool IsStoredDifferently(const FrameRecord& record);
   std::string Encode(const Frame& frame);
   void StoreProgressRarely();
   void Close();
 
+  class Store& store_;
   ActiveJob& job_;
   const std::shared_ptr<FrameStore> frames_;
   const JobCodec& codec_;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "server/jobs/active_job.h"
+#include "server/jobs/crash_marks.h"
 #include "server/jobs/job_id.h"
 #include "server/jobs/job_run.h"
 #include "server/jobs/notifier.h"
@@ -27,12 +28,36 @@ std::string NewestId(Store& store) {
   return newest.empty() ? std::string() : newest.front().id;
 }
 
-// Takes over a job that another process left unfinished: queues it again, or cancels it if that was requested.
-void Resume(Store& store, JobRecord& record) {
+// A job whose thread crashed the process is its cause; one that merely ran when the process was killed may be. A job
+// ends when it was the cause twice at the same step, or ran at six such ends without any progress in between.
+constexpr std::int64_t kScoreOfCrash = 3, kScoreOfKill = 1, kMostScore = 6;
+
+// Ends the job if it seems to crash the process whenever it is run.
+void NoteCrash(const JobManagerOptions& options, const JobCodec& codec, JobRecord& record) {
+  const auto& crashes = options.crashes;
+  const bool is_cause = std::find(crashes.begin(), crashes.end(), record.id) != crashes.end();
+  if (record.step > record.crash_step) record.crash_score = 0;
+  record.crash_step = record.step;
+  record.crash_score += is_cause ? kScoreOfCrash : kScoreOfKill;
+  if (record.crash_score < kMostScore) return;
+  Failure failure;
+  failure.reason = "CRASHED";
+  failure.message = "the server ended again and again while it ran this job";
+  failure.step = record.step;
+  failure.time = record.time;
+  failure.advice = "a smaller model, or another linear solver, may need less memory; the server's log may say more";
+  record.state = JobState::kFailed;
+  record.failure = codec.encode_failure(failure);
+  record.end_time_us = UnixTimeUs();
+}
+
+// Takes over a job that another process left unfinished: queues it again, or ends it.
+void Resume(Store& store, const JobManagerOptions& options, const JobCodec& codec, JobRecord& record) {
   if (record.state == JobState::kQueued) return;
   const bool is_cancelled = record.state == JobState::kCancelling;
   record.state = is_cancelled ? JobState::kCancelled : JobState::kQueued;
   if (is_cancelled) record.end_time_us = UnixTimeUs();
+  if (!is_cancelled) NoteCrash(options, codec, record);
   try {
     if (const std::shared_ptr<FrameStore> frames = store.OpenFrames(record.id)) {
       record.frame_count = frames->frame_count();
@@ -63,7 +88,8 @@ struct JobManager::Impl {
       if (page.empty()) return;
       before = page.back().id;
       for (JobRecord& record : page) {
-        Resume(store, record);
+        Resume(store, options, codec, record);
+        options.on_event(record, EventOf(record.state));
         if (!IsFinal(record.state)) Enqueue(std::move(record), nullptr);
       }
     }
@@ -119,21 +145,12 @@ struct JobManager::Impl {
 
   void Work() {
     while (const std::shared_ptr<ActiveJob> job = TakeNext()) {
-      RunJob({store, codec, options}, *job, [this, &job] { notifier.Notify(job->id()); });
-      const bool is_final = IsFinal(job->record().state) && IsStored(*job);
+      const JobOnThisThread mark(job->id());
+      RunJob({store, codec, options, drain.get_token()}, *job, [this, &job] { notifier.Notify(job->id()); });
+      const bool is_final = IsFinal(job->record().state);
       const std::lock_guard lock(mutex);
       running.erase(job);
       if (is_final) active.erase(job->id());
-    }
-  }
-
-  // False while the store has failed to save the job's end, which is then known to this process only.
-  bool IsStored(const ActiveJob& job) {
-    try {
-      const std::optional<JobRecord> stored = store.GetJob(job.id());
-      return !stored || IsFinal(stored->state);
-    } catch (const StoreError&) {
-      return false;
     }
   }
 
@@ -142,6 +159,7 @@ struct JobManager::Impl {
     {
       const std::lock_guard lock(mutex);
       is_draining = true;
+      drain.request_stop();
       for (const std::shared_ptr<ActiveJob>& job : running) job->RequestStop();
     }
     queue_changed.notify_all();
@@ -163,6 +181,7 @@ struct JobManager::Impl {
   std::set<std::shared_ptr<ActiveJob>> running;   // with a worker
   bool is_draining = false;
 
+  std::stop_source drain;
   std::mutex drain_mutex;  // serializes drains; guards workers
   std::vector<std::thread> workers;
 };
@@ -180,6 +199,7 @@ JobView JobManager::Submit(JobRecord record, bool* repeated, std::shared_ptr<con
   const bool is_new = impl_->store.CreateJob(record, &existing);
   if (repeated != nullptr) *repeated = !is_new;
   if (!is_new) return impl_->View(impl_->FindActive(existing.id), std::move(existing));
+  impl_->options.on_event(record, "accepted");
   impl_->Enqueue(record, std::move(scene));
   impl_->notifier.Notify(record.id);
   return impl_->View(impl_->FindActive(record.id), std::move(record));
@@ -222,20 +242,24 @@ std::optional<JobView> JobManager::Cancel(std::string_view id) {
   });
   job->RequestStop();
   std::optional<JobView> view = Get(id);
+  impl_->options.on_event(job->record(), EventOf(job->record().state));
   if (job->record().state == JobState::kCancelled) impl_->Forget(id);
   impl_->notifier.Notify(id);
   return view;
 }
 
 JobManager::DeleteResult JobManager::Delete(std::string_view id) {
+  JobRecord record;
   if (const std::shared_ptr<ActiveJob> job = impl_->FindActive(id)) {
-    if (!IsFinal(job->record().state)) return DeleteResult::kActive;
+    record = job->record();
   } else {
-    const std::optional<JobRecord> record = impl_->store.GetJob(id);
-    if (!record) return DeleteResult::kNotFound;
-    if (!IsFinal(record->state)) return DeleteResult::kActive;  // accepted a moment ago
+    std::optional<JobRecord> stored = impl_->store.GetJob(id);
+    if (!stored) return DeleteResult::kNotFound;
+    record = *std::move(stored);
   }
+  if (!IsFinal(record.state)) return DeleteResult::kActive;  // perhaps accepted a moment ago
   const bool is_deleted = impl_->store.DeleteJob(id);
+  if (is_deleted) impl_->options.on_event(record, "deleted");
   impl_->Forget(id);
   impl_->notifier.Notify(id);
   return is_deleted ? DeleteResult::kDeleted : DeleteResult::kNotFound;

@@ -45,6 +45,10 @@ struct JobManagerOptions {
   int workers = 2;          // number of jobs that run at once; 0: jobs stay in the queue
   int default_threads = 1;  // for jobs that ask for 0
   std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2);
+  // Told of the life of each job: "accepted", "started", "succeeded" and so on. Called from several threads at once, after
+  // the change was stored.
+  std::function<void(const JobRecord& job, std::string_view event)> on_event = [](const JobRecord&, std::string_view) {};
+  std::vector<std::string> crashes = {};  // ids of the jobs whose threads crashed the last process; see crash_marks.h
 };
 
 // The current state of a job: the stored record, completed by data that only this process has.
@@ -52,6 +56,7 @@ struct JobView {
   JobRecord record;
   Progress progress;
   double eta_seconds = -1;  // negative: unknown
+  std::string waiting;      // why the run does not go on at present, for users; empty if it does
   int queue_position = 0;   // number of jobs before it; for kQueued only
   std::int64_t frame_count = 0;
   std::int64_t stored_bytes = 0;

@@ -1,5 +1,6 @@
 #include "server/jobs/job_run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <memory>
@@ -11,6 +12,7 @@
 
 #include "core/base/stop.h"
 #include "server/jobs/frame_writer.h"
+#include "server/jobs/wait_for_room.h"
 
 namespace fascicle::server {
 namespace {
@@ -38,13 +40,14 @@ void SetRunning(ActiveJob& job) {
   });
 }
 
-// At the stored checkpoint if it fits the scene and the stored frames, otherwise at rest.
+// At the newest stored checkpoint that is intact and fits the scene and the stored frames, otherwise at rest.
 std::unique_ptr<Simulation> MakeSimulation(std::shared_ptr<const Scene> scene, int threads, FrameStore& frames,
                                            Profile& profile, const std::stop_token& stop) {
   const StageTimer timer(&profile, "model");
-  if (const std::optional<std::string> checkpoint = frames.GetCheckpoint()) {
+  for (auto checkpoint = frames.GetCheckpoint(frames.frame_count()); checkpoint;
+       checkpoint = frames.GetCheckpoint(checkpoint->frame)) {
     auto simulation = std::make_unique<Simulation>(scene, threads, &profile, stop);
-    if (simulation->Restore(*checkpoint) && simulation->next_frame() <= frames.frame_count()) return simulation;
+    if (simulation->Restore(checkpoint->bytes) && simulation->next_frame() <= frames.frame_count()) return simulation;
   }
   return std::make_unique<Simulation>(std::move(scene), threads, &profile, stop);
 }
@@ -59,12 +62,12 @@ std::shared_ptr<const Scene> SceneOf(const RunContext& context, ActiveJob& job, 
   return scene;
 }
 
-void StoreGeometry(const RunContext& context, const ActiveJob& job, const Scene& scene, const FrameLayout& layout,
+void StoreGeometry(const RunContext& context, ActiveJob& job, const Scene& scene, const FrameLayout& layout,
                    Profile& profile) {
   const StageTimer timer(&profile, "geometry");
   const std::string geometry = context.codec.encode_geometry(scene, layout);
   ThrowIfStopped(job.stop_token());
-  job.frames()->PutGeometry(geometry);
+  WriteWhenRoom(context.store, job, [&] { job.frames()->PutGeometry(geometry); });
 }
 
 // Everything before the first step. Throws Stopped if the job is asked to stop.
@@ -74,11 +77,14 @@ std::unique_ptr<Simulation> SetUp(const RunContext& context, ActiveJob& job, Pro
   if (!record) throw StoreError("job " + job.id() + " has gone");
   const std::shared_ptr<const Scene> scene = SceneOf(context, job, record->spec, profile);
   ThrowIfStopped(job.stop_token());
-  const std::shared_ptr<FrameStore> frames = context.store.OpenFrames(job.id());
+  std::shared_ptr<FrameStore> frames;
+  WriteWhenRoom(context.store, job, [&] { frames = context.store.OpenFrames(job.id()); });
   if (frames == nullptr) throw StoreError("job " + job.id() + " has gone");
   job.SetFrames(frames);
 
-  const int threads = record->threads > 0 ? record->threads : context.options.default_threads;
+  // More threads than cores would only slow each other down.
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int threads = std::min(record->threads > 0 ? record->threads : context.options.default_threads, cores);
   std::unique_ptr<Simulation> simulation = MakeSimulation(scene, threads, *frames, profile, job.stop_token());
   StoreGeometry(context, job, *scene, simulation->layout(), profile);
   SetRunning(job);
@@ -88,7 +94,7 @@ std::unique_ptr<Simulation> SetUp(const RunContext& context, ActiveJob& job, Pro
 Outcome Simulate(const RunContext& context, ActiveJob& job, RunProfile& profile, const std::function<void()>& notify) {
   const std::unique_ptr<Simulation> simulation = SetUp(context, job, profile.working);
   notify();
-  FrameWriter writer(job, context.codec, profile, notify);
+  FrameWriter writer(context.store, job, context.codec, profile, notify);
   const Outcome outcome = simulation->Run(writer, job.stop_token(), context.options.checkpoint_interval);
   const StageTimer timer(&profile.working, "waiting for storage");
   writer.Finish();
@@ -175,21 +181,18 @@ void End(const RunContext& context, ActiveJob& job, const RunProfile& profile, c
     progress.fraction = 1;  // 1 even if the run settled early
     job.SetProgress(progress);
   }
-  constexpr int kTries = 3;
-  std::string error;
-  for (int i = 0; i < kTries; ++i) {
-    if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  constexpr std::chrono::milliseconds kInterval(100);
+  while (true) {
     try {
-      return job.Update(EndOf(context.codec, profile, outcome));
-    } catch (const std::exception& caught) {
-      error = caught.what();
+      job.Update(EndOf(context.codec, profile, outcome));
+      context.options.on_event(job.record(), EventOf(job.record().state));
+      return;
+    } catch (const std::exception& error) {
+      job.SetWaiting(std::string("the end of the job can't be stored: ") + error.what());
     }
+    if (context.drain.stop_requested()) return;
+    std::this_thread::sleep_for(kInterval);
   }
-  // The store still has the job as running, so the next process resumes it; this one can't.
-  if (outcome.kind == Outcome::Kind::kFailed) return job.UpdateUnstored(EndOf(context.codec, profile, outcome));
-  const Outcome failed =
-      Failed("STORAGE", error.c_str(), "check the server's disk; the job continues when the server restarts", job);
-  job.UpdateUnstored(EndOf(context.codec, profile, failed));
 }
 
 }  // namespace
@@ -200,6 +203,7 @@ void RunJob(const RunContext& context, ActiveJob& job, const std::function<void(
   Outcome outcome;
   try {
     if (!Start(job, profile.working)) return;
+    context.options.on_event(job.record(), EventOf(JobState::kStarting));
     notify();
     outcome = SimulateSafely(context, job, profile, notify);
   } catch (const std::exception& error) {

@@ -162,11 +162,21 @@ grpc::Status Internal(const std::string& reason, const std::string& message) {
   return MakeStatus(grpc::StatusCode::INTERNAL, reason, message, {});
 }
 
+grpc::Status DataLoss(const std::string& message) {
+  return MakeStatus(grpc::StatusCode::DATA_LOSS, "DAMAGED", message, {});
+}
+
 grpc::Status Guarded(spdlog::logger& log, const char* what, const std::function<grpc::Status()>& body) noexcept {
   try {
     return body();
   } catch (const Stopped&) {
     return Cancelled();
+  } catch (const DamageError& e) {
+    log.error("{}: damaged data: {}", what, e.what());
+    return DataLoss(Shortened(std::string("stored data are damaged: ") + e.what()));
+  } catch (const NoSpaceError& e) {
+    log.error("{}: the disk is full: {}", what, e.what());
+    return ResourceExhausted("DISK_FULL", "disk", "the server's disk is full; delete jobs or free some space");
   } catch (const StoreError& e) {
     log.error("{}: storage failed: {}", what, e.what());
     return Internal("STORAGE", Shortened(std::string("the server's storage failed: ") + e.what()));

@@ -51,8 +51,12 @@ grpc::Status OutOfRange(const std::string& reason, const std::string& message);
 grpc::Status Cancelled();
 grpc::Status Internal(const std::string& reason, const std::string& message);
 
-// Runs `body`. An exception is logged under `what` and becomes an INTERNAL error: STORAGE for a StoreError,
-// OUT_OF_MEMORY, or INTERNAL. Stopped becomes CANCELLED.
+// Stored bytes are damaged.
+grpc::Status DataLoss(const std::string& message);
+
+// Runs `body`. An exception is logged under `what` and becomes an error: DATA_LOSS for a DamageError, RESOURCE_EXHAUSTED
+// (DISK_FULL) for a NoSpaceError, otherwise INTERNAL: STORAGE for a StoreError, OUT_OF_MEMORY, or INTERNAL. Stopped
+// becomes CANCELLED.
 grpc::Status Guarded(spdlog::logger& log, const char* what, const std::function<grpc::Status()>& body) noexcept;
 
 }  // namespace fascicle::server

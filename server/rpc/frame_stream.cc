@@ -58,7 +58,8 @@ bool FrameStream::Open() {
   generation_ = request_.generation();
   if (!Refresh()) return false;
   generation_ = view_.record.generation;
-  if (IsFinal(view_.record.state) && next_index_ > known_count_) {
+  // The next index of a stream with a stride may be beyond the last frame.
+  if (IsFinal(view_.record.state) && next_index_ > known_count_ - 1 + stride_) {
     Complete(OutOfRange("START_INDEX", "start_index " + std::to_string(next_index_) + " is beyond the " +
                                            std::to_string(known_count_) + " frames of " + request_.name()));
     return false;

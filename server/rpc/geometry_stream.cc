@@ -28,9 +28,9 @@ bool GeometryStream::Load() {
     Complete(NotFound("job", job_name_));
     return false;
   }
-  std::optional<std::string> geometry = frames->GetGeometry();
-  if (geometry) {
-    bytes_ = std::make_shared<const std::string>(std::move(*geometry));
+  size_ = frames->GeometrySize();
+  if (size_) {
+    frames_ = frames;
     return true;
   }
   if (IsFinal(view->record.state)) {
@@ -40,12 +40,16 @@ bool GeometryStream::Load() {
 }
 
 void GeometryStream::Fill() {
-  if (!bytes_ && !Load()) return;
+  if (!frames_ && !Load()) return;
   while (HasRoom()) {
-    ChunkSource source{.offset = static_cast<std::int64_t>(sent_), .bytes = bytes_, .begin = sent_};
-    source.size = std::min<std::size_t>(FrameStore::kChunkSize, bytes_->size() - sent_);
-    sent_ += source.size;
-    source.last = sent_ == bytes_->size();
+    std::optional<std::string> bytes = frames_->ReadGeometryChunk(sent_ / FrameStore::kChunkSize);
+    if (!bytes) throw DamageError("the geometry of " + job_name_ + " is incomplete");
+    ChunkSource source;
+    source.offset = sent_;
+    source.size = bytes->size();
+    source.bytes = std::make_shared<const std::string>(std::move(*bytes));
+    sent_ += static_cast<std::int64_t>(source.size);
+    source.last = sent_ >= *size_;
     Push(ChunkMessage(v1::GetGeometryResponse::kChunkFieldNumber, source));
     if (source.last) Complete(grpc::Status::OK);
   }

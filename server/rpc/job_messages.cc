@@ -42,6 +42,7 @@ v1::Progress ProgressOf(const JobView& view) {
   progress.set_time(view.progress.time);
   progress.set_step(view.progress.step);
   progress.set_time_step(view.progress.time_step);
+  progress.set_waiting(view.waiting);
   if (view.eta_seconds >= 0) {
     const double seconds = std::floor(view.eta_seconds);
     progress.mutable_eta()->set_seconds(static_cast<std::int64_t>(seconds));

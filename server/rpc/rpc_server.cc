@@ -1,5 +1,6 @@
 #include "server/rpc/rpc_server.h"
 
+#include <mutex>
 #include <stdexcept>
 #include <utility>
 
@@ -23,6 +24,7 @@ constexpr int kKeepaliveTime = 30'000;    // [ms]
 // [ms]; long enough for a client that computes or draws for some seconds between two reads.
 constexpr int kKeepaliveTimeout = 20'000;
 constexpr int kShortestPingInterval = 10'000;  // [ms]
+constexpr int kLongestIdle = 600'000;          // [ms]; connections without a call for longer are closed
 
 constexpr int kQuickThreads = 4;
 constexpr int kSlowThreads = 2;
@@ -34,6 +36,7 @@ void Configure(grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeout);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, kShortestPingInterval);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kLongestIdle);
   // Otherwise a second server would silently share the port and receive half of the calls.
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
 }
@@ -52,7 +55,26 @@ struct RpcServer::Impl {
         quick(kQuickThreads, [this](const std::string& what) { logger->error("executor: {}", what); }),
         slow(kSlowThreads, [this](const std::string& what) { logger->error("executor: {}", what); }) {}
 
+  // Reports whether jobs can be accepted, again and again. While the store has a problem, only what is stored is served.
+  void WatchStore() {
+    const std::lock_guard lock(watch_mutex);
+    if (stopped) return;
+    const std::string problem = context.store.Problem();
+    if (problem != last_problem) {
+      if (problem.empty()) logger->info("the store is well again");
+      if (!problem.empty()) logger->error("jobs wait: {}", problem);
+      grpc::HealthCheckServiceInterface* health = server->GetHealthCheckService();
+      for (const char* service : {v1::JobService::service_full_name(), v1::AssetService::service_full_name()}) {
+        health->SetServingStatus(service, problem.empty());
+      }
+      last_problem = problem;
+    }
+    quick.PostAfter(std::chrono::seconds(1), [this] { WatchStore(); });
+  }
+
   std::shared_ptr<spdlog::logger> logger;
+  std::mutex watch_mutex;  // guards stopped and last_problem
+  std::string last_problem;
   OpenStreams streams;
   RpcContext context;
   JobServiceImpl job_service{context};
@@ -91,6 +113,7 @@ RpcServer::RpcServer(const std::string& listen, Store& store, JobManager& jobs, 
                               v1::FrameService::service_full_name(), v1::ServerService::service_full_name()}) {
     health->SetServingStatus(service, true);
   }
+  impl_->quick.Post([impl = impl_.get()] { impl->WatchStore(); });
 }
 
 RpcServer::~RpcServer() { Stop(); }
@@ -98,7 +121,10 @@ RpcServer::~RpcServer() { Stop(); }
 int RpcServer::port() const { return impl_->port; }
 
 void RpcServer::Stop() {
-  if (std::exchange(impl_->stopped, true) || !impl_->server) return;
+  {
+    const std::lock_guard lock(impl_->watch_mutex);
+    if (std::exchange(impl_->stopped, true) || !impl_->server) return;
+  }
   impl_->server->GetHealthCheckService()->SetServingStatus(false);
   impl_->streams.Drain();
   impl_->streams.WaitUntilEmpty(std::chrono::seconds(2));

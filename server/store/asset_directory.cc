@@ -105,8 +105,10 @@ std::optional<std::string> AssetDirectory::ReadAsset(std::string_view sha256_hex
   std::string bytes(file ? static_cast<std::size_t>(file.tellg()) : 0, '\0');
   file.seekg(0);
   if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) throw StoreError(path + ": cannot be read");
-  if (Hex(Sha256Of(bytes)) != sha256_hex) throw StoreError(path + ": is damaged, its digest is different");
-  return bytes;
+  if (Hex(Sha256Of(bytes)) == sha256_hex) return bytes;
+  std::error_code ignored;
+  fs::remove(path, ignored);  // so that the next client that needs it uploads it again
+  throw DamageError(path + ": was damaged and has been removed; submit the scene again to upload it anew");
 }
 
 }  // namespace fascicle::server

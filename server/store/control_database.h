@@ -7,18 +7,20 @@
 #include <unordered_set>
 #include <vector>
 
+#include "server/store/control_files.h"
 #include "server/store/database.h"
 #include "server/store/group_commit.h"
+#include "server/store/job_tables.h"
 #include "server/store/reader_pool.h"
 #include "server/store/store.h"
 
 namespace fascicle::server {
 
-// The jobs, in control.db. Thread-safe.
+// The jobs, in control.db and its copy (control_files.h). A row that is damaged in control.db is read from the copy.
+// Thread-safe.
 class ControlDatabase final : public JobStore {
  public:
-  explicit ControlDatabase(const std::string& path);
-  ~ControlDatabase() override;
+  explicit ControlDatabase(const ControlFiles& files);
 
   bool CreateJob(const JobRecord& job, JobRecord* existing) override;
   std::optional<JobRecord> GetJob(std::string_view id) override;
@@ -30,16 +32,14 @@ class ControlDatabase final : public JobStore {
   std::unordered_set<std::string> AllIds();
 
  private:
-  struct Reader;
+  // Calls read(reader) for control.db or, if that is damaged, for the copy.
+  template <class Read>
+  auto ReadWith(const Read& read);
 
   Database database_;
-  Statement find_request_;
-  Statement insert_job_;
-  Statement insert_spec_;
-  Statement update_job_;
-  Statement delete_job_;
+  JobWriter main_, copy_;
   GroupCommit writes_;
-  ReaderPool<Reader> readers_;
+  ReaderPool<JobReader> readers_, copy_readers_;
 };
 
 }  // namespace fascicle::server

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "server/store/file_system.h"
+#include "server/store/row_checksum.h"
 #include "server/store/store.h"
 
 namespace fascicle::server {
@@ -13,10 +14,23 @@ namespace {
 
 constexpr int kBusyTimeoutMs = 10'000;
 
+// Throws the error of `code`, an extended result code.
+[[noreturn]] void ThrowError(int code, const std::string& what) {
+  switch (code & 0xFF) {
+    case SQLITE_FULL:
+      throw NoSpaceError(what);
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      throw DamageError(what);
+    default:
+      throw StoreError(what);
+  }
+}
+
 [[noreturn]] void Throw(sqlite3* handle, const std::string& doing) {
   const char* path = sqlite3_db_filename(handle, "main");
-  throw StoreError(std::string(path != nullptr ? path : "database") + ": " + sqlite3_errmsg(handle) + " (" + doing +
-                   ")");
+  ThrowError(sqlite3_extended_errcode(handle), std::string(path != nullptr ? path : "database") + ": " +
+                                                   sqlite3_errmsg(handle) + " (" + doing + ")");
 }
 
 void Check(int code, sqlite3* handle, const char* doing) {
@@ -78,11 +92,12 @@ Database::Database(const std::string& path, Mode mode) : path_(path) {
   const int code = sqlite3_open_v2(path.c_str(), &handle_, flags, nullptr);
   if (code != SQLITE_OK) {
     sqlite3_close(std::exchange(handle_, nullptr));
-    throw StoreError(path + ": cannot be opened: " + sqlite3_errstr(code));
+    ThrowError(code, path + ": cannot be opened: " + sqlite3_errstr(code));
   }
   sqlite3_extended_result_codes(handle_, 1);
   sqlite3_busy_timeout(handle_, kBusyTimeoutMs);
   try {
+    AddRowChecksum(handle_);
     Execute("PRAGMA foreign_keys = ON");
     if (mode == Mode::kReadOnly) Execute("PRAGMA query_only = ON");
   } catch (...) {

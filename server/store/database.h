@@ -11,8 +11,8 @@ struct sqlite3_stmt;
 
 namespace fascicle::server {
 
-// A thin layer over SQLite's C interface: owned handles, typed arguments, and every error thrown as a StoreError that
-// names the file. A connection and its statements belong to one thread at a time.
+// A thin layer over SQLite's C interface: owned handles, typed arguments, and every error thrown as a StoreError
+// (DamageError, NoSpaceError) that names the file. A connection and its statements belong to one thread at a time.
 
 // Bytes, as opposed to std::string_view for text.
 struct Blob {

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <sys/vfs.h>
 #include <unistd.h>
 
@@ -18,11 +19,13 @@ namespace fascicle::server {
 namespace {
 
 [[noreturn]] void Throw(const std::string& path, const char* doing) {
-  throw StoreError(path + ": " + std::strerror(errno) + " (" + doing + ")");
+  const std::string what = path + ": " + std::strerror(errno) + " (" + doing + ")";
+  if (errno == ENOSPC || errno == EDQUOT) throw NoSpaceError(what);
+  throw StoreError(what);
 }
 
 int Open(const std::string& path, int flags) {
-  const int descriptor = open(path.c_str(), flags | O_CLOEXEC, 0640);
+  const int descriptor = open(path.c_str(), flags | O_CLOEXEC, 0600);
   if (descriptor < 0) Throw(path, "open");
   return descriptor;
 }
@@ -66,13 +69,20 @@ void FileWriter::Finish() {
   if (close(std::exchange(descriptor_, -1)) != 0) Throw(path_, "close");
 }
 
-DirectoryLock::DirectoryLock(const std::string& directory) : descriptor_(Open(directory + "/lock", O_RDWR | O_CREAT)) {
+DirectoryLock::DirectoryLock(const std::string& directory)
+    : path_(directory + "/lock"), descriptor_(Open(path_, O_RDWR | O_CREAT)) {
   if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
   const int error = errno;
   close(descriptor_);
   errno = error;
   if (error == EWOULDBLOCK) throw StoreError(directory + ": is in use by another server");
-  Throw(directory + "/lock", "flock");
+  Throw(path_, "flock");
+}
+
+bool DirectoryLock::IsThere() const {
+  struct stat own, named;
+  return fstat(descriptor_, &own) == 0 && stat(path_.c_str(), &named) == 0 && own.st_ino == named.st_ino &&
+         own.st_dev == named.st_dev;
 }
 
 DirectoryLock::~DirectoryLock() { close(descriptor_); }

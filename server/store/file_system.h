@@ -38,7 +38,11 @@ class DirectoryLock {
   DirectoryLock(const DirectoryLock&) = delete;
   DirectoryLock& operator=(const DirectoryLock&) = delete;
 
+  // False once the lock's file, or the whole directory, was removed or replaced: another process may use it then.
+  bool IsThere() const;
+
  private:
+  const std::string path_;
   int descriptor_;
 };
 

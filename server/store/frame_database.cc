@@ -14,7 +14,7 @@ constexpr int kFrameApplicationId = 0x46534346;  // "FSCF"
 // A chunk of a frame fills 32 pages. Larger pages make large blobs faster, but small frames larger.
 constexpr int kPageSize = 32768;
 
-constexpr std::array<const char*, 1> kFrameFormats = {
+constexpr std::array<const char*, 2> kFrameFormats = {
     // Format 1.
     R"(CREATE TABLE frames (
          idx INTEGER PRIMARY KEY,
@@ -37,7 +37,21 @@ constexpr std::array<const char*, 1> kFrameFormats = {
          id INTEGER PRIMARY KEY CHECK (id = 0),
          frame INTEGER NOT NULL,
          bytes BLOB NOT NULL
-       ) STRICT;)"};
+       ) STRICT;)",
+    // Format 2: checksums, and more than one checkpoint.
+    R"(ALTER TABLE frames ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+       UPDATE frames SET checksum = row_checksum(idx, time, step, size, digest);
+       ALTER TABLE chunks ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+       UPDATE chunks SET checksum = row_checksum(frame, chunk, bytes);
+       ALTER TABLE geometry ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+       UPDATE geometry SET checksum = row_checksum(chunk, bytes);
+       CREATE TABLE checkpoints (
+         frame INTEGER PRIMARY KEY,
+         bytes BLOB NOT NULL,
+         checksum INTEGER NOT NULL
+       ) STRICT;
+       INSERT INTO checkpoints SELECT frame, bytes, row_checksum(frame, bytes) FROM checkpoint;
+       DROP TABLE checkpoint;)"};
 
 // Calls put(number, bytes) for each chunk; empty data has one empty chunk.
 template <class Put>
@@ -52,17 +66,28 @@ void ForEachChunk(std::string_view bytes, const Put& put) {
 
 FrameRecord ReadFrame(const Rows& row) { return {row.Int(0), row.Real(1), row.Int(2), row.Int(3), row.String(4)}; }
 
+// Throws unless the column, a comparison of checksums, is true.
+void CheckIntact(const Rows& row, int column, const Database& database, const std::string& what) {
+  if (row.Int(column) != 1) throw DamageError(database.path() + ": " + what + " is damaged");
+}
+
 }  // namespace
 
 struct FrameDatabase::Reader {
   explicit Reader(const std::string& path) : database(path, Database::Mode::kReadOnly) {}
 
   Database database;
-  Statement geometry = database.Prepare("SELECT bytes FROM geometry ORDER BY chunk");
-  Statement checkpoint = database.Prepare("SELECT bytes FROM checkpoint");
-  Statement frames =
-      database.Prepare("SELECT idx, time, step, size, digest FROM frames WHERE idx >= ? ORDER BY idx LIMIT ?");
-  Statement chunk = database.Prepare("SELECT bytes FROM chunks WHERE frame = ? AND chunk = ?");
+  Statement geometry_size = database.Prepare("SELECT count(*), sum(length(bytes)) FROM geometry");
+  Statement geometry =
+      database.Prepare("SELECT bytes, row_checksum(chunk, bytes) = checksum FROM geometry WHERE chunk = ?");
+  Statement checkpoint = database.Prepare(
+      "SELECT frame, bytes FROM checkpoints WHERE frame < ? AND row_checksum(frame, bytes) = checksum "
+      "ORDER BY frame DESC LIMIT 1");
+  Statement frames = database.Prepare(
+      "SELECT idx, time, step, size, digest, row_checksum(idx, time, step, size, digest) = checksum FROM frames "
+      "WHERE idx >= ? ORDER BY idx LIMIT ?");
+  Statement chunk = database.Prepare(
+      "SELECT bytes, row_checksum(frame, chunk, bytes) = checksum FROM chunks WHERE frame = ? AND chunk = ?");
 };
 
 struct FrameDatabase::Connections {
@@ -71,14 +96,26 @@ struct FrameDatabase::Connections {
         readers([path] { return std::make_unique<Reader>(path); }) {}
 
   Database database;
-  Statement insert_frame =
-      database.Prepare("INSERT INTO frames (idx, time, step, size, digest) VALUES (?, ?, ?, ?, ?)");
-  Statement insert_chunk = database.Prepare("INSERT INTO chunks (frame, chunk, bytes) VALUES (?, ?, ?)");
-  Statement digest = database.Prepare("SELECT digest FROM frames WHERE idx = ?");
+  Statement insert_frame = database.Prepare(
+      "INSERT INTO frames (idx, time, step, size, digest, checksum) VALUES (?1, ?2, ?3, ?4, ?5, row_checksum(?1, ?2, "
+      "?3, ?4, ?5))");
+  Statement insert_chunk = database.Prepare(
+      "REPLACE INTO chunks (frame, chunk, bytes, checksum) VALUES (?1, ?2, ?3, row_checksum(?1, ?2, ?3))");
+  Statement digest = database.Prepare(
+      "SELECT digest, row_checksum(idx, time, step, size, digest) = checksum FROM frames WHERE idx = ?");
+  // Whether all chunks of a frame are there and intact.
+  Statement is_intact = database.Prepare(
+      "SELECT sum(length(bytes)) = (SELECT size FROM frames WHERE idx = ?1) AND min(row_checksum(frame, chunk, bytes) "
+      "= checksum) FROM chunks WHERE frame = ?1");
+  Statement delete_frame = database.Prepare("DELETE FROM frames WHERE idx = ?");
   Statement delete_frames = database.Prepare("DELETE FROM frames WHERE idx >= ?");
-  Statement delete_checkpoint = database.Prepare("DELETE FROM checkpoint WHERE frame >= ?");
-  Statement put_checkpoint = database.Prepare("REPLACE INTO checkpoint (id, frame, bytes) VALUES (0, ?, ?)");
-  Statement insert_geometry = database.Prepare("INSERT INTO geometry (chunk, bytes) VALUES (?, ?)");
+  Statement delete_checkpoints = database.Prepare("DELETE FROM checkpoints WHERE frame >= ?");
+  Statement put_checkpoint = database.Prepare(
+      "REPLACE INTO checkpoints (frame, bytes, checksum) VALUES (?1, ?2, row_checksum(?1, ?2))");
+  Statement keep_checkpoints = database.Prepare(
+      "DELETE FROM checkpoints WHERE frame NOT IN (SELECT frame FROM checkpoints ORDER BY frame DESC LIMIT 2)");
+  Statement insert_geometry =
+      database.Prepare("INSERT INTO geometry (chunk, bytes, checksum) VALUES (?1, ?2, row_checksum(?1, ?2))");
   ReaderPool<Reader> readers;
 };
 
@@ -104,9 +141,22 @@ void FrameDatabase::Count() {
       "SELECT (SELECT ifnull(sum(size), 0) FROM frames) + (SELECT ifnull(sum(length(bytes)), 0) FROM geometry)");
 }
 
+bool FrameDatabase::HasGeometry(std::string_view bytes) {
+  try {
+    if (GeometrySize() != static_cast<std::int64_t>(bytes.size())) return false;
+    bool same = true;
+    ForEachChunk(bytes, [&](std::int64_t number, std::string_view chunk) {
+      same = same && ReadGeometryChunk(number) == chunk;
+    });
+    return same;
+  } catch (const DamageError&) {
+    return false;
+  }
+}
+
 void FrameDatabase::PutGeometry(std::string_view bytes) {
   const std::lock_guard lock(write_mutex_);
-  if (GetGeometry() == bytes) return;
+  if (HasGeometry(bytes)) return;
   Transaction transaction(connections_->database);
   connections_->database.Execute("DELETE FROM geometry");
   ForEachChunk(bytes, [&](std::int64_t number, std::string_view chunk) {
@@ -116,16 +166,32 @@ void FrameDatabase::PutGeometry(std::string_view bytes) {
   Count();
 }
 
-std::optional<std::string> FrameDatabase::GetGeometry() {
-  return connections_->readers.With([](Reader& reader) {
-    std::optional<std::string> bytes;
-    Rows rows = reader.geometry.Query();
-    while (rows.Next()) {
-      if (!bytes) bytes.emplace();
-      bytes->append(rows.Bytes(0));
-    }
-    return bytes;
+std::optional<std::int64_t> FrameDatabase::GeometrySize() {
+  return connections_->readers.With([](Reader& reader) -> std::optional<std::int64_t> {
+    Rows rows = reader.geometry_size.Query();
+    if (!rows.Next() || rows.Int(0) == 0) return std::nullopt;
+    return rows.Int(1);
   });
+}
+
+std::optional<std::string> FrameDatabase::ReadGeometryChunk(std::int64_t chunk) {
+  return connections_->readers.With([&](Reader& reader) -> std::optional<std::string> {
+    Rows rows = reader.geometry.Query(chunk);
+    if (!rows.Next()) return std::nullopt;
+    CheckIntact(rows, 1, reader.database, "the geometry");
+    return rows.String(0);
+  });
+}
+
+FrameDatabase::Stored FrameDatabase::Find(const FrameRecord& frame) {
+  if (frame.index >= frame_count_) return Stored::kNot;
+  {
+    Rows rows = connections_->digest.Query(frame.index);
+    if (!rows.Next() || rows.Int(1) != 1) return Stored::kDamaged;
+    if (rows.Bytes(0) != frame.digest) return Stored::kDifferent;
+  }
+  Rows rows = connections_->is_intact.Query(frame.index);
+  return rows.Next() && rows.Int(0) == 1 ? Stored::kSame : Stored::kDamaged;
 }
 
 bool FrameDatabase::PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) {
@@ -133,27 +199,22 @@ bool FrameDatabase::PutFrame(const FrameRecord& frame, std::string_view bytes, s
   if (frame.index < 0 || frame.index > frame_count_) {
     throw std::invalid_argument("frame " + std::to_string(frame.index) + " does not follow the stored ones");
   }
-  std::string stored_digest;
-  const bool is_there = frame.index < frame_count_;
-  if (is_there) {
-    Rows rows = connections_->digest.Query(frame.index);
-    if (rows.Next()) stored_digest = rows.String(0);
-  }
-  const bool is_same = is_there && stored_digest == frame.digest;
-  if (is_same && checkpoint.empty()) return false;
+  const Stored stored = Find(frame);
+  if (stored == Stored::kSame && checkpoint.empty()) return false;
 
   Transaction transaction(connections_->database);
-  if (is_there && !is_same) DeleteFramesFrom(frame.index);
-  if (!is_same) InsertFrame(frame, bytes);
-  if (!checkpoint.empty()) connections_->put_checkpoint.Run(frame.index, Blob{checkpoint});
+  if (stored == Stored::kDifferent) DeleteFramesFrom(frame.index);
+  if (stored == Stored::kDamaged) connections_->delete_frame.Run(frame.index);
+  if (stored != Stored::kSame) InsertFrame(frame, bytes);
+  if (!checkpoint.empty()) InsertCheckpoint(frame.index, checkpoint);
   transaction.Commit();
-  if (is_there && !is_same) {
-    Count();
-  } else if (!is_there) {
+  if (stored == Stored::kNot) {
     stored_bytes_ += static_cast<std::int64_t>(bytes.size());
     ++frame_count_;
+  } else if (stored != Stored::kSame) {
+    Count();
   }
-  return is_there && !is_same;
+  return stored == Stored::kDifferent;
 }
 
 void FrameDatabase::InsertFrame(const FrameRecord& frame, std::string_view bytes) {
@@ -166,14 +227,19 @@ void FrameDatabase::InsertFrame(const FrameRecord& frame, std::string_view bytes
 
 void FrameDatabase::DeleteFramesFrom(std::int64_t index) {
   connections_->delete_frames.Run(index);  // and their chunks
-  connections_->delete_checkpoint.Run(index);
+  connections_->delete_checkpoints.Run(index);
 }
 
-std::optional<std::string> FrameDatabase::GetCheckpoint() {
-  return connections_->readers.With([](Reader& reader) -> std::optional<std::string> {
-    Rows rows = reader.checkpoint.Query();
+void FrameDatabase::InsertCheckpoint(std::int64_t frame, std::string_view bytes) {
+  connections_->put_checkpoint.Run(frame, Blob{bytes});
+  connections_->keep_checkpoints.Run();
+}
+
+std::optional<CheckpointRecord> FrameDatabase::GetCheckpoint(std::int64_t frame) {
+  return connections_->readers.With([&](Reader& reader) -> std::optional<CheckpointRecord> {
+    Rows rows = reader.checkpoint.Query(frame);
     if (!rows.Next()) return std::nullopt;
-    return rows.String(0);
+    return CheckpointRecord{rows.Int(0), rows.String(1)};
   });
 }
 
@@ -181,7 +247,10 @@ std::vector<FrameRecord> FrameDatabase::ListFrames(std::int64_t start, int limit
   return connections_->readers.With([&](Reader& reader) {
     std::vector<FrameRecord> frames;
     Rows rows = reader.frames.Query(start, limit < 0 ? 0 : limit);  // SQL: LIMIT < 0 is no limit
-    while (rows.Next()) frames.push_back(ReadFrame(rows));
+    while (rows.Next()) {
+      CheckIntact(rows, 5, reader.database, "the record of frame " + std::to_string(rows.Int(0)));
+      frames.push_back(ReadFrame(rows));
+    }
     return frames;
   });
 }
@@ -190,6 +259,7 @@ std::optional<std::string> FrameDatabase::ReadChunk(std::int64_t index, std::int
   return connections_->readers.With([&](Reader& reader) -> std::optional<std::string> {
     Rows rows = reader.chunk.Query(index, chunk);
     if (!rows.Next()) return std::nullopt;
+    CheckIntact(rows, 1, reader.database, "frame " + std::to_string(index));
     return rows.String(0);
   });
 }

@@ -23,9 +23,10 @@ class FrameDatabase final : public FrameStore {
   ~FrameDatabase() override;
 
   void PutGeometry(std::string_view bytes) override;
-  std::optional<std::string> GetGeometry() override;
+  std::optional<std::int64_t> GeometrySize() override;
+  std::optional<std::string> ReadGeometryChunk(std::int64_t chunk) override;
   bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) override;
-  std::optional<std::string> GetCheckpoint() override;
+  std::optional<CheckpointRecord> GetCheckpoint(std::int64_t frame) override;
   std::vector<FrameRecord> ListFrames(std::int64_t start, int limit) override;
   std::int64_t frame_count() override { return frame_count_; }
   std::int64_t stored_bytes() override { return stored_bytes_; }
@@ -41,8 +42,13 @@ class FrameDatabase final : public FrameStore {
   struct Reader;
   struct Connections;  // everything that has the file open
 
+  enum class Stored { kNot, kSame, kDamaged, kDifferent };
+  // What is stored of a frame with this index and digest.
+  Stored Find(const FrameRecord& frame);
+  bool HasGeometry(std::string_view bytes);
   void InsertFrame(const FrameRecord& frame, std::string_view bytes);
   void DeleteFramesFrom(std::int64_t index);
+  void InsertCheckpoint(std::int64_t frame, std::string_view bytes);
   void Count();
 
   const std::shared_ptr<void> held_;

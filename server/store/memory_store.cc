@@ -20,9 +20,16 @@ class MemoryFrameStore final : public FrameStore {
     geometry_ = bytes;
   }
 
-  std::optional<std::string> GetGeometry() override {
+  std::optional<std::int64_t> GeometrySize() override {
     const std::shared_lock lock(mutex_);
-    return geometry_;
+    if (!geometry_) return std::nullopt;
+    return static_cast<std::int64_t>(geometry_->size());
+  }
+
+  std::optional<std::string> ReadGeometryChunk(std::int64_t chunk) override {
+    const std::shared_lock lock(mutex_);
+    if (!geometry_) return std::nullopt;
+    return ChunkOf(*geometry_, chunk);
   }
 
   bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) override {
@@ -40,15 +47,18 @@ class MemoryFrameStore final : public FrameStore {
       stored_bytes_ += frames_.back().record.size;
     }
     if (!checkpoint.empty()) {
-      checkpoint_ = checkpoint;
-      checkpoint_frame_ = frame.index;
+      checkpoints_[frame.index] = checkpoint;
+      while (checkpoints_.size() > 2) checkpoints_.erase(checkpoints_.begin());
     }
     return is_there && !is_same;
   }
 
-  std::optional<std::string> GetCheckpoint() override {
+  std::optional<CheckpointRecord> GetCheckpoint(std::int64_t frame) override {
     const std::shared_lock lock(mutex_);
-    return checkpoint_;
+    auto found = checkpoints_.lower_bound(frame);
+    if (found == checkpoints_.begin()) return std::nullopt;
+    --found;
+    return CheckpointRecord{found->first, found->second};
   }
 
   std::vector<FrameRecord> ListFrames(std::int64_t start, int limit) override {
@@ -73,11 +83,8 @@ class MemoryFrameStore final : public FrameStore {
 
   std::optional<std::string> ReadChunk(std::int64_t index, std::int64_t chunk) override {
     const std::shared_lock lock(mutex_);
-    if (index < 0 || index >= static_cast<std::int64_t>(frames_.size()) || chunk < 0) return std::nullopt;
-    const std::string& bytes = frames_[static_cast<std::size_t>(index)].bytes;
-    const auto last = std::max<std::int64_t>(static_cast<std::int64_t>(bytes.size()) - 1, 0) / kChunkSize;
-    if (chunk > last) return std::nullopt;
-    return bytes.substr(static_cast<std::size_t>(chunk * kChunkSize), static_cast<std::size_t>(kChunkSize));
+    if (index < 0 || index >= static_cast<std::int64_t>(frames_.size())) return std::nullopt;
+    return ChunkOf(frames_[static_cast<std::size_t>(index)].bytes, chunk);
   }
 
  private:
@@ -86,17 +93,23 @@ class MemoryFrameStore final : public FrameStore {
     std::string bytes;
   };
 
+  // Empty data has one empty chunk.
+  static std::optional<std::string> ChunkOf(const std::string& bytes, std::int64_t chunk) {
+    const auto last = std::max<std::int64_t>(static_cast<std::int64_t>(bytes.size()) - 1, 0) / kChunkSize;
+    if (chunk < 0 || chunk > last) return std::nullopt;
+    return bytes.substr(static_cast<std::size_t>(chunk * kChunkSize), static_cast<std::size_t>(kChunkSize));
+  }
+
   void DropFramesFrom(std::size_t index) {
     for (std::size_t i = index; i < frames_.size(); ++i) stored_bytes_ -= frames_[i].record.size;
     frames_.resize(std::min(index, frames_.size()));
-    if (checkpoint_ && checkpoint_frame_ >= static_cast<std::int64_t>(index)) checkpoint_.reset();
+    checkpoints_.erase(checkpoints_.lower_bound(static_cast<std::int64_t>(index)), checkpoints_.end());
   }
 
   std::shared_mutex mutex_;
   std::optional<std::string> geometry_;
   std::vector<StoredFrame> frames_;
-  std::optional<std::string> checkpoint_;
-  std::int64_t checkpoint_frame_ = -1;
+  std::map<std::int64_t, std::string> checkpoints_;
   std::int64_t stored_bytes_ = 0;
 };
 
@@ -158,6 +171,8 @@ class MemoryStore final : public Store {
     jobs_.erase(found);
     return true;
   }
+
+  std::string Problem() override { return ""; }
 
   std::shared_ptr<FrameStore> OpenFrames(std::string_view job_id) override {
     const std::shared_lock lock(mutex_);

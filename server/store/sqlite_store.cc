@@ -7,6 +7,7 @@
 
 #include "server/store/asset_directory.h"
 #include "server/store/control_database.h"
+#include "server/store/disk_reserve.h"
 #include "server/store/file_system.h"
 #include "server/store/frame_database.h"
 #include "server/store/store.h"
@@ -18,7 +19,8 @@ namespace fs = std::filesystem;
 
 std::string CreateDirectories(const std::string& directory) {
   std::error_code error;
-  fs::create_directories(directory, error);
+  // Only its owner may look into a directory that is created here.
+  if (fs::create_directories(directory, error)) fs::permissions(directory, fs::perms::owner_all, error);
   if (!error) fs::create_directories(directory + "/jobs", error);
   if (error) throw StoreError(directory + ": " + error.message());
   SyncParent(directory + "/jobs");
@@ -32,26 +34,34 @@ std::shared_ptr<DirectoryLock> Lock(const std::string& directory) {
 
 class SqliteStore final : public Store {
  public:
-  explicit SqliteStore(const std::string& directory)
+  SqliteStore(const std::string& directory, std::int64_t least_free)
       : directory_(CreateDirectories(directory)),
         lock_(Lock(directory_)),
-        jobs_(directory_ + "/control.db"),
+        reserve_(directory_, least_free),
+        jobs_({directory_ + "/control.db", directory_ + "/control.copy.db"}),
         assets_(directory_ + "/assets") {
     RemoveOrphans();
   }
 
-  bool CreateJob(const JobRecord& job, JobRecord* existing) override { return jobs_.CreateJob(job, existing); }
+  bool CreateJob(const JobRecord& job, JobRecord* existing) override {
+    if (const std::string problem = Problem(); !problem.empty()) throw NoSpaceError(problem);
+    return jobs_.CreateJob(job, existing);
+  }
   std::optional<JobRecord> GetJob(std::string_view id) override { return jobs_.GetJob(id); }
   std::vector<JobRecord> ListJobs(int limit, std::string_view before_id, const std::vector<JobState>& states) override {
     return jobs_.ListJobs(limit, before_id, states);
   }
-  void UpdateJob(const JobRecord& job) override { jobs_.UpdateJob(job); }
+  void UpdateJob(const JobRecord& job) override {
+    WithReserve([&] { jobs_.UpdateJob(job); });
+  }
 
   bool DeleteJob(std::string_view id) override {
     const std::lock_guard lock(mutex_);
     // The row is deleted first: a file without a row is removed at the next start, whereas a row without its file would
     // be inconsistent.
-    if (!jobs_.DeleteJob(id)) return false;
+    bool is_deleted = false;
+    WithReserve([&] { is_deleted = jobs_.DeleteJob(id); });
+    if (!is_deleted) return false;
     const auto open = open_frames_.find(std::string(id));
     const std::shared_ptr<FrameDatabase> frames = open == open_frames_.end() ? nullptr : open->second.lock();
     if (open != open_frames_.end()) open_frames_.erase(open);
@@ -78,15 +88,40 @@ class SqliteStore final : public Store {
 
   bool HasAsset(std::string_view sha256_hex) override { return assets_.HasAsset(sha256_hex); }
   std::unique_ptr<Upload> BeginUpload(std::string_view sha256_hex, std::int64_t size) override {
+    const std::string problem = Problem();
+    if (!problem.empty()) throw NoSpaceError(problem);
+    if (reserve_.free_bytes() - size < reserve_.least_free()) {
+      throw NoSpaceError("an asset of " + std::to_string(size) + " bytes does not fit the disk");
+    }
     return assets_.BeginUpload(sha256_hex, size);
   }
   std::optional<std::string> ReadAsset(std::string_view sha256_hex) override { return assets_.ReadAsset(sha256_hex); }
 
+  std::string Problem() override {
+    if (!lock_->IsThere()) return "the data folder " + directory_ + " or its file `lock` has been removed";
+    if (reserve_.HasRoom()) return "";
+    return "the server's disk is almost full: " + std::to_string(reserve_.free_bytes() >> 20) + " MiB are left, " +
+           std::to_string(reserve_.least_free() >> 20) + " MiB are kept free; delete jobs or other files";
+  }
+
  private:
+  // Calls `write`, and again with the reserve if the disk is full.
+  template <class Write>
+  void WithReserve(const Write& write) {
+    try {
+      write();
+    } catch (const NoSpaceError&) {
+      reserve_.Release();
+      write();
+    }
+  }
+
   std::string FramesPath(std::string_view id) const { return directory_ + "/jobs/" + std::string(id) + ".db"; }
 
-  // Removes files of jobs that are not in the control database, left by interrupted deletions.
+  // Removes files of jobs that are not in the control database, left by interrupted deletions. Keeps all of them if
+  // the control database was ever damaged: its list may be incomplete.
   void RemoveOrphans() {
+    if (fs::exists(directory_ + "/control.db.damaged-1")) return;
     const std::unordered_set<std::string> ids = jobs_.AllIds();
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(directory_ + "/jobs", error)) {
@@ -98,6 +133,7 @@ class SqliteStore final : public Store {
 
   const std::string directory_;
   const std::shared_ptr<DirectoryLock> lock_;
+  DiskReserve reserve_;
   ControlDatabase jobs_;
   AssetDirectory assets_;
   std::mutex mutex_;  // guards open_frames_; no job is deleted while its frames are being opened
@@ -106,8 +142,8 @@ class SqliteStore final : public Store {
 
 }  // namespace
 
-std::unique_ptr<Store> OpenSqliteStore(const std::string& directory) {
-  return std::make_unique<SqliteStore>(directory);
+std::unique_ptr<Store> OpenSqliteStore(const std::string& directory, std::int64_t least_free) {
+  return std::make_unique<SqliteStore>(directory, least_free);
 }
 
 }  // namespace fascicle::server

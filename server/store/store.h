@@ -24,6 +24,18 @@ class StoreError : public std::exception {
   std::string what_;
 };
 
+// Stored bytes are not those that were written: their checksum or the structure of their file is wrong.
+class DamageError : public StoreError {
+ public:
+  using StoreError::StoreError;
+};
+
+// The disk is full. Writes succeed again as soon as there is room.
+class NoSpaceError : public StoreError {
+ public:
+  using StoreError::StoreError;
+};
+
 // As Job.State in job.proto; the numbers are stored.
 enum class JobState {
   kQueued = 1,
@@ -59,19 +71,25 @@ struct JobRecord {
   std::int64_t step = 0;            // as last stored
   std::int64_t frame_count = 0;     // as last stored; exact once the state is final
   std::int64_t stored_bytes = 0;    // of frames and geometry, as last stored; exact once the state is final
+  // How much speaks for this job as the cause when the process ended without stopping it, since its last progress, and
+  // the step that it had reached then; see job_manager.cc.
+  std::int64_t crash_score = 0;
+  std::int64_t crash_step = -1;
 };
 
 // Jobs. Changes are durable (fsync) when a function returns.
 class JobStore {
  public:
   virtual ~JobStore() = default;
-  // False, without any change, if the request id is taken; `existing` (not null) is then that job.
+  // False, without any change, if the request id is taken; `existing` (not null) is then that job. Throws NoSpaceError
+  // if the disk is almost full.
   virtual bool CreateJob(const JobRecord& job, JobRecord* existing) = 0;
   virtual std::optional<JobRecord> GetJob(std::string_view id) = 0;
   // Newest first, without `spec`: ids below `before_id` (empty: from the newest), states in `states` (empty: all).
   virtual std::vector<JobRecord> ListJobs(int limit, std::string_view before_id,
                                           const std::vector<JobState>& states) = 0;
-  // Writes state, failure, profile, warnings, attempt, generation, start and end time, progress and counts of a job.
+  // Writes state, failure, profile, warnings, attempt, generation, start and end time, progress, counts and crashes of a
+  // job.
   // Does nothing if the job does not exist.
   virtual void UpdateJob(const JobRecord& job) = 0;
   // Removes the job with its frames. False if it does not exist.
@@ -86,7 +104,14 @@ struct FrameRecord {
   std::string digest;  // 32 bytes
 };
 
-// The frames of one job, in a file of their own. Writers wait for each other; readers do not wait.
+// The state of a run right after a frame.
+struct CheckpointRecord {
+  std::int64_t frame = 0;
+  std::string bytes;
+};
+
+// The frames of one job, in a file of their own. Writers wait for each other; readers do not wait. What is read is
+// compared with the checksum stored with it: DamageError.
 class FrameStore {
  public:
   static constexpr std::int64_t kChunkSize = 1 << 20;  // size of the chunks in which frames and geometry are stored
@@ -94,15 +119,19 @@ class FrameStore {
   virtual ~FrameStore() = default;
   // Replaces the geometry; does nothing if it is the same.
   virtual void PutGeometry(std::string_view bytes) = 0;
-  virtual std::optional<std::string> GetGeometry() = 0;
-  // Appends a frame and, if `checkpoint` is not empty, replaces the checkpoint, in one transaction. If a frame with
-  // this index and digest is already stored, it is left as it is (a restart repeats frames after its checkpoint). If
-  // the digest differs, this frame and all later ones are replaced, a checkpoint that belongs to one of them is
-  // removed, and true is returned. The caller must increment the job's generation before such a call, so that no reader
-  // sees the new frame under the old generation. Throws std::invalid_argument unless 0 <= index <= frame_count().
-  // `frame.size` is ignored; the size of `bytes` is stored.
+  // Size of the geometry; nothing if there is none.
+  virtual std::optional<std::int64_t> GeometrySize() = 0;
+  // Chunk number `chunk` of the geometry; nothing if it does not exist.
+  virtual std::optional<std::string> ReadGeometryChunk(std::int64_t chunk) = 0;
+  // Appends a frame and, if `checkpoint` is not empty, stores that, in one transaction. The last two checkpoints are
+  // kept. If a frame with this index and digest is already stored, it is left as it is (a restart repeats frames after
+  // its checkpoint), but written anew if its bytes are damaged. If the digest differs, this frame and all later ones
+  // are replaced, checkpoints that belong to them are removed, and true is returned. The caller must increment the
+  // job's generation before such a call, so that no reader sees the new frame under the old generation. Throws
+  // std::invalid_argument unless 0 <= index <= frame_count(). `frame.size` is ignored; the size of `bytes` is stored.
   virtual bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) = 0;
-  virtual std::optional<std::string> GetCheckpoint() = 0;
+  // The newest undamaged checkpoint of a frame before `frame`.
+  virtual std::optional<CheckpointRecord> GetCheckpoint(std::int64_t frame) = 0;
   // Frames with index >= start, at most `limit`, in order.
   virtual std::vector<FrameRecord> ListFrames(std::int64_t start, int limit) = 0;
   // Frames 0 .. count - 1 are stored.
@@ -136,13 +165,17 @@ class Store : public JobStore, public AssetStore {
  public:
   // Opens the frame store, and creates it for a job without frames. Null if there is no such job.
   virtual std::shared_ptr<FrameStore> OpenFrames(std::string_view job_id) = 0;
+  // Why nothing new should be stored, for users, such as a disk that is almost full; empty if all is well. Deleting jobs
+  // and updating their records may still be possible. Cheap.
+  virtual std::string Problem() = 0;
 };
 
 // In memory, for tests and for an EmbeddedServer without a data directory; nothing survives it.
 std::unique_ptr<Store> MakeMemoryStore();
-// In a directory: control.db, jobs/{id}.db, assets/ab/{sha256}. Creates the directory. Throws StoreError if it is in
+// In a directory: control.db and its copy, jobs/{id}.db, assets/ab/{sha256}. Creates the directory. Throws StoreError if it is in
 // use by another process, on a network filesystem, or written by a newer version.
-std::unique_ptr<Store> OpenSqliteStore(const std::string& directory);
+// `least_free`: free disk space below which nothing new is stored [byte]; negative: see DiskReserve.
+std::unique_ptr<Store> OpenSqliteStore(const std::string& directory, std::int64_t least_free = -1);
 
 }  // namespace fascicle::server
 

@@ -72,6 +72,7 @@ class FailingStore final : public Store {
     faults_->job_writes.Call();
     return behind_->DeleteJob(id);
   }
+  std::string Problem() override { return behind_->Problem(); }
   std::shared_ptr<FrameStore> OpenFrames(std::string_view job_id) override {
     faults_->reads.Call();
     std::shared_ptr<FrameStore> frames = behind_->OpenFrames(job_id);
@@ -93,17 +94,21 @@ class FailingStore final : public Store {
       faults_->frame_writes.Call();
       behind_->PutGeometry(bytes);
     }
-    std::optional<std::string> GetGeometry() override {
+    std::optional<std::int64_t> GeometrySize() override {
       faults_->reads.Call();
-      return behind_->GetGeometry();
+      return behind_->GeometrySize();
+    }
+    std::optional<std::string> ReadGeometryChunk(std::int64_t chunk) override {
+      faults_->reads.Call();
+      return behind_->ReadGeometryChunk(chunk);
     }
     bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) override {
       faults_->frame_writes.Call();
       return behind_->PutFrame(frame, bytes, checkpoint);
     }
-    std::optional<std::string> GetCheckpoint() override {
+    std::optional<CheckpointRecord> GetCheckpoint(std::int64_t frame) override {
       faults_->reads.Call();
-      return behind_->GetCheckpoint();
+      return behind_->GetCheckpoint(frame);
     }
     std::vector<FrameRecord> ListFrames(std::int64_t start, int limit) override {
       faults_->reads.Call();

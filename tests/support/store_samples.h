@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "server/store/store.h"
 
@@ -63,6 +65,24 @@ inline std::string ReadFrame(FrameStore& frames, std::int64_t index) {
     if (!next) return bytes;
     bytes += *next;
   }
+}
+
+// All chunks of the geometry, concatenated; nothing if there is none.
+inline std::optional<std::string> ReadGeometry(FrameStore& frames) {
+  if (!frames.GeometrySize()) return std::nullopt;
+  std::string bytes;
+  for (std::int64_t chunk = 0;; ++chunk) {
+    const std::optional<std::string> next = frames.ReadGeometryChunk(chunk);
+    if (!next) return bytes;
+    bytes += *next;
+  }
+}
+
+// The newest checkpoint; nothing if there is none.
+inline std::optional<std::string> NewestCheckpoint(FrameStore& frames) {
+  std::optional<CheckpointRecord> newest = frames.GetCheckpoint(frames.frame_count());
+  if (!newest) return std::nullopt;
+  return std::move(newest->bytes);
 }
 
 // The message of the StoreError that `action` throws; empty if it throws none.

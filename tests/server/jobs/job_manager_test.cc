@@ -14,6 +14,7 @@
 
 #include "core/base/stop.h"
 #include "tests/support/box_jobs.h"
+#include "tests/support/store_samples.h"
 
 namespace fascicle::server {
 namespace {
@@ -46,7 +47,7 @@ TEST_F(JobManagerTest, RunsAJobToItsEnd) {
   const std::shared_ptr<FrameStore> frames = manager.Frames(submitted.record.id);
   EXPECT_EQ(frames->frame_count(), 21);
   EXPECT_EQ(frames->stored_bytes(), done.stored_bytes);
-  EXPECT_THAT(*frames->GetGeometry(), HasSubstr("box with"));
+  EXPECT_THAT(*ReadGeometry(*frames), HasSubstr("box with"));
   EXPECT_EQ(StoredDigests(*frames), DigestsByCore({}));
   EXPECT_EQ(frames->ReadChunk(3, 0)->size(), 12 * sizeof(Vec3));
   EXPECT_EQ(store_->GetJob(submitted.record.id)->state, JobState::kSucceeded);

@@ -23,7 +23,7 @@ TEST(SubscriptionTest, AListenerSeesEveryFrameAndTheEnd) {
     // The manager may be called from here.
     const JobView view = *manager.Get(id);
     seen = view.frame_count;
-    has_geometry = manager.Frames(id)->GetGeometry().has_value();
+    has_geometry = manager.Frames(id)->GeometrySize().has_value();
     if (IsFinal(view.record.state)) has_ended = true;
   });
   // Only the listener watches the job: it must be notified of the last frame and of the end.

@@ -59,8 +59,8 @@ TEST_F(SqliteStoreTest, EverythingIsThereAfterReopening) {
   const std::shared_ptr<FrameStore> frames = store->OpenFrames(SampleJob(1).id);
   EXPECT_EQ(frames->frame_count(), 3);
   EXPECT_EQ(frames->stored_bytes(), 7'500'000);
-  EXPECT_EQ(frames->GetGeometry(), SampleBytes(9, 1'500'000));
-  EXPECT_EQ(frames->GetCheckpoint(), "checkpoint 2");
+  EXPECT_EQ(ReadGeometry(*frames), SampleBytes(9, 1'500'000));
+  EXPECT_EQ(NewestCheckpoint(*frames), "checkpoint 2");
   for (int i = 0; i < 3; ++i) EXPECT_EQ(ReadFrame(*frames, i), MakeSampleFrame(i, 2'000'000).bytes);
 }
 
@@ -197,7 +197,7 @@ TEST_F(SqliteStoreTest, AFullDiskLosesNothingThatWasAcknowledged) {
     EXPECT_NE(ErrorOf([&] { store->CreateJob(job, &existing_); }).find("control.db"), std::string::npos);
   }
   EXPECT_EQ(frames->frame_count(), 2);
-  EXPECT_EQ(frames->GetCheckpoint(), "checkpoint 1");
+  EXPECT_EQ(NewestCheckpoint(*frames), "checkpoint 1");
   EXPECT_FALSE(store->GetJob(SampleJob(2).id).has_value());
   // There is space again.
   EXPECT_FALSE(frames->PutFrame(large.record, large.bytes, "kept"));

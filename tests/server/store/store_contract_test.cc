@@ -202,11 +202,11 @@ TEST_P(StoreContract, FramesOutliveTheStore) {
 
 TEST_P(StoreContract, KeepsGeometryOfAnySize) {
   const std::shared_ptr<FrameStore> frames = MakeFrames();
-  EXPECT_FALSE(frames->GetGeometry().has_value());
+  EXPECT_FALSE(ReadGeometry(*frames).has_value());
   for (std::size_t size : {std::size_t{0}, std::size_t{10}, std::size_t{FrameStore::kChunkSize},
                            std::size_t{3 * FrameStore::kChunkSize + 1}, std::size_t{5}}) {
     frames->PutGeometry(SampleBytes(size, size));
-    EXPECT_EQ(frames->GetGeometry().value(), SampleBytes(size, size));
+    EXPECT_EQ(ReadGeometry(*frames).value(), SampleBytes(size, size));
     EXPECT_EQ(frames->stored_bytes(), static_cast<std::int64_t>(size));
   }
 }
@@ -249,20 +249,23 @@ TEST_P(StoreContract, ListsFramesFromAnIndex) {
   EXPECT_THAT(frames->ListFrames(0, 0), IsEmpty());
 }
 
-TEST_P(StoreContract, ReplacesTheCheckpointWithAFrame) {
+TEST_P(StoreContract, KeepsTheLastTwoCheckpoints) {
   const std::shared_ptr<FrameStore> frames = MakeFrames();
-  EXPECT_FALSE(frames->GetCheckpoint().has_value());
+  EXPECT_FALSE(NewestCheckpoint(*frames).has_value());
   const auto put = [&](int i, std::string_view checkpoint) {
     return frames->PutFrame(MakeSampleFrame(i, 10).record, MakeSampleFrame(i, 10).bytes, checkpoint);
   };
   put(0, "first");
   put(1, "");
-  EXPECT_EQ(frames->GetCheckpoint(), "first");
+  EXPECT_EQ(NewestCheckpoint(*frames), "first");
   put(2, std::string_view("sec\0nd", 6));
-  EXPECT_EQ(frames->GetCheckpoint(), std::string_view("sec\0nd", 6));
-  // Writing the same frame again keeps the later frames and replaces the checkpoint.
+  EXPECT_EQ(NewestCheckpoint(*frames), std::string_view("sec\0nd", 6));
+  // Writing the same frame again keeps the later frames and their checkpoint.
   EXPECT_FALSE(put(1, "again"));
-  EXPECT_EQ(frames->GetCheckpoint(), "again");
+  EXPECT_EQ(NewestCheckpoint(*frames), std::string_view("sec\0nd", 6));
+  EXPECT_EQ(frames->GetCheckpoint(2)->bytes, "again");
+  EXPECT_EQ(frames->GetCheckpoint(2)->frame, 1);
+  EXPECT_FALSE(frames->GetCheckpoint(1).has_value()) << "only the last two are kept";
   EXPECT_EQ(frames->frame_count(), 3);
 }
 
@@ -279,7 +282,7 @@ TEST_P(StoreContract, AFrameWithAnotherDigestReplacesItAndAllLaterOnes) {
   EXPECT_EQ(ReadFrame(*frames, 1), other.bytes);
   EXPECT_FALSE(frames->ReadChunk(2, 0).has_value());
   // The checkpoint belongs to frames that have been removed.
-  EXPECT_FALSE(frames->GetCheckpoint().has_value());
+  EXPECT_FALSE(NewestCheckpoint(*frames).has_value());
 }
 
 TEST_P(StoreContract, RefusesAFrameThatLeavesAGap) {
