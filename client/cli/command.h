@@ -87,6 +87,8 @@ void AddWatch(CLI::App& app, Context& context);
 void AddList(CLI::App& app, Context& context);
 void AddShow(CLI::App& app, Context& context);
 void AddCancel(CLI::App& app, Context& context);
+void AddRestart(CLI::App& app, Context& context);
+void AddVerify(CLI::App& app, Context& context);
 void AddDelete(CLI::App& app, Context& context);
 void AddExport(CLI::App& app, Context& context);
 void AddRender(CLI::App& app, Context& context);

@@ -118,6 +118,8 @@ int Run(int argc, char** argv) {
   AddList(app, context);
   AddShow(app, context);
   AddCancel(app, context);
+  AddRestart(app, context);
+  AddVerify(app, context);
   AddDelete(app, context);
   AddExport(app, context);
   AddRender(app, context);

@@ -87,6 +87,7 @@ std::string ProgressBar::Text(std::size_t bar_width) const {
   text += "  step " + std::to_string(progress_.step());
   if (progress_.time_step() > 0) text += Format(" of %.3g s", progress_.time_step());
   text += "  frames " + std::to_string(frames_);
+  if (!progress_.waiting().empty()) return text + "  waits: " + progress_.waiting();
   if (progress_.has_eta()) {
     text += "  ETA " + DurationText(static_cast<double>(progress_.eta().seconds()) + 1e-9 * progress_.eta().nanos());
   }

@@ -65,6 +65,7 @@ int Show(const ShowOptions& options, const Context& context) {
     if (key == "failure") continue;
     std::printf("%-14s %s\n", key.c_str(), value.is_string() ? value.get<std::string>().c_str() : value.dump().c_str());
   }
+  if (!job.progress().waiting().empty()) std::printf("%-14s %s\n", "waits", job.progress().waiting().c_str());
   if (job.progress().has_eta()) {
     std::printf("%-14s %s\n", "eta", DurationText(static_cast<double>(job.progress().eta().seconds())).c_str());
   }

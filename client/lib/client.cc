@@ -131,6 +131,24 @@ Result<v1::Job> Client::CancelJob(const std::string& name) {
   });
 }
 
+Result<v1::Job> Client::RestartJob(const std::string& name, bool from_start) {
+  v1::RestartJobRequest request;
+  request.set_name(name);
+  request.set_from_start(from_start);
+  return impl_->Ask<v1::Job>(kTimeout, [&](grpc::ClientContext& context, v1::Job& response) {
+    return impl_->connection.jobs().RestartJob(&context, request, &response);
+  });
+}
+
+Result<v1::VerifyJobResponse> Client::VerifyJob(const std::string& name) {
+  constexpr std::chrono::hours kLongest(1);  // the server reads all frames
+  v1::VerifyJobRequest request;
+  request.set_name(name);
+  return impl_->Ask<v1::VerifyJobResponse>(kLongest, [&](grpc::ClientContext& context, auto& response) {
+    return impl_->connection.jobs().VerifyJob(&context, request, &response);
+  });
+}
+
 std::optional<Error> Client::DeleteJob(const std::string& name) {
   v1::DeleteJobRequest request;
   request.set_name(name);

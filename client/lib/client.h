@@ -90,6 +90,10 @@ class Client {
   Result<std::vector<v1::Job>> ListJobs(int limit, const std::vector<v1::Job::State>& states);
   Result<v1::Job> CancelJob(const std::string& name);
   std::optional<Error> DeleteJob(const std::string& name);
+  // Queues a job in a final state again, from its last checkpoint or from time 0.
+  Result<v1::Job> RestartJob(const std::string& name, bool from_start);
+  // Lets the server compare everything that it has of a job with its checksums.
+  Result<v1::VerifyJobResponse> VerifyJob(const std::string& name);
   // Waits until the job has been started; kStopped after a stop request.
   Result<v1::Geometry> GetGeometry(const std::string& name, std::stop_token stop = {});
   Result<std::vector<v1::FrameInfo>> ListFrames(const std::string& name, std::int64_t start_index);

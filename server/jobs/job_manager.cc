@@ -13,6 +13,7 @@
 #include "server/jobs/job_id.h"
 #include "server/jobs/job_run.h"
 #include "server/jobs/notifier.h"
+#include "server/jobs/verify_job.h"
 
 namespace fascicle::server {
 namespace {
@@ -182,6 +183,8 @@ struct JobManager::Impl {
   bool is_draining = false;
 
   std::stop_source drain;
+  std::mutex restart_mutex;  // serializes restarts
+
   std::mutex drain_mutex;  // serializes drains; guards workers
   std::vector<std::thread> workers;
 };
@@ -263,6 +266,42 @@ JobManager::DeleteResult JobManager::Delete(std::string_view id) {
   impl_->Forget(id);
   impl_->notifier.Notify(id);
   return is_deleted ? DeleteResult::kDeleted : DeleteResult::kNotFound;
+}
+
+JobManager::RestartResult JobManager::Restart(std::string_view id, bool from_start) {
+  const std::lock_guard lock(impl_->restart_mutex);
+  if (impl_->FindActive(id) != nullptr) return RestartResult::kActive;
+  std::optional<JobRecord> record = impl_->store.GetJob(id);
+  if (!record) return RestartResult::kNotFound;
+  if (!IsFinal(record->state)) return RestartResult::kActive;
+  if (from_start) {
+    if (const std::shared_ptr<FrameStore> frames = impl_->store.OpenFrames(id)) frames->DropCheckpoints();
+  }
+  record->state = JobState::kQueued;
+  record->failure.clear();
+  record->warnings.clear();
+  record->end_time_us = 0;
+  record->crash_score = 0;
+  impl_->store.UpdateJob(*record);
+  impl_->options.on_event(*record, EventOf(record->state));
+  impl_->Enqueue(*std::move(record), nullptr);
+  impl_->notifier.Notify(id);
+  return RestartResult::kRestarted;
+}
+
+std::optional<JobCheck> JobManager::Verify(std::string_view id, const std::stop_token& stop) {
+  std::int64_t frames = 0;
+  std::vector<std::string> damages;
+  try {
+    const std::optional<JobRecord> record = impl_->store.GetJob(id);
+    if (!record) return std::nullopt;
+    if (IsFinal(record->state)) frames = record->frame_count;
+  } catch (const DamageError& error) {
+    damages.emplace_back(error.what());
+  }
+  JobCheck check = VerifyFrames(impl_->store, id, frames, stop);
+  check.damages.insert(check.damages.begin(), damages.begin(), damages.end());
+  return check;
 }
 
 std::shared_ptr<FrameStore> JobManager::Frames(std::string_view id) {

@@ -62,6 +62,13 @@ struct JobView {
   std::int64_t stored_bytes = 0;
 };
 
+// What Verify found.
+struct JobCheck {
+  std::int64_t frames = 0;
+  std::int64_t bytes = 0;  // of frames and geometry
+  std::vector<std::string> damages;
+};
+
 // The queue and its workers. Resumes jobs that were queued or running when the last process ended. Thread-safe; all
 // functions may block on disk and throw StoreError. An error within a job ends that job only.
 class JobManager {
@@ -82,6 +89,13 @@ class JobManager {
   std::optional<JobView> Cancel(std::string_view id);
   enum class DeleteResult { kDeleted, kNotFound, kActive };
   DeleteResult Delete(std::string_view id);
+  // Queues a job in a final state again, from its last checkpoint or from the start. Frames that come out the same stay
+  // as they are; damaged ones are replaced.
+  enum class RestartResult { kRestarted, kNotFound, kActive };
+  RestartResult Restart(std::string_view id, bool from_start);
+  // Reads everything that is stored of a job, and describes what is damaged. Throws Stopped. Nothing if there is no such
+  // job.
+  std::optional<JobCheck> Verify(std::string_view id, const std::stop_token& stop);
   // The frames of a job; null if there is no such job.
   std::shared_ptr<FrameStore> Frames(std::string_view id);
 

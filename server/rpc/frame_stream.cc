@@ -1,7 +1,6 @@
 #include "server/rpc/frame_stream.h"
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 
 #include "server/rpc/chunk_message.h"
@@ -86,6 +85,10 @@ bool FrameStream::Refresh() {
   }
   view_ = std::move(*view);
   known_count_ = frames_->frame_count();
+  if (IsFinal(view_.record.state) && known_count_ < view_.record.frame_count) {
+    throw DamageError("of the " + std::to_string(view_.record.frame_count) + " frames of " + request_.name() +
+                      " only " + std::to_string(known_count_) + " are there");
+  }
   last_look_ = Clock::now();
   if (generation_ != 0 && view_.record.generation != generation_) {
     Complete(Aborted("GENERATION_CHANGED", "the frames of " + request_.name() + " were rewritten: start again"));
@@ -128,7 +131,7 @@ void FrameStream::BeginFrame(std::int64_t index) {
     listed_ = frames_->ListFrames(index, stride_ == 1 ? kReadAhead : 1);
     found = listed_.begin();
     if (listed_.empty() || found->index != index)
-      throw std::runtime_error("frame " + std::to_string(index) + " is gone");
+      throw DamageError("frame " + std::to_string(index) + " of " + request_.name() + " is missing");
   }
   current_ = *found;
   offset_ = 0;
@@ -137,7 +140,7 @@ void FrameStream::BeginFrame(std::int64_t index) {
 
 void FrameStream::PushChunk() {
   std::optional<std::string> bytes = frames_->ReadChunk(current_->index, offset_ / FrameStore::kChunkSize);
-  if (!bytes) throw std::runtime_error("a chunk of frame " + std::to_string(current_->index) + " is gone");
+  if (!bytes) throw DamageError("frame " + std::to_string(current_->index) + " of " + request_.name() + " is incomplete");
   ChunkSource source;
   source.frame_index = current_->index;
   source.offset = offset_;

@@ -176,4 +176,38 @@ grpc::ServerUnaryReactor* JobServiceImpl::DeleteJob(grpc::CallbackServerContext*
   });
 }
 
+grpc::ServerUnaryReactor* JobServiceImpl::RestartJob(grpc::CallbackServerContext* call,
+                                                     const v1::RestartJobRequest* request, v1::Job* response) {
+  return RunUnary(context_, context_.quick, call, "RestartJob", [this, request, response] {
+    const std::optional<std::string> id = ParseJobName(request->name());
+    if (!id) return BadJobName();
+    switch (context_.jobs.Restart(*id, request->from_start())) {
+      case JobManager::RestartResult::kNotFound:
+        return NotFound("job", request->name());
+      case JobManager::RestartResult::kActive:
+        return FailedPrecondition("JOB_ACTIVE", {request->name()}, "the job has not ended: there is nothing to restart");
+      case JobManager::RestartResult::kRestarted:
+        break;
+    }
+    const std::optional<JobView> view = context_.jobs.Get(*id);
+    if (!view) return NotFound("job", request->name());
+    *response = ToMessage(*view);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* JobServiceImpl::VerifyJob(grpc::CallbackServerContext*, const v1::VerifyJobRequest* request,
+                                                    v1::VerifyJobResponse* response) {
+  return RunStoppable(context_, context_.slow, "VerifyJob", [this, request, response](const std::stop_token& stop) {
+    const std::optional<std::string> id = ParseJobName(request->name());
+    if (!id) return BadJobName();
+    const std::optional<JobCheck> check = context_.jobs.Verify(*id, stop);
+    if (!check) return NotFound("job", request->name());
+    response->set_frames(check->frames);
+    response->set_bytes(check->bytes);
+    for (const std::string& damage : check->damages) response->add_damages(damage);
+    return grpc::Status::OK;
+  });
+}
+
 }  // namespace fascicle::server

@@ -17,7 +17,7 @@ struct Scene;
 
 namespace fascicle::server {
 
-// Submits, shows, cancels and deletes jobs.
+// Submits, shows, cancels, restarts, verifies and deletes jobs.
 class JobServiceImpl : public v1::JobService::CallbackService {
  public:
   explicit JobServiceImpl(RpcContext& context) : context_(context) {}
@@ -32,6 +32,10 @@ class JobServiceImpl : public v1::JobService::CallbackService {
                                       v1::Job* response) override;
   grpc::ServerUnaryReactor* DeleteJob(grpc::CallbackServerContext* call, const v1::DeleteJobRequest* request,
                                       google::protobuf::Empty* response) override;
+  grpc::ServerUnaryReactor* RestartJob(grpc::CallbackServerContext* call, const v1::RestartJobRequest* request,
+                                       v1::Job* response) override;
+  grpc::ServerUnaryReactor* VerifyJob(grpc::CallbackServerContext* call, const v1::VerifyJobRequest* request,
+                                      v1::VerifyJobResponse* response) override;
 
  private:
   grpc::Status Create(const v1::CreateJobRequest& request, v1::Job& response, std::size_t details_limit,

@@ -235,6 +235,11 @@ void FrameDatabase::InsertCheckpoint(std::int64_t frame, std::string_view bytes)
   connections_->keep_checkpoints.Run();
 }
 
+void FrameDatabase::DropCheckpoints() {
+  const std::lock_guard lock(write_mutex_);
+  connections_->delete_checkpoints.Run(0);
+}
+
 std::optional<CheckpointRecord> FrameDatabase::GetCheckpoint(std::int64_t frame) {
   return connections_->readers.With([&](Reader& reader) -> std::optional<CheckpointRecord> {
     Rows rows = reader.checkpoint.Query(frame);

@@ -26,6 +26,7 @@ class FrameDatabase final : public FrameStore {
   std::optional<std::int64_t> GeometrySize() override;
   std::optional<std::string> ReadGeometryChunk(std::int64_t chunk) override;
   bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) override;
+  void DropCheckpoints() override;
   std::optional<CheckpointRecord> GetCheckpoint(std::int64_t frame) override;
   std::vector<FrameRecord> ListFrames(std::int64_t start, int limit) override;
   std::int64_t frame_count() override { return frame_count_; }

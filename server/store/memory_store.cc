@@ -53,6 +53,11 @@ class MemoryFrameStore final : public FrameStore {
     return is_there && !is_same;
   }
 
+  void DropCheckpoints() override {
+    const std::unique_lock lock(mutex_);
+    checkpoints_.clear();
+  }
+
   std::optional<CheckpointRecord> GetCheckpoint(std::int64_t frame) override {
     const std::shared_lock lock(mutex_);
     auto found = checkpoints_.lower_bound(frame);

@@ -130,6 +130,8 @@ class FrameStore {
   // job's generation before such a call, so that no reader sees the new frame under the old generation. Throws
   // std::invalid_argument unless 0 <= index <= frame_count(). `frame.size` is ignored; the size of `bytes` is stored.
   virtual bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) = 0;
+  // Removes all checkpoints, so that the next run starts at rest.
+  virtual void DropCheckpoints() = 0;
   // The newest undamaged checkpoint of a frame before `frame`.
   virtual std::optional<CheckpointRecord> GetCheckpoint(std::int64_t frame) = 0;
   // Frames with index >= start, at most `limit`, in order.

@@ -106,6 +106,10 @@ class FailingStore final : public Store {
       faults_->frame_writes.Call();
       return behind_->PutFrame(frame, bytes, checkpoint);
     }
+    void DropCheckpoints() override {
+      faults_->frame_writes.Call();
+      behind_->DropCheckpoints();
+    }
     std::optional<CheckpointRecord> GetCheckpoint(std::int64_t frame) override {
       faults_->reads.Call();
       return behind_->GetCheckpoint(frame);

@@ -5,3 +5,6 @@ fascicle_link(store_crash_writer PRIVATE tests/support server/store)
 
 fascicle_test(store_crash_test SOURCES store_crash_test.cc DEPS server/store TIMEOUT 180)
 add_dependencies(store_crash_test store_crash_writer)
+
+# A flipped bit anywhere in a data folder.
+fascicle_test(bit_flip_test SOURCES bit_flip_test.cc DEPS server/store core/base TIMEOUT 180)

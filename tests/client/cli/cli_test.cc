@@ -53,7 +53,7 @@ TEST_F(CliTest, HelpTellsExitCodesAndExamples) {
   const Finished help = Fascicle({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.out, AllOf(HasSubstr("Exit codes:"), HasSubstr("3  no server")));
-  for (const char* command : {"run", "submit", "validate", "watch", "list", "show", "cancel", "delete", "export",
+  for (const char* command : {"run", "submit", "validate", "watch", "list", "show", "cancel", "restart", "verify", "delete", "export",
                               "render", "plot", "mesh", "materials", "schema", "examples", "completion"}) {
     EXPECT_THAT(help.out, HasSubstr(command));
     const Finished own = Fascicle({command, "--help"});
@@ -614,6 +614,12 @@ TEST_F(ServerTest, AJobsWholeLife) {
   EXPECT_GT(fs::file_size(folder_ / "xy.png"), 2000u);
   EXPECT_EQ(Call({"plot", job, "--x", "none"}).exit_code, 2);
 
+  EXPECT_THAT(Call({"verify", job}).out, HasSubstr("intact"));
+  EXPECT_EQ(Call({"verify", "--all"}).exit_code, 0);
+  EXPECT_EQ(Call({"verify"}).exit_code, 2);
+  EXPECT_EQ(Call({"restart", job, "--from-start"}).exit_code, 0);
+  EXPECT_EQ(Call({"watch", job, "--json"}).exit_code, 0);
+  EXPECT_EQ(json::parse(Call({"show", job, "--json"}).out)["attempt"], 2);
   EXPECT_EQ(Call({"delete", job}).exit_code, 0);
   EXPECT_EQ(Call({"show", job}).exit_code, 2) << "it is gone";
 }
@@ -625,7 +631,7 @@ TEST_F(ServerTest, RunningJobsCanBeCancelledButNotDeleted) {
   const Finished watched = Call({"watch", job, "--json"});
   EXPECT_EQ(watched.exit_code, 4) << watched.err;
   EXPECT_EQ(json::parse(watched.out)["state"], "cancelled");
-  for (const char* command : {"show", "cancel", "delete", "watch"}) {
+  for (const char* command : {"show", "cancel", "restart", "verify", "delete", "watch"}) {
     EXPECT_EQ(Call({command, "jobs/none"}).exit_code, 2) << command;
   }
 }

@@ -83,7 +83,9 @@ TEST_F(SqliteStoreTest, IsUsedByOneAtATime) {
 
 TEST_F(SqliteStoreTest, RefusesDataOfANewerVersion) {
   { Open(); }
-  { Database(directory_ / "control.db", Database::Mode::kReadWrite).Execute("PRAGMA user_version = 99"); }
+  for (const char* file : {"control.db", "control.copy.db"}) {
+    Database(directory_ / file, Database::Mode::kReadWrite).Execute("PRAGMA user_version = 99");
+  }
   EXPECT_NE(ErrorOf([&] { Open(); }).find("newer version"), std::string::npos);
 }
 
