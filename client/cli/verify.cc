@@ -28,8 +28,8 @@ void Print(const std::string& job, const v1::VerifyJobResponse& found, bool json
     PrintJson({{"job", job}, {"frames", found.frames()}, {"bytes", found.bytes()}, {"damages", damages}});
     return;
   }
-  std::cout << job << "  " << found.frames() << " frames, " << found.bytes() << " bytes: "
-            << (damages.empty() ? "intact" : "DAMAGED") << '\n';
+  std::cout << job << "  " << found.frames() << " frames, " << found.bytes()
+            << " bytes: " << (damages.empty() ? "intact" : "DAMAGED") << '\n';
   for (const std::string& damage : damages) std::cout << "  " << damage << '\n';
   if (!damages.empty()) std::cout << "  `fascicle restart " << job << " --from-start` computes damaged frames again\n";
 }

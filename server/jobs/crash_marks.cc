@@ -22,7 +22,8 @@ thread_local char t_line[kLongestId + 1];  // the id and a line feed
 thread_local std::size_t t_size = 0;
 
 extern "C" void OnCrash(int signal) {
-  if (t_size > 0) [[maybe_unused]] const ssize_t written = write(g_file, t_line, t_size);
+  if (t_size > 0) [[maybe_unused]]
+    const ssize_t written = write(g_file, t_line, t_size);
   raise(signal);  // its default action, which SA_RESETHAND has restored
 }
 

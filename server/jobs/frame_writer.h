@@ -17,7 +17,8 @@
 namespace fascicle::server {
 
 // Stores the frames of a run from a thread of its own. The solver continues while a frame is encoded and written, and
-// waits only if kMaxWaiting frames are queued, as they are while the disk is full. Also stores progress and profile from time to time.
+// waits only if kMaxWaiting frames are queued, as they are while the disk is full. Also stores progress and profile
+// from time to time.
 class FrameWriter final : public FrameSink {
  public:
   // `job` must have its frame store. `notify` is called after each stored frame. All arguments must outlive the writer.
@@ -29,8 +30,8 @@ class FrameWriter final : public FrameSink {
   bool PutFrame(Frame frame, std::string checkpoint) override;
   void PutProgress(const Progress& progress) override { job_.SetProgress(progress); }
 
-  // Returns when every frame is stored. Throws the error of the first frame that could not be stored; Stopped if the job
-  // was asked to stop while the disk was full.
+  // Returns when every frame is stored. Throws the error of the first frame that could not be stored; Stopped if the
+  // job was asked to stop while the disk was full.
   void Finish();
 
  private:

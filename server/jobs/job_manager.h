@@ -45,9 +45,10 @@ struct JobManagerOptions {
   int workers = 2;          // number of jobs that run at once; 0: jobs stay in the queue
   int default_threads = 1;  // for jobs that ask for 0
   std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2);
-  // Told of the life of each job: "accepted", "started", "succeeded" and so on. Called from several threads at once, after
-  // the change was stored.
-  std::function<void(const JobRecord& job, std::string_view event)> on_event = [](const JobRecord&, std::string_view) {};
+  // Told of the life of each job: "accepted", "started", "succeeded" and so on. Called from several threads at once,
+  // after the change was stored.
+  std::function<void(const JobRecord& job, std::string_view event)> on_event = [](const JobRecord&, std::string_view) {
+  };
   std::vector<std::string> crashes = {};  // ids of the jobs whose threads crashed the last process; see crash_marks.h
 };
 
@@ -93,8 +94,8 @@ class JobManager {
   // as they are; damaged ones are replaced.
   enum class RestartResult { kRestarted, kNotFound, kActive };
   RestartResult Restart(std::string_view id, bool from_start);
-  // Reads everything that is stored of a job, and describes what is damaged. Throws Stopped. Nothing if there is no such
-  // job.
+  // Reads everything that is stored of a job, and describes what is damaged. Throws Stopped. Nothing if there is no
+  // such job.
   std::optional<JobCheck> Verify(std::string_view id, const std::stop_token& stop);
   // The frames of a job; null if there is no such job.
   std::shared_ptr<FrameStore> Frames(std::string_view id);

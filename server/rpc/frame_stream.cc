@@ -140,7 +140,8 @@ void FrameStream::BeginFrame(std::int64_t index) {
 
 void FrameStream::PushChunk() {
   std::optional<std::string> bytes = frames_->ReadChunk(current_->index, offset_ / FrameStore::kChunkSize);
-  if (!bytes) throw DamageError("frame " + std::to_string(current_->index) + " of " + request_.name() + " is incomplete");
+  if (!bytes)
+    throw DamageError("frame " + std::to_string(current_->index) + " of " + request_.name() + " is incomplete");
   ChunkSource source;
   source.frame_index = current_->index;
   source.offset = offset_;

@@ -185,7 +185,8 @@ grpc::ServerUnaryReactor* JobServiceImpl::RestartJob(grpc::CallbackServerContext
       case JobManager::RestartResult::kNotFound:
         return NotFound("job", request->name());
       case JobManager::RestartResult::kActive:
-        return FailedPrecondition("JOB_ACTIVE", {request->name()}, "the job has not ended: there is nothing to restart");
+        return FailedPrecondition("JOB_ACTIVE", {request->name()},
+                                  "the job has not ended: there is nothing to restart");
       case JobManager::RestartResult::kRestarted:
         break;
     }

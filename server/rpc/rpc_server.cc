@@ -55,7 +55,8 @@ struct RpcServer::Impl {
         quick(kQuickThreads, [this](const std::string& what) { logger->error("executor: {}", what); }),
         slow(kSlowThreads, [this](const std::string& what) { logger->error("executor: {}", what); }) {}
 
-  // Reports whether jobs can be accepted, again and again. While the store has a problem, only what is stored is served.
+  // Reports whether jobs can be accepted, again and again. While the store has a problem, only what is stored is
+  // served.
   void WatchStore() {
     const std::lock_guard lock(watch_mutex);
     if (stopped) return;

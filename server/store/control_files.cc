@@ -43,8 +43,8 @@ std::string SetAside(const std::string& path) {
   return aside;
 }
 
-// Inserts all jobs of the file `from` that can be read and that `database` lacks. The others are lost; their frames stay
-// in their files.
+// Inserts all jobs of the file `from` that can be read and that `database` lacks. The others are lost; their frames
+// stay in their files.
 void Salvage(const std::string& from, Database& database) {
   JobWriter writer(database, "main");
   Statement has = database.Prepare("SELECT 1 FROM jobs WHERE id = ?");

@@ -14,9 +14,9 @@ struct ControlFiles {
   std::string copy;
 };
 
-// Opens control.db with its copy attached as `copy`. If one of them is damaged it is set aside as *.damaged-{n} and made
-// again from the other; if both are, from all rows that can still be read. Rows that differ otherwise are taken from
-// control.db. Throws StoreError if a file can't be opened for another reason, such as a newer format.
+// Opens control.db with its copy attached as `copy`. If one of them is damaged it is set aside as *.damaged-{n} and
+// made again from the other; if both are, from all rows that can still be read. Rows that differ otherwise are taken
+// from control.db. Throws StoreError if a file can't be opened for another reason, such as a newer format.
 Database OpenControl(const ControlFiles& files);
 
 }  // namespace fascicle::server

@@ -29,8 +29,8 @@ constexpr int kBusyTimeoutMs = 10'000;
 
 [[noreturn]] void Throw(sqlite3* handle, const std::string& doing) {
   const char* path = sqlite3_db_filename(handle, "main");
-  ThrowError(sqlite3_extended_errcode(handle), std::string(path != nullptr ? path : "database") + ": " +
-                                                   sqlite3_errmsg(handle) + " (" + doing + ")");
+  ThrowError(sqlite3_extended_errcode(handle),
+             std::string(path != nullptr ? path : "database") + ": " + sqlite3_errmsg(handle) + " (" + doing + ")");
 }
 
 void Check(int code, sqlite3* handle, const char* doing) {

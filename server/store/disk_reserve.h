@@ -19,7 +19,7 @@ class DiskReserve {
   bool HasRoom();
   // Gives the reserve to other files.
   void Release();
-  std::int64_t free_bytes() const;   // for users other than root
+  std::int64_t free_bytes() const;  // for users other than root
   std::int64_t least_free() const { return least_free_; }
 
  private:

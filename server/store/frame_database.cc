@@ -110,8 +110,8 @@ struct FrameDatabase::Connections {
   Statement delete_frame = database.Prepare("DELETE FROM frames WHERE idx = ?");
   Statement delete_frames = database.Prepare("DELETE FROM frames WHERE idx >= ?");
   Statement delete_checkpoints = database.Prepare("DELETE FROM checkpoints WHERE frame >= ?");
-  Statement put_checkpoint = database.Prepare(
-      "REPLACE INTO checkpoints (frame, bytes, checksum) VALUES (?1, ?2, row_checksum(?1, ?2))");
+  Statement put_checkpoint =
+      database.Prepare("REPLACE INTO checkpoints (frame, bytes, checksum) VALUES (?1, ?2, row_checksum(?1, ?2))");
   Statement keep_checkpoints = database.Prepare(
       "DELETE FROM checkpoints WHERE frame NOT IN (SELECT frame FROM checkpoints ORDER BY frame DESC LIMIT 2)");
   Statement insert_geometry =
@@ -145,9 +145,8 @@ bool FrameDatabase::HasGeometry(std::string_view bytes) {
   try {
     if (GeometrySize() != static_cast<std::int64_t>(bytes.size())) return false;
     bool same = true;
-    ForEachChunk(bytes, [&](std::int64_t number, std::string_view chunk) {
-      same = same && ReadGeometryChunk(number) == chunk;
-    });
+    ForEachChunk(
+        bytes, [&](std::int64_t number, std::string_view chunk) { same = same && ReadGeometryChunk(number) == chunk; });
     return same;
   } catch (const DamageError&) {
     return false;

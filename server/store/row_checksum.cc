@@ -38,8 +38,8 @@ void RowChecksum(sqlite3_context* context, int count, sqlite3_value** values) {
 
 void AddRowChecksum(sqlite3* connection) {
   constexpr int kFlags = SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS;
-  const int code =
-      sqlite3_create_function_v2(connection, "row_checksum", -1, kFlags, nullptr, &RowChecksum, nullptr, nullptr, nullptr);
+  const int code = sqlite3_create_function_v2(connection, "row_checksum", -1, kFlags, nullptr, &RowChecksum, nullptr,
+                                              nullptr, nullptr);
   if (code != SQLITE_OK) throw StoreError(std::string("row_checksum: ") + sqlite3_errstr(code));
 }
 

@@ -88,9 +88,8 @@ class JobStore {
   // Newest first, without `spec`: ids below `before_id` (empty: from the newest), states in `states` (empty: all).
   virtual std::vector<JobRecord> ListJobs(int limit, std::string_view before_id,
                                           const std::vector<JobState>& states) = 0;
-  // Writes state, failure, profile, warnings, attempt, generation, start and end time, progress, counts and crashes of a
-  // job.
-  // Does nothing if the job does not exist.
+  // Writes state, failure, profile, warnings, attempt, generation, start and end time, progress, counts and crashes of
+  // a job. Does nothing if the job does not exist.
   virtual void UpdateJob(const JobRecord& job) = 0;
   // Removes the job with its frames. False if it does not exist.
   virtual bool DeleteJob(std::string_view id) = 0;
@@ -167,16 +166,16 @@ class Store : public JobStore, public AssetStore {
  public:
   // Opens the frame store, and creates it for a job without frames. Null if there is no such job.
   virtual std::shared_ptr<FrameStore> OpenFrames(std::string_view job_id) = 0;
-  // Why nothing new should be stored, for users, such as a disk that is almost full; empty if all is well. Deleting jobs
-  // and updating their records may still be possible. Cheap.
+  // Why nothing new should be stored, for users, such as a disk that is almost full; empty if all is well. Deleting
+  // jobs and updating their records may still be possible. Cheap.
   virtual std::string Problem() = 0;
 };
 
 // In memory, for tests and for an EmbeddedServer without a data directory; nothing survives it.
 std::unique_ptr<Store> MakeMemoryStore();
-// In a directory: control.db and its copy, jobs/{id}.db, assets/ab/{sha256}. Creates the directory. Throws StoreError if it is in
-// use by another process, on a network filesystem, or written by a newer version.
-// `least_free`: free disk space below which nothing new is stored [byte]; negative: see DiskReserve.
+// In a directory: control.db and its copy, jobs/{id}.db, assets/ab/{sha256}. Creates the directory. Throws StoreError
+// if it is in use by another process, on a network filesystem, or written by a newer version. `least_free`: free disk
+// space below which nothing new is stored [byte]; negative: see DiskReserve.
 std::unique_ptr<Store> OpenSqliteStore(const std::string& directory, std::int64_t least_free = -1);
 
 }  // namespace fascicle::server

@@ -53,8 +53,9 @@ TEST_F(CliTest, HelpTellsExitCodesAndExamples) {
   const Finished help = Fascicle({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.out, AllOf(HasSubstr("Exit codes:"), HasSubstr("3  no server")));
-  for (const char* command : {"run", "submit", "validate", "watch", "list", "show", "cancel", "restart", "verify", "delete", "export",
-                              "render", "plot", "mesh", "materials", "schema", "examples", "completion"}) {
+  for (const char* command :
+       {"run", "submit", "validate", "watch", "list", "show", "cancel", "restart", "verify", "delete", "export",
+        "render", "plot", "mesh", "materials", "schema", "examples", "completion"}) {
     EXPECT_THAT(help.out, HasSubstr(command));
     const Finished own = Fascicle({command, "--help"});
     EXPECT_EQ(own.exit_code, 0) << command;
