@@ -55,8 +55,8 @@ TEST_F(DamageTest, ADamagedFrameIsToldAndWrittenAnew) {
 
 TEST_F(DamageTest, AChunkInThePlaceOfAnotherIsTold) {
   const std::unique_ptr<Store> store = Fill();
-  Change(FramesPath(), "DELETE FROM chunks WHERE frame = 2 AND chunk = 0; UPDATE chunks SET frame = 2 WHERE frame = 1 "
-                       "AND chunk = 0");
+  Change(FramesPath(), "DELETE FROM chunks WHERE frame = 2 AND chunk = 0");
+  Change(FramesPath(), "UPDATE chunks SET frame = 2 WHERE frame = 1 AND chunk = 0");
   EXPECT_THROW(store->OpenFrames(SampleJob(1).id)->ReadChunk(2, 0), DamageError);
 }
 
