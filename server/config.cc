@@ -61,6 +61,12 @@ std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std:
       ->transform(CLI::AsSizeValue(false))
       ->check(CLI::NonNegativeNumber)
       ->default_str("2GiB");
+  app.add_option("--job-memory", config.server.job_memory,
+                 "Most memory of a job; larger ones are refused by an estimate")
+      ->type_name("SIZE")
+      ->transform(CLI::AsSizeValue(false))
+      ->check(CLI::PositiveNumber)
+      ->default_str("80 % of the machine's");
   app.add_option("--keep-free", config.server.least_free_disk,
                  "Free disk space below which jobs wait and new ones are refused")
       ->type_name("SIZE")

@@ -1,6 +1,7 @@
 #include "server/embedded_server.h"
 
 #include <arpa/inet.h>
+#include <unistd.h>
 
 #include <mutex>
 #include <stdexcept>
@@ -64,6 +65,12 @@ void LogEvent(spdlog::logger& log, const JobRecord& job, std::string_view event)
   log.info("{}", text);
 }
 
+// 80 % of the machine's memory [byte].
+std::int64_t MostMemory() {
+  return static_cast<std::int64_t>(0.8 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+                                   static_cast<double>(sysconf(_SC_PAGE_SIZE)));
+}
+
 JobManagerOptions JobOptions(const ServerOptions& options, const std::shared_ptr<spdlog::logger>& log) {
   JobManagerOptions result = {options.workers, options.default_threads, options.checkpoint_interval};
   result.on_event = [log](const JobRecord& job, std::string_view event) { LogEvent(*log, job, event); };
@@ -109,8 +116,14 @@ class Server : public EmbeddedServer {
 
  private:
   static RpcSettings SettingsOf(const ServerOptions& options) {
-    return {options.workers, options.default_threads, options.max_asset_size, options.heartbeat_interval,
-            options.progress_interval};
+    RpcSettings settings;
+    settings.workers = options.workers;
+    settings.default_threads = options.default_threads;
+    settings.max_asset_size = options.max_asset_size;
+    settings.job_memory = options.job_memory > 0 ? options.job_memory : MostMemory();
+    settings.heartbeat_interval = options.heartbeat_interval;
+    settings.progress_interval = options.progress_interval;
+    return settings;
   }
 
   const std::string host_;

@@ -21,6 +21,8 @@ struct ServerOptions {
   bool allow_remote = false;    // whether addresses other than loopback are allowed
 
   std::int64_t max_asset_size = std::int64_t{4} << 30;  // [byte]
+  std::int64_t job_memory =
+      0;  // most memory of a job, estimated before it is accepted [byte]; 0: 80 % of the machine's
   std::int64_t least_free_disk = -1;  // free disk space below which jobs wait [byte]; negative: 2 % of the disk
   std::int64_t cache_size = std::int64_t{2} << 30;                                 // of results kept for reuse [byte]
   std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2);         // of running jobs

@@ -1,5 +1,7 @@
 #include "core/scene/support_moment.h"
 
+#include <numeric>
+
 #include "core/scene/nodal_forces.h"
 
 namespace fascicle {
@@ -12,6 +14,7 @@ Vec3 CentroidOf(const Region& region, const std::vector<Vec3>& nodes) {
     area += face.area.norm();
   }
   if (area > 0) return moment / area;
+  if (region.nodes.empty()) return std::accumulate(nodes.begin(), nodes.end(), sum) / static_cast<double>(nodes.size());
   for (const std::int32_t node : region.nodes) sum += nodes[node];
   return sum / static_cast<double>(region.nodes.size());
 }

@@ -11,7 +11,8 @@ struct Reaction {
   Vec3 moment = Vec3::Zero();  // of its forces, at the current positions, about the origin [N m]
 };
 
-// The centroid of a region's faces at rest, weighted by area; the mean of its nodes if it has no faces [m].
+// The centroid of a region's faces at rest, weighted by area; the mean of its nodes if it has no faces; the mean of all
+// nodes if it has neither, as inside of a surface [m].
 Vec3 CentroidOf(const Region& region, const std::vector<Vec3>& nodes);
 
 // The point and the axis for the moment of a support of a region: those of Output::moments, or the default point and no

@@ -89,7 +89,10 @@ std::shared_ptr<const Scene> JobServiceImpl::Translate(const v1::Scene& scene, P
   const StageTimer timer(&profile, "check");
   const auto read = [this](const std::string& sha256_hex) { return context_.store.ReadAsset(sha256_hex); };
   Problems found;
-  auto translated = TranslateScene(scene, read, found, {}, {&profile, &context_.results, stop});
+  TranslateLimits limits;
+  limits.max_memory = context_.settings.job_memory;
+  limits.max_stored_bytes = context_.store.Room();
+  auto translated = TranslateScene(scene, read, found, limits, {&profile, &context_.results, stop});
   if (translated == nullptr && found.empty()) found.Add("", "cannot be translated");
   problems.Append("job.scene", found);
   profile.NoteCpu();

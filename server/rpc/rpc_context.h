@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <stop_token>
 #include <utility>
 
@@ -24,6 +25,7 @@ struct RpcSettings {
   int workers = 2;
   int default_threads = 1;
   std::int64_t max_asset_size = std::int64_t{4} << 30;                             // [byte]
+  std::int64_t job_memory = std::numeric_limits<std::int64_t>::max();              // most memory of a job [byte]
   std::chrono::milliseconds heartbeat_interval = std::chrono::seconds(10);         // at most
   std::chrono::milliseconds progress_interval = std::chrono::milliseconds(1'000);  // while a job progresses
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <shared_mutex>
@@ -178,6 +179,7 @@ class MemoryStore final : public Store {
   }
 
   std::string Problem() override { return ""; }
+  std::int64_t Room() override { return std::numeric_limits<std::int64_t>::max(); }
 
   std::shared_ptr<FrameStore> OpenFrames(std::string_view job_id) override {
     const std::shared_lock lock(mutex_);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <mutex>
 #include <system_error>
@@ -90,12 +91,14 @@ class SqliteStore final : public Store {
   std::unique_ptr<Upload> BeginUpload(std::string_view sha256_hex, std::int64_t size) override {
     const std::string problem = Problem();
     if (!problem.empty()) throw NoSpaceError(problem);
-    if (reserve_.free_bytes() - size < reserve_.least_free()) {
+    if (size > Room()) {
       throw NoSpaceError("an asset of " + std::to_string(size) + " bytes does not fit the disk");
     }
     return assets_.BeginUpload(sha256_hex, size);
   }
   std::optional<std::string> ReadAsset(std::string_view sha256_hex) override { return assets_.ReadAsset(sha256_hex); }
+
+  std::int64_t Room() override { return std::max<std::int64_t>(0, reserve_.free_bytes() - reserve_.least_free()); }
 
   std::string Problem() override {
     if (!lock_->IsThere()) return "the data folder " + directory_ + " or its file `lock` has been removed";

@@ -169,6 +169,8 @@ class Store : public JobStore, public AssetStore {
   // Why nothing new should be stored, for users, such as a disk that is almost full; empty if all is well. Deleting
   // jobs and updating their records may still be possible. Cheap.
   virtual std::string Problem() = 0;
+  // How much more may be stored [byte].
+  virtual std::int64_t Room() = 0;
 };
 
 // In memory, for tests and for an EmbeddedServer without a data directory; nothing survives it.

@@ -15,8 +15,10 @@
 namespace fascicle::server {
 namespace {
 
-// Memory limit for one image [byte]; a server translates several scenes at once.
+// Memory limit for one image [byte]; a server translates several scenes at once. The stages after reading hold the
+// image up to three times.
 constexpr std::int64_t kMemoryLimit = std::int64_t{4} << 30;
+constexpr std::int64_t kReadingLimit = kMemoryLimit / 3;
 
 GridIndex ToGridIndex(const google::protobuf::RepeatedField<std::int32_t>& values) {
   if (values.size() != 3) return {0, 0, 0};
@@ -62,7 +64,7 @@ std::optional<VolumeImage> ReadImage(const BodySource& source, const std::string
   Problems own;
   VolumeReaderOptions options;
   options.raw = TranslateRaw(shape, MetresIn(source.wire.unit()), path, problems);
-  options.memory_limit = kMemoryLimit;
+  options.memory_limit = kReadingLimit;
   options.stop = source.tools.stop;
   if (!complete || (shape.has_raw() && !options.raw)) return std::nullopt;
   std::vector<VolumeFile> files;

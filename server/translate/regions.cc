@@ -98,6 +98,29 @@ std::string ExtentHint(const std::vector<Vec3>& nodes, double metres) {
   return "in its own unit, the body extends from " + corner(bounds.lowest) + " to " + corner(bounds.highest);
 }
 
+// Limits on what the regions of a body may cost: their number, and their memory, this much and so many times that of
+// the mesh.
+constexpr int kMostRegions = 2000;
+constexpr std::size_t kRegionBytes = 16 << 20, kRegionsPerMesh = 10;
+
+template <class T>
+std::size_t BytesOf(const std::vector<T>& values) {
+  return values.size() * sizeof(T);
+}
+std::size_t BytesOf(const TetMesh& mesh) {
+  return BytesOf(mesh.nodes) + BytesOf(mesh.tetrahedra) + BytesOf(mesh.hexahedra);
+}
+std::size_t BytesOf(const BrickMesh& mesh) { return BytesOf(mesh.nodes) + BytesOf(mesh.bricks); }
+std::size_t BytesOf(const TriangleMesh& mesh) { return BytesOf(mesh.nodes) + BytesOf(mesh.triangles); }
+template <class Mesh>
+std::size_t MostRegionBytes(const Mesh& mesh) {
+  return kRegionBytes + kRegionsPerMesh * BytesOf(mesh);
+}
+std::size_t BytesOf(const Region& region) {
+  return BytesOf(region.nodes) + BytesOf(region.triangles) + BytesOf(region.elements) + BytesOf(region.quads) +
+         BytesOf(region.sides);
+}
+
 template <class Mesh>
 void AddEmptyRegion(const v1::Body& body, const v1::Region& region, const Mesh& mesh, const std::string& path,
                     Problems& problems) {
@@ -161,12 +184,19 @@ Region Select(const TriangleMesh& mesh, const TetMesh& nodes, const std::string&
 
 RegionSelectors TranslateRegions(const v1::Body& body, const std::string& body_path, Problems& problems) {
   RegionSelectors result;
+  if (body.regions_size() > kMostRegions) {
+    problems.Add(
+        JoinPath(body_path, "regions"),
+        "are " + std::to_string(body.regions_size()) + ", at most " + std::to_string(kMostRegions) + " are allowed",
+        "select several places by one region, or use several bodies");
+  }
   for (int i = 0; i < body.regions_size(); ++i) {
     const v1::Region& region = body.regions(i);
     const std::string path = JoinPath(body_path, IndexPath("regions", static_cast<std::size_t>(i)));
     result.names.Add(region.name(), JoinPath(path, "name"), problems);
     RegionSelectors::Entry& entry = result.entries.emplace_back();
     entry.name = region.name();
+    if (i >= kMostRegions) continue;
     entry.selector = TranslateSelector(region, MetresIn(body.unit()), path, problems);
     const bool within = TranslateWithin(region, result.names, result.entries.size() - 1, path, entry.within, problems);
     entry.complete = entry.selector && within;
@@ -188,12 +218,15 @@ template <class Mesh>
 std::vector<Region> SelectRegions(const RegionSelectors& selectors, const Mesh& mesh, const std::stop_token& stop) {
   std::vector<Region> regions;
   if (selectors.entries.empty()) return regions;
+  const std::size_t most_bytes = MostRegionBytes(mesh);
+  std::size_t bytes = 0;
   VisitFaces(mesh, stop, [&](const auto& faces) {
     for (const RegionSelectors::Entry& entry : selectors.entries) {
       ThrowIfStopped(stop);
       Region region;
       region.name = entry.name;
-      if (entry.selector) region = Select(mesh, faces, entry.name, *entry.selector);
+      if (entry.selector && bytes <= most_bytes) region = Select(mesh, faces, entry.name, *entry.selector);
+      bytes += BytesOf(region);
       for (const std::size_t other : entry.within) region = Intersection(region, regions[other]);
       regions.push_back(std::move(region));
     }
@@ -216,7 +249,15 @@ std::vector<Region> EmptyRegions(const RegionSelectors& selectors) {
 template <class Mesh>
 void CheckRegions(const v1::Body& body, const std::string& body_path, const RegionSelectors& selectors,
                   const std::vector<Region>& regions, const Mesh& mesh, Problems& problems) {
+  std::size_t bytes = 0;
   for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (bytes > MostRegionBytes(mesh)) {
+      problems.Add(JoinPath(body_path, IndexPath("regions", i)),
+                   "the regions before it take several times as much memory as the mesh",
+                   "use fewer or smaller regions");
+      return;
+    }
+    bytes += BytesOf(regions[i]);
     const v1::Region& wire = body.regions(static_cast<int>(i));
     if (!selectors.entries[i].complete || !regions[i].nodes.empty() || MayBeInside(wire, mesh)) continue;
     AddEmptyRegion(body, wire, mesh, JoinPath(body_path, IndexPath("regions", i)), problems);

@@ -29,13 +29,13 @@ struct RegionSelectors {
 RegionSelectors TranslateRegions(const v1::Body& body, const std::string& body_path, Problems& problems);
 
 // The regions of a mesh (TetMesh, BrickMesh or TriangleMesh), one for each selector; without nodes where a selector is
-// invalid. Throws Stopped after a stop request.
+// invalid, and where the regions before it take too much memory. Throws Stopped after a stop request.
 template <class Mesh>
 std::vector<Region> SelectRegions(const RegionSelectors& selectors, const Mesh& mesh, const std::stop_token& stop);
 // The regions of a body without a mesh: names only.
 std::vector<Region> EmptyRegions(const RegionSelectors& selectors);
 
-// Adds a problem for each region for which SelectRegions found nothing.
+// Adds a problem for each region for which SelectRegions found nothing, and for the first that it left out.
 template <class Mesh>
 void CheckRegions(const v1::Body& body, const std::string& body_path, const RegionSelectors& selectors,
                   const std::vector<Region>& regions, const Mesh& mesh, Problems& problems);

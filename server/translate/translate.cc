@@ -1,10 +1,12 @@
 #include "server/translate/translate.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include "core/base/stop.h"
 #include "core/eulerian/scene_body.h"
+#include "core/sim/job_size.h"
 #include "core/voxel/scene_body.h"
 #include "proto/rules/field_rules.h"
 #include "proto/rules/find_messages.h"
@@ -40,6 +42,31 @@ void AddCurvedEdgesNote(const TetMethod& method, const std::string& path, Body& 
   const auto* tet = std::get_if<TetShape>(&body.shape);
   if (tet == nullptr || tet->mesh.curved_edges.empty() || method.element != ElementOrder::kLinear) return;
   body.notes.push_back(JoinPath(path, "mesh") + ": linear elements ignore that edges of the mesh are curved");
+}
+
+std::string Gigabytes(double bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g GB", bytes / 1e9);
+  return text;
+}
+
+// What the run would need, before anything is allocated for it.
+void CheckJobSize(const Scene& scene, const TranslateLimits& limits, Problems& problems) {
+  const JobSize size = JobSizeOf(scene);
+  const auto max_memory = static_cast<double>(limits.max_memory),
+             max_stored = static_cast<double>(limits.max_stored_bytes);
+  if (size.memory > max_memory) {
+    problems.Add(
+        "bodies",
+        "need about " + Gigabytes(size.memory) + " of memory, " + Gigabytes(max_memory) + " are allowed to a job",
+        "use coarser meshes or grids, or an iterative linear solver in place of a direct one");
+  }
+  if (size.stored > max_stored) {
+    problems.Add(
+        "output",
+        "needs about " + Gigabytes(size.stored) + " of the server's disk, " + Gigabytes(max_stored) + " are left",
+        "use a longer frame_interval, fewer fields or a coarser mesh, or delete jobs");
+  }
 }
 
 }  // namespace
@@ -104,6 +131,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     CheckScene(*result, found, tools.stop);
     ThrowIfStopped(tools.stop);
     if (found.empty()) CheckVoxelSupports(*result, found, tools.stop);
+    if (found.empty()) CheckJobSize(*result, limits, found);
   }
   if (found.empty()) return result;
   CheckEachBody(std::move(*result), complete, found);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -35,6 +36,9 @@ std::vector<std::string> AssetsOf(const v1::Scene& scene);
 struct TranslateLimits {
   std::int64_t max_elements = 20'000'000;        // tetrahedra, voxels or grid cells; about 10 GB at run time
   std::int64_t max_frame_bytes = 1'000'000'000;  // a Protobuf message must stay below 2 GiB
+  // Of the run, as JobSizeOf estimates them.
+  std::int64_t max_memory = std::numeric_limits<std::int64_t>::max();        // [byte]
+  std::int64_t max_stored_bytes = std::numeric_limits<std::int64_t>::max();  // [byte]
 };
 
 // Optional resources of a translation.

@@ -73,6 +73,7 @@ class FailingStore final : public Store {
     return behind_->DeleteJob(id);
   }
   std::string Problem() override { return behind_->Problem(); }
+  std::int64_t Room() override { return behind_->Room(); }
   std::shared_ptr<FrameStore> OpenFrames(std::string_view job_id) override {
     faults_->reads.Call();
     std::shared_ptr<FrameStore> frames = behind_->OpenFrames(job_id);

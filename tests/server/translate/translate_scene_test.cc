@@ -667,6 +667,35 @@ TEST(TranslateScene, ExcitationsKeepTheirDynamics) {
   EXPECT_EQ(excitation->dynamics.initial_activation, 0.5);
 }
 
+TEST(TranslateScene, RefusesRunsThatNeedTooMuch) {
+  const v1::Scene wire = BoxScene();
+  TranslateLimits limits;
+  limits.max_memory = 1000;
+  limits.max_stored_bytes = 100;
+  Problems problems;
+  const auto no_asset = [](const std::string&) { return std::optional<std::string>(); };
+  EXPECT_EQ(TranslateScene(wire, no_asset, problems, limits), nullptr);
+  EXPECT_THAT(problems.ToString(), HasSubstr("of memory"));
+  EXPECT_THAT(problems.ToString(), HasSubstr("of the server's disk"));
+}
+
+TEST(TranslateScene, RegionsMayNotTakeManyTimesTheMemoryOfTheMesh) {
+  v1::Scene wire = BoxScene();
+  v1::Body& body = *wire.mutable_bodies(0);
+  for (int axis = 0; axis < 3; ++axis) body.mutable_mesh()->mutable_box()->set_divisions(axis, 20);
+  for (int i = 0; i < 1000; ++i) {
+    v1::Region& region = *body.add_regions();
+    region.set_name("all" + std::to_string(i));
+    for (int axis = 0; axis < 3; ++axis) {
+      region.mutable_box()->add_min(-1e3);
+      region.mutable_box()->add_max(1e3);
+    }
+  }
+  EXPECT_THAT(ProblemsOf(wire).ToString(), HasSubstr("several times as much memory as the mesh"));
+  for (int i = 0; i < 2000; ++i) *body.add_regions() = body.regions(5);
+  EXPECT_THAT(ProblemsOf(wire).ToString(), HasSubstr("at most 2000 are allowed"));
+}
+
 TEST(AssetsOf, NamesEachAssetOnce) {
   Files files;
   const std::string mesh = files.Add("a"), elements = files.Add("b"), fibres = files.Add("c");
