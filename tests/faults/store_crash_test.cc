@@ -12,6 +12,7 @@
 #include <sstream>
 #include <thread>
 
+#include "acknowledged.h"
 #include "crash_samples.h"
 #include "server/store/database.h"
 #include "server/store/store.h"
@@ -29,26 +30,6 @@ using testing::Program;
 
 constexpr int kRounds = 50;
 
-struct Acknowledged {
-  std::set<int> jobs;
-  std::map<int, std::int64_t> frames;  // number of a job -> count
-
-  void Read(const std::string& report) {
-    std::istringstream lines(report);
-    char kind = 0;
-    int number = 0;
-    while (lines >> kind >> number) {
-      if (kind == 'J') {
-        jobs.insert(number);
-      } else {
-        std::int64_t index = -1;
-        lines >> index;
-        frames[number] = index + 1;
-      }
-    }
-  }
-};
-
 // Runs the writer, kills it `delay` after its first report, and returns all its reports.
 std::string RunAndKill(const std::string& directory, int round, std::chrono::microseconds delay) {
   ChildProcess writer({Program("store_crash_writer"), directory, std::to_string(round)});
@@ -59,32 +40,6 @@ std::string RunAndKill(const std::string& directory, int round, std::chrono::mic
   const Finished finished = writer.Wait();
   EXPECT_EQ(finished.exit_code, -SIGKILL) << "the writer ended by itself: " << finished.err;
   return first + finished.out;
-}
-
-void ExpectWhole(const std::string& path) {
-  Database database(path, Database::Mode::kReadOnly);
-  Statement check = database.Prepare("PRAGMA integrity_check");
-  Rows rows = check.Query();
-  ASSERT_TRUE(rows.Next());
-  EXPECT_EQ(rows.String(0), "ok") << path;
-}
-
-void ExpectFrames(Store& store, int number, std::int64_t acknowledged) {
-  const std::shared_ptr<FrameStore> frames = store.OpenFrames(SampleJob(number).id);
-  ASSERT_NE(frames, nullptr);
-  const std::int64_t count = frames->frame_count();
-  // One more may have been committed without being reported.
-  EXPECT_GE(count, acknowledged);
-  EXPECT_LE(count, acknowledged + 1);
-  const std::vector<FrameRecord> records = frames->ListFrames(0, 1 << 20);
-  ASSERT_EQ(static_cast<std::int64_t>(records.size()), count);
-  for (std::int64_t i = 0; i < count; ++i) {
-    const SampleFrame expected = CrashFrame(number, i);
-    EXPECT_TRUE(records[static_cast<std::size_t>(i)] == expected.record) << i;
-    EXPECT_TRUE(ReadFrame(*frames, i) == expected.bytes) << i;
-  }
-  if (count == 0) return;
-  EXPECT_EQ(NewestCheckpoint(*frames), CrashCheckpoint(number, (count - 1) / 3 * 3));
 }
 
 TEST(StoreCrash, NothingAcknowledgedIsLost) {

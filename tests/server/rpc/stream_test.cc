@@ -118,6 +118,7 @@ TEST_F(StreamTest, RangesAndStrides) {
   EXPECT_EQ(indices(0, 12, 5), (std::vector<std::int64_t>{0, 5, 10}));
   EXPECT_EQ(indices(20, 0, 1), (std::vector<std::int64_t>{20}));
   EXPECT_EQ(indices(21, 0, 1), (std::vector<std::int64_t>{})) << "complete already: the end at once";
+  EXPECT_EQ(indices(23, 0, 7), (std::vector<std::int64_t>{})) << "the next index after 2, 9, 16";
   EXPECT_EQ(indices(5, 5, 1), (std::vector<std::int64_t>{}));
 }
 
