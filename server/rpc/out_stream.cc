@@ -38,6 +38,10 @@ void OutStream::RunFill() {
     {
       std::lock_guard lock(mutex_);
       fill_again_ = false;
+      if (stopped_) {  // cancelled before its turn: there is nothing to do
+        filling_ = false;
+        return;
+      }
     }
     const grpc::Status status = Guarded(context_.log, method_, [this] {
       Fill();
