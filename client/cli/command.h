@@ -65,6 +65,7 @@ Client Connect(const Context& context);
 struct SceneArgument {
   std::string path;
   std::vector<std::string> settings;
+  std::string start;  // JOB[:FRAME]: see start_frame.h
 };
 
 // Adds SCENE and --set to a sub-command. `scene` must outlive parsing.

@@ -116,7 +116,8 @@ std::optional<v1::Scene> WithHalfStep(const v1::Scene& scene, std::int64_t steps
 }
 
 std::optional<v1::Scene> WithHalfMeshSize(const v1::Scene& scene) {
-  if (scene.refinements() >= kMostRefinements) return std::nullopt;
+  // A frame from which the scene starts belongs to its mesh.
+  if (scene.refinements() >= kMostRefinements || scene.start().has_frame()) return std::nullopt;
   v1::Scene half = scene;
   half.set_refinements(scene.refinements() + 1);
   return half;

@@ -20,7 +20,7 @@ namespace fascicle::client {
 // no time steps.
 std::optional<v1::Scene> WithHalfStep(const v1::Scene& scene, std::int64_t steps);
 // The scene with every edge of its meshes, or its grid's cells, halved once more. Nothing if it is refined already as
-// often as possible.
+// often as possible, or starts as a frame, which belongs to its mesh.
 std::optional<v1::Scene> WithHalfMeshSize(const v1::Scene& scene);
 
 // The change of a series between two runs of one scene.

@@ -19,6 +19,7 @@
 #include "client/cli/job_source.h"
 #include "client/cli/outputs.h"
 #include "client/cli/profile_table.h"
+#include "client/cli/start_frame.h"
 #include "client/cli/summary.h"
 #include "client/export/csv.h"
 #include "client/export/vtk_series.h"
@@ -37,6 +38,8 @@ constexpr const char* kRunExamples = R"(  fascicle run scene.json               
   fascicle run scene.json --profile               and print the time spent in each stage
   fascicle run scene.json --check                 again with half the step and half the mesh size: is it converged?
   fascicle run scene.json --set 'bodies[0].activation.values=[0, 0.5]'
+  fascicle run scene.json --start out             begin as the last frame of that run: positions, velocities
+  fascicle run scene.json --start out:3           or as its frame 3
   fascicle run scene.json --json | jq .series     for programs
 
 out/largest.png is the frame with the largest displacement, where a body is nearer to its rest shape at the end.
@@ -144,12 +147,17 @@ std::vector<CheckedRun> CheckConvergence(Client& client, const ScenePackage& pac
     runs.push_back(RunChanged(client, package, *changed, what, before, options, stop));
   };
   run(WithHalfStep(package.scene, before.steps().back()), "half the time step");
+  if (package.scene.start().has_frame()) {
+    std::cerr
+        << "check: not with half the mesh size, because the frame in which the scene starts belongs to its mesh\n";
+  }
   run(WithHalfMeshSize(package.scene), "half the mesh size");
   return runs;
 }
 
 int Run(const RunOptions& options, const Context& context) {
-  const ScenePackage package = LoadSceneOrFail(options.scene);
+  ScenePackage package = LoadSceneOrFail(options.scene);
+  PackStart(context, options.scene.start, package);
   // Created before the server, whose threads must not receive the signals.
   const StopOnInterrupt interrupts;
   std::unique_ptr<TemporaryFolder> temporary;
@@ -211,6 +219,7 @@ void AddRun(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "run", "Simulate a scene on this machine, without a server", kRunExamples);
   const auto options = std::make_shared<RunOptions>();
   AddSceneArgument(*command, options->scene);
+  AddStartOption(*command, options->scene);
   command
       ->add_option("--out", options->out, "Folder for results: the job, series.csv, frames.pvd, pictures, summary.json")
       ->type_name("DIR");

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "client/cli/command.h"
+#include "client/cli/start_frame.h"
 #include "client/cli/summary.h"
 
 namespace fascicle::client {
@@ -23,7 +24,8 @@ struct SubmitOptions {
 };
 
 int Submit(const SubmitOptions& options, const Context& context) {
-  const ScenePackage package = LoadSceneOrFail(options.scene);
+  ScenePackage package = LoadSceneOrFail(options.scene);
+  PackStart(context, options.scene.start, package);
   Client client = Connect(context);
   const v1::Job job = Take(client.Submit(package, options.threads));
   if (context.json) {
@@ -40,6 +42,7 @@ void AddSubmit(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "submit", "Send a scene to a server and return at once", kSubmitExamples);
   const auto options = std::make_shared<SubmitOptions>();
   AddSceneArgument(*command, options->scene);
+  AddStartOption(*command, options->scene);
   command->add_option("--threads", options->threads, "Number of threads; 0: the server's default")
       ->check(CLI::Range(0, 256));
   command->callback(

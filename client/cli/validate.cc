@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "client/cli/command.h"
+#include "client/cli/start_frame.h"
 #include "server/embedded_server.h"
 
 namespace fascicle::client {
@@ -16,7 +17,8 @@ constexpr const char* kValidateExamples =
 )";
 
 int Validate(const SceneArgument& scene, const Context& context) {
-  const ScenePackage package = LoadSceneOrFail(scene);
+  ScenePackage package = LoadSceneOrFail(scene);
+  PackStart(context, scene.start, package);
   // The server knows all rules. Without one, one is started in this process.
   std::unique_ptr<server::EmbeddedServer> own;
   if (context.server.empty()) own = server::EmbeddedServer::Start({});
@@ -36,6 +38,7 @@ void AddValidate(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "validate", "Check a scene and its files without running it", kValidateExamples);
   const auto scene = std::make_shared<SceneArgument>();
   AddSceneArgument(*command, *scene);
+  AddStartOption(*command, *scene);
   command->callback([scene, &context] { context.action = [scene, &context] { return Validate(*scene, context); }; });
 }
 

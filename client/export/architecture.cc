@@ -12,6 +12,7 @@
 #include <span>
 
 #include "client/export/element_sides.h"
+#include "client/lib/tetrahedra.h"
 #include "core/geometry/hexahedron.h"
 #include "core/geometry/solid_cells.h"
 
@@ -21,15 +22,14 @@ namespace {
 constexpr std::size_t kMostFibres = 2000;
 constexpr std::size_t kNoElement = std::numeric_limits<std::size_t>::max();
 
-using CornerNodes = std::array<std::uint32_t, 4>;
-using Polygon = std::vector<std::uint32_t>;
+using FlatTriangle = std::array<Vec3, 3>;
 
-// Sides that belong to one element only.
-template <class Elements>
-std::vector<Polygon> OuterSides(const Elements& elements) {
+// Sides that belong to one hexahedron only, as triangles.
+void AddOuterSides(const BodyShape& shape, const std::vector<Vec3>& x, std::vector<FlatTriangle>& surface) {
+  using Polygon = std::vector<std::uint32_t>;
   std::map<Polygon, std::pair<int, Polygon>> sides;
-  for (const auto& element : elements) {
-    for (Polygon& side : SidesOf(element)) {
+  for (const auto& brick : shape.bricks) {
+    for (Polygon& side : SidesOf(brick)) {
       Polygon key = side;
       std::sort(key.begin(), key.end());
       auto& [count, polygon] = sides[key];
@@ -37,25 +37,30 @@ std::vector<Polygon> OuterSides(const Elements& elements) {
       polygon = std::move(side);
     }
   }
-  std::vector<Polygon> outer;
-  for (auto& [key, side] : sides) {
-    if (side.first == 1) outer.push_back(std::move(side.second));
+  for (const auto& [key, side] : sides) {
+    const auto& [count, polygon] = side;
+    if (count != 1) continue;
+    for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+      surface.push_back({x[polygon[0]], x[polygon[i]], x[polygon[i + 1]]});
+    }
   }
-  return outer;
 }
 
-std::vector<Polygon> SurfaceOf(const BodyShape& shape) {
-  std::vector<Polygon> surface;
-  for (const auto& t : shape.triangles) surface.push_back({t[0], t[1], t[2]});
-  for (std::vector<Polygon>& part : std::array{OuterSides(shape.tetrahedra), OuterSides(shape.bricks)}) {
-    surface.insert(surface.end(), part.begin(), part.end());
+// The surface of a body with its nodes at x.
+std::vector<FlatTriangle> SurfaceOf(const BodyShape& shape, const std::vector<Vec3>& x) {
+  std::vector<FlatTriangle> surface;
+  for (const auto& t : shape.triangles) surface.push_back({x[t[0]], x[t[1]], x[t[2]]});
+  for (const SurfaceTriangle& triangle : SurfaceTriangles(shape)) {
+    const std::vector<FlatTriangle> parts = FlatParts(triangle, shape.quadratic(), x);
+    surface.insert(surface.end(), parts.begin(), parts.end());
   }
+  AddOuterSides(shape, x, surface);
   return surface;
 }
 
 // Adds the part of a triangle's cut with the plane normal . x = place to twice the area: its outline runs around the
 // cross-section, with the inside on its left.
-void AddCut(const std::array<Vec3, 3>& triangle, const Vec3& normal, double place, Vec3& twice_area) {
+void AddCut(const FlatTriangle& triangle, const Vec3& normal, double place, Vec3& twice_area) {
   std::vector<Vec3> ends;
   for (std::size_t c = 0; c < 3; ++c) {
     const Vec3 &a = triangle[c], &b = triangle[(c + 1) % 3];
@@ -69,20 +74,10 @@ void AddCut(const std::array<Vec3, 3>& triangle, const Vec3& normal, double plac
   twice_area += ends[0].cross(ends[1]);
 }
 
-double AreaOfCut(const std::vector<Polygon>& surface, const std::vector<Vec3>& x, const Vec3& normal, double place) {
+double AreaOfCut(const std::vector<FlatTriangle>& surface, const Vec3& normal, double place) {
   Vec3 twice_area = Vec3::Zero();
-  for (const Polygon& side : surface) {
-    for (std::size_t i = 1; i + 1 < side.size(); ++i) {
-      AddCut({x[side[0]], x[side[i]], x[side[i + 1]]}, normal, place, twice_area);
-    }
-  }
+  for (const FlatTriangle& triangle : surface) AddCut(triangle, normal, place, twice_area);
   return 0.5 * normal.dot(twice_area);
-}
-
-Mat3 EdgesOf(const CornerNodes& tet, const std::vector<Vec3>& x) {
-  Mat3 edges;
-  for (int c = 0; c < 3; ++c) edges.col(c) = x[tet[static_cast<std::size_t>(c) + 1]] - x[tet[0]];
-  return edges;
 }
 
 // A body of hexahedra as one of tetrahedra, six for each with its fibre and its values.
@@ -109,6 +104,13 @@ BodySnapshot AsTetrahedra(const BodySnapshot& body) {
   return split;
 }
 
+// F a0 at a point of a tetrahedron.
+Vec3 FibreIn(const BodySnapshot& body, std::size_t t, const Barycentric& point) {
+  const BodyShape& shape = body.shape;
+  return EdgesAt(shape, t, body.positions, point) * EdgesAt(shape, t, shape.positions, point).inverse() *
+         shape.fibres[t];
+}
+
 // Traces fibres through the tetrahedra of a body at rest.
 class FibreTracer {
  public:
@@ -117,9 +119,8 @@ class FibreTracer {
     inverse_.reserve(count);
     stretch_.reserve(count);
     for (std::size_t t = 0; t < count; ++t) {
-      inverse_.push_back(EdgesOf(shape_.tetrahedra[t], shape_.positions).inverse());
-      const Mat3 F = EdgesOf(shape_.tetrahedra[t], body.positions) * inverse_[t];
-      stretch_.push_back(deformed ? (F * shape_.fibres[t]).norm() : 1);
+      inverse_.push_back(StraightEdges(t).inverse());
+      stretch_.push_back(deformed ? StretchOf(body, t) : 1);
     }
     FindNeighbours();
   }
@@ -136,6 +137,22 @@ class FibreTracer {
     double distance = 0;
     std::size_t corner = 0;  // opposite to the side
   };
+
+  // Paths run through the straight tetrahedra of the corners.
+  Mat3 StraightEdges(std::size_t t) const {
+    const std::vector<Vec3>& X = shape_.positions;
+    const auto& nodes = shape_.tetrahedra[t];
+    Mat3 edges;
+    for (int c = 0; c < 3; ++c) edges.col(c) = X[nodes[static_cast<std::size_t>(c) + 1]] - X[nodes[0]];
+    return edges;
+  }
+
+  // The mean stretch of the fibre in a tetrahedron.
+  double StretchOf(const BodySnapshot& body, std::size_t t) const {
+    double sum = 0;
+    for (const Barycentric& point : QuadraturePoints()) sum += FibreIn(body, t, point).norm() / 4;
+    return sum;
+  }
 
   // Neighbours opposite to each corner.
   void FindNeighbours() {
@@ -197,18 +214,18 @@ class FibreTracer {
   std::vector<std::array<std::size_t, 4>> neighbours_;
 };
 
-// The volume of each element [m^3]: of its straight edges at rest, times the field `volume_ratio` if the frame has it.
-// Frames hold the corners of quadratic elements only, whose bent edges change the volume.
+// The volume of each element [m^3]. Frames of older servers lack the mid-edge nodes of quadratic elements, whose bent
+// edges change the volume: that at rest times the field `volume_ratio`, if the frame has it, includes them.
 std::vector<double> VolumesOf(const BodySnapshot& body, bool deformed) {
   const auto ratio = std::find_if(body.fields.begin(), body.fields.end(), [](const BodyField& field) {
     return field.name == "volume_ratio" && !field.at_nodes;
   });
-  const bool has_ratio = deformed && ratio != body.fields.end();
-  const std::vector<Vec3>& x = deformed && !has_ratio ? body.positions : body.shape.positions;
+  const bool by_ratio = deformed && !body.shape.quadratic() && ratio != body.fields.end();
+  const std::vector<Vec3>& x = deformed && !by_ratio ? body.positions : body.shape.positions;
   std::vector<double> volumes;
   for (std::size_t t = 0; t < body.shape.tetrahedra.size(); ++t) {
-    const double volume = EdgesOf(body.shape.tetrahedra[t], x).determinant() / 6;
-    volumes.push_back(has_ratio ? volume * ratio->values[t] : volume);
+    const double volume = VolumeOf(body.shape, t, x);
+    volumes.push_back(by_ratio ? volume * ratio->values[t] : volume);
   }
   return volumes;
 }
@@ -241,7 +258,7 @@ std::vector<std::size_t> Representatives(const std::vector<double>& volumes) {
 
 CrossSectionAreas CrossSectionAreasOf(const BodySnapshot& body, const Vec3& axis, int count, bool deformed) {
   const std::vector<Vec3>& x = deformed ? body.positions : body.shape.positions;
-  const std::vector<Polygon> surface = SurfaceOf(body.shape);
+  const std::vector<FlatTriangle> surface = SurfaceOf(body.shape, x);
   const Vec3 normal = axis.normalized();
   double low = INFINITY, high = -INFINITY;
   for (const Vec3& point : x) {
@@ -251,7 +268,7 @@ CrossSectionAreas CrossSectionAreasOf(const BodySnapshot& body, const Vec3& axis
   CrossSectionAreas result;
   for (int i = 0; i < count; ++i) {
     result.places.push_back(low + (i + 0.5) / count * (high - low));
-    result.areas.push_back(AreaOfCut(surface, x, normal, result.places.back()));
+    result.areas.push_back(AreaOfCut(surface, normal, result.places.back()));
   }
   return result;
 }
@@ -272,8 +289,8 @@ std::optional<FibreArchitecture> FibreArchitectureOf(const BodySnapshot& body,
   double cosine_over_length = 0;
   const std::vector<std::size_t> chosen = Representatives(VolumesOf(body, false));
   for (const std::size_t t : chosen) {
-    const Mat3 F = EdgesOf(shape.tetrahedra[t], x) * EdgesOf(shape.tetrahedra[t], shape.positions).inverse();
-    const double cosine = std::min(1.0, std::abs(line.dot((F * shape.fibres[t]).normalized())));
+    const Vec3 fibre = deformed ? FibreIn(body, t, kCentroid) : shape.fibres[t];
+    const double cosine = std::min(1.0, std::abs(line.dot(fibre.normalized())));
     const double length = tracer.LengthThrough(t);
     result.length += length;
     result.shortest = std::min(result.shortest, length);

@@ -21,7 +21,7 @@ CrossSectionAreas CrossSectionAreasOf(const BodySnapshot& body, const Vec3& axis
 // to the surface. They move with the material.
 struct FibreArchitecture {
   std::size_t fibres = 0;  // traced
-  double volume = 0;       // [m^3]; deformed: by the field volume_ratio if the frame has it
+  double volume = 0;       // [m^3]
   double length = 0;       // mean over the volume [m]
   double shortest = 0, longest = 0;
   double pennation = 0;  // mean angle to the line of action [rad]

@@ -7,10 +7,7 @@
 
 namespace fascicle::client {
 
-// The sides of elements, as corners in order around them, counter-clockwise seen from outside.
-inline std::vector<std::vector<std::uint32_t>> SidesOf(const std::array<std::uint32_t, 4>& t) {
-  return {{t[0], t[2], t[1]}, {t[0], t[1], t[3]}, {t[1], t[2], t[3]}, {t[0], t[3], t[2]}};
-}
+// The sides of a brick, as corners in order around them, counter-clockwise seen from outside.
 inline std::vector<std::vector<std::uint32_t>> SidesOf(const std::array<std::uint32_t, 8>& b) {
   return {{b[0], b[4], b[6], b[2]}, {b[1], b[3], b[7], b[5]}, {b[0], b[1], b[5], b[4]},
           {b[2], b[6], b[7], b[3]}, {b[0], b[2], b[3], b[1]}, {b[4], b[5], b[7], b[6]}};

@@ -83,6 +83,10 @@ void AddCells(vtkUnstructuredGrid& grid, const fs::path& file, BodyShape& shape)
       case 10:
         shape.tetrahedra.push_back({node(0), node(1), node(2), node(3)});
         break;
+      case 24:
+        shape.tetrahedra.push_back({node(0), node(1), node(2), node(3)});
+        shape.mid_edges.push_back({node(4), node(5), node(6), node(7), node(8), node(9)});
+        break;
       case 12: {
         std::array<std::uint32_t, 8> brick;
         for (std::size_t c = 0; c < 8; ++c) brick[kHexahedronCorners[c]] = node(c);

@@ -12,7 +12,9 @@
 #include <utility>
 
 #include "client/export/element_sides.h"
+#include "client/lib/tetrahedra.h"
 #include "core/base/component_names.h"
+#include "core/geometry/tet_mesh.h"
 
 namespace fascicle::client {
 namespace {
@@ -36,17 +38,43 @@ bool IsNear(const Vec3& point, std::span<const std::uint32_t> nodes, const std::
   return ((point - low).array() >= -slack).all() && ((high - point).array() >= -slack).all();
 }
 
-std::optional<Place> PlaceIn(const std::array<std::uint32_t, 4>& t, const std::vector<Vec3>& x, const Vec3& point) {
-  if (!IsNear(point, t, x)) return std::nullopt;
-  Mat3 edges;
-  for (int c = 0; c < 3; ++c) edges.col(c) = x[t[static_cast<std::size_t>(c) + 1]] - x[t[0]];
-  const Vec3 L = edges.inverse() * (point - x[t[0]]);
-  if (!(L.minCoeff() >= -kSlack) || !(L.sum() <= 1 + kSlack)) return std::nullopt;
-  return Place{0, {{t[0], 1 - L.sum()}, {t[1], L[0]}, {t[2], L[1]}, {t[3], L[2]}}};
+// Whether a point may be in a quadratic tetrahedron, which is within the hull of its corners and of the points with
+// which its edges are Bezier curves.
+bool IsNearCurved(const BodyShape& shape, std::size_t t, const std::vector<Vec3>& x, const Vec3& point) {
+  std::array<Vec3, 10> hull;
+  for (std::size_t c = 0; c < 4; ++c) hull[c] = x[shape.tetrahedra[t][c]];
+  for (std::size_t k = 0; k < 6; ++k) {
+    const auto& [i, j] = kTetEdges[k];
+    hull[4 + k] =
+        2 * x[shape.mid_edges[t][k]] - 0.5 * (hull[static_cast<std::size_t>(i)] + hull[static_cast<std::size_t>(j)]);
+  }
+  constexpr std::array<std::uint32_t, 10> kAll = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+  return IsNear(point, kAll, {hull.begin(), hull.end()});
+}
+
+// The place of a point in a tetrahedron, by Newton's method, which takes one step where edges are straight.
+std::optional<Place> PlaceInTetrahedron(const BodyShape& shape, std::size_t t, const std::vector<Vec3>& x,
+                                        const Vec3& point) {
+  if (!(shape.quadratic() ? IsNearCurved(shape, t, x, point) : IsNear(point, shape.tetrahedra[t], x))) {
+    return std::nullopt;
+  }
+  constexpr int kMostSteps = 20;
+  Vec3 at = Vec3::Constant(0.25);  // barycentric coordinates of corners 1 to 3
+  const auto coordinates = [&at] { return Barycentric{1 - at.sum(), at[0], at[1], at[2]}; };
+  for (int step = 0; step < kMostSteps; ++step) {
+    Vec3 miss = point;
+    for (const auto& [node, weight] : WeightsAt(shape, t, coordinates())) miss -= weight * x[node];
+    const Vec3 change = EdgesAt(shape, t, x, coordinates()).inverse() * miss;
+    at += change;
+    if (!shape.quadratic() || change.cwiseAbs().maxCoeff() < 1e-14) break;
+  }
+  if (!(at.minCoeff() >= -kSlack) || !(at.sum() <= 1 + kSlack)) return std::nullopt;
+  return Place{t, WeightsAt(shape, t, coordinates())};
 }
 
 // The coordinates from 0 to 1 in a brick, by Newton's method, which takes one step where the brick is a box.
-std::optional<Place> PlaceIn(const std::array<std::uint32_t, 8>& brick, const std::vector<Vec3>& x, const Vec3& point) {
+std::optional<Place> PlaceInBrick(const std::array<std::uint32_t, 8>& brick, const std::vector<Vec3>& x,
+                                  const Vec3& point) {
   if (!IsNear(point, brick, x)) return std::nullopt;
   constexpr int kMostSteps = 20;
   Vec3 at = Vec3::Constant(0.5);
@@ -75,10 +103,12 @@ std::optional<Place> PlaceIn(const std::array<std::uint32_t, 8>& brick, const st
   return place;
 }
 
-template <class Elements>
-std::optional<Place> FindIn(const Elements& elements, const std::vector<Vec3>& x, const Vec3& point) {
-  for (std::size_t e = 0; e < elements.size(); ++e) {
-    if (std::optional<Place> place = PlaceIn(elements[e], x, point)) {
+std::optional<Place> FindPlace(const BodyShape& shape, const std::vector<Vec3>& x, const Vec3& point) {
+  for (std::size_t t = 0; t < shape.tetrahedra.size(); ++t) {
+    if (std::optional<Place> place = PlaceInTetrahedron(shape, t, x, point)) return place;
+  }
+  for (std::size_t e = 0; e < shape.bricks.size(); ++e) {
+    if (std::optional<Place> place = PlaceInBrick(shape.bricks[e], x, point)) {
       place->element = e;
       return place;
     }
@@ -102,9 +132,15 @@ double ValueAt(const BodyField& field, std::size_t component, const Place& place
 // A part of a region: an element, or a face with the element behind it.
 struct Part {
   double size = 0;  // [m^3] or [m^2]
-  std::size_t element = 0;
-  std::vector<std::uint32_t> nodes;
+  // Its nodes with their shares in the mean over it.
+  Place mean;
 };
+
+Part PartWithMean(double size, std::size_t element, std::span<const std::uint32_t> nodes) {
+  Part part = {size, {element, {}}};
+  for (const std::uint32_t node : nodes) part.mean.weights.emplace_back(node, 1. / static_cast<double>(nodes.size()));
+  return part;
+}
 
 double Volume(const std::array<std::uint32_t, 4>& t, const std::vector<Vec3>& x) {
   return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).dot(x[t[3]] - x[t[0]]) / 6;
@@ -132,48 +168,58 @@ bool AllIn(std::span<const std::uint32_t> nodes, const Flags& inside) {
   return std::all_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) { return inside[node]; });
 }
 
-template <class Elements>
-std::vector<Part> ElementsIn(const Elements& elements, const std::vector<Vec3>& x, const Flags& inside) {
+// The mean of quadratic shape functions over an element with straight edges is -1/20 at corners and 1/5 at mid-edge
+// nodes.
+std::vector<Part> ElementsIn(const BodyShape& shape, const std::vector<Vec3>& x, const Flags& inside) {
   std::vector<Part> parts;
-  for (std::size_t e = 0; e < elements.size(); ++e) {
-    if (AllIn(elements[e], inside))
-      parts.push_back({Volume(elements[e], x), e, {elements[e].begin(), elements[e].end()}});
+  for (std::size_t t = 0; t < shape.tetrahedra.size(); ++t) {
+    if (!AllIn(shape.tetrahedra[t], inside)) continue;
+    parts.push_back(PartWithMean(VolumeOf(shape, t, x), t, shape.tetrahedra[t]));
+    if (!shape.quadratic()) continue;
+    for (auto& [node, weight] : parts.back().mean.weights) weight = -0.05;
+    for (const std::uint32_t node : shape.mid_edges[t]) parts.back().mean.weights.emplace_back(node, 0.2);
+  }
+  for (std::size_t e = 0; e < shape.bricks.size(); ++e) {
+    if (AllIn(shape.bricks[e], inside)) parts.push_back(PartWithMean(Volume(shape.bricks[e], x), e, shape.bricks[e]));
   }
   return parts;
 }
 
+// Sides of tetrahedra in the region that belong to one element only. The mean of quadratic shape functions over a side
+// is that at its mid-edge nodes.
+void AddTriangles(const BodyShape& shape, const std::vector<Vec3>& x, const Flags& inside, std::vector<Part>& parts) {
+  for (const SurfaceTriangle& triangle : SurfaceTriangles(shape)) {
+    if (!AllIn(triangle.corners, inside)) continue;
+    double area = 0;
+    for (const auto& [a, b, c] : FlatParts(triangle, shape.quadratic(), x)) area += 0.5 * (b - a).cross(c - a).norm();
+    parts.push_back(PartWithMean(area, triangle.tetrahedron, shape.quadratic() ? triangle.middles : triangle.corners));
+  }
+}
+
 // Sides in the region that belong to one element only.
-template <class Elements>
-std::vector<Part> FacesIn(const Elements& elements, const std::vector<Vec3>& x, const Flags& inside) {
+std::vector<Part> FacesIn(const BodyShape& shape, const std::vector<Vec3>& x, const Flags& inside) {
+  std::vector<Part> parts;
+  AddTriangles(shape, x, inside, parts);
   std::map<std::vector<std::uint32_t>, std::vector<Part>> sides;
-  for (std::size_t e = 0; e < elements.size(); ++e) {
-    for (std::vector<std::uint32_t>& side : SidesOf(elements[e])) {
+  for (std::size_t e = 0; e < shape.bricks.size(); ++e) {
+    for (std::vector<std::uint32_t>& side : SidesOf(shape.bricks[e])) {
       if (!AllIn(side, inside)) continue;
-      std::vector<std::uint32_t> key = side;
-      std::sort(key.begin(), key.end());
-      sides[key].push_back({Area(side, x), e, std::move(side)});
+      const Part part = PartWithMean(Area(side, x), e, side);
+      std::sort(side.begin(), side.end());
+      sides[side].push_back(part);
     }
   }
-  std::vector<Part> parts;
   for (auto& [key, of_side] : sides) {
     if (of_side.size() == 1) parts.push_back(std::move(of_side.front()));
   }
   return parts;
 }
 
-double ValueOver(const BodyField& field, std::size_t component, const Part& part) {
-  const std::size_t n = field.components.size();
-  if (!field.at_nodes) return field.values[n * part.element + component];
-  double sum = 0;
-  for (const std::uint32_t node : part.nodes) sum += field.values[n * node + component];
-  return sum / static_cast<double>(part.nodes.size());
-}
-
 RegionStatistics StatisticsOf(const BodyField& field, std::size_t component, const std::vector<Part>& parts,
                               double size) {
   RegionStatistics result = {ColumnName(field, component), field.unit, 0, INFINITY, -INFINITY, 0};
   for (const Part& part : parts) {
-    const double value = ValueOver(field, component, part);
+    const double value = ValueAt(field, component, part.mean);
     result.integral += part.size * value;
     result.smallest = std::min(result.smallest, value);
     result.largest = std::max(result.largest, value);
@@ -244,8 +290,7 @@ std::vector<SampledColumn> SampleAtPoints(const Snapshot& snapshot, const std::v
   for (std::size_t p = 0; p < points.size(); ++p) {
     for (const BodySnapshot& body : snapshot.bodies) {
       const std::vector<Vec3>& x = deformed ? body.positions : body.shape.positions;
-      const std::optional<Place> place = body.shape.bricks.empty() ? FindIn(body.shape.tetrahedra, x, points[p])
-                                                                   : FindIn(body.shape.bricks, x, points[p]);
+      const std::optional<Place> place = FindPlace(body.shape, x, points[p]);
       if (!place) continue;
       for (const BodyField& field : body.fields) {
         for (std::size_t c = 0; c < field.components.size(); ++c) {
@@ -265,14 +310,12 @@ std::optional<RegionSample> SampleRegion(const Snapshot& snapshot, const std::st
   Flags inside(shape.positions.size(), false);
   for (const std::uint32_t node : found.region->nodes) inside[node] = true;
   RegionSample sample;
-  std::vector<Part> parts =
-      shape.bricks.empty() ? ElementsIn(shape.tetrahedra, x, inside) : ElementsIn(shape.bricks, x, inside);
+  std::vector<Part> parts = ElementsIn(shape, x, inside);
   sample.is_volume = !parts.empty();
-  if (parts.empty())
-    parts = shape.bricks.empty() ? FacesIn(shape.tetrahedra, x, inside) : FacesIn(shape.bricks, x, inside);
+  if (parts.empty()) parts = FacesIn(shape, x, inside);
   for (std::size_t t = 0; t < shape.triangles.size(); ++t) {
     const auto& nodes = shape.triangles[t];
-    if (AllIn(nodes, inside)) parts.push_back({Area(nodes, x), t, {nodes.begin(), nodes.end()}});
+    if (AllIn(nodes, inside)) parts.push_back(PartWithMean(Area(nodes, x), t, nodes));
   }
   if (parts.empty()) return std::nullopt;
   for (const Part& part : parts) sample.size += part.size;

@@ -47,13 +47,14 @@ struct SampledColumn {
 };
 
 // Values of all fields of the bodies at points [m], in the bodies at rest or deformed: nodal fields are interpolated
-// linearly within the element that contains a point, fields of elements are those of that element. NaN at points
-// outside of all bodies and of fields that a body does not have. Bodies that are surfaces have no inside.
+// within the element that contains a point, by its linear or quadratic shape functions; fields of elements are those of
+// that element. NaN at points outside of all bodies and of fields that a body does not have. Bodies that are surfaces
+// have no inside.
 std::vector<SampledColumn> SampleAtPoints(const Snapshot& snapshot, const std::vector<Vec3>& points, bool deformed);
 
 // A field over a region: over the elements all of whose nodes are in the region, weighted by their volume, or, if there
 // are none, over such faces of the body's boundary, weighted by area (fields of elements are those of the element
-// behind a face). Nodal fields are averaged over an element's nodes first.
+// behind a face). Nodal fields are averaged over an element first: over its nodes, or by quadratic shape functions.
 struct RegionStatistics {
   std::string name;  // as in SampledColumn
   std::string unit;

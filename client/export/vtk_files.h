@@ -11,8 +11,8 @@ namespace fascicle::client {
 // One object at one time as a VTK XML file (binary, appended, zlib), which is complete or absent. Functions throw
 // std::runtime_error with a message for users.
 
-// .vtu: nodes have `displacement` [m], the frame's node fields and a flag for each region; elements have the frame's
-// element fields and `rest_fibre`.
+// .vtu, with quadratic cells if the body has mid-edge nodes: nodes have `displacement` [m], the frame's node fields and
+// a flag for each region; elements have the frame's element fields and `rest_fibre`.
 void WriteBody(const BodyShape& shape, const v1::BodyFrame& frame, const std::filesystem::path& path);
 
 // .vtp: the triangles in the body's pose.

@@ -33,6 +33,17 @@ void CheckNodes(const std::vector<Cell>& cells, std::size_t nodes, const std::st
   }
 }
 
+// Appends the mid-edge nodes of tetrahedra. Higher-order nodes of other elements, which servers may send some day, are
+// left out.
+void DecodeHigherOrder(const v1::BodyGeometry& body, BodyShape& shape) {
+  constexpr std::size_t kSize = 6 * sizeof(std::uint32_t);
+  if (shape.tetrahedra.empty() || body.higher_order_nodes().size() != kSize * shape.tetrahedra.size()) return;
+  shape.mid_edges = DecodeArray<std::array<std::uint32_t, 6>>(body.higher_order_nodes(), "mid-edge nodes");
+  const std::vector<Vec3> middles = DecodeArray<Vec3>(body.higher_order_positions(), "mid-edge nodes");
+  shape.positions.insert(shape.positions.end(), middles.begin(), middles.end());
+  CheckNodes(shape.mid_edges, shape.positions.size(), "a tetrahedron");
+}
+
 BodyShape DecodeBody(const v1::BodyGeometry& body) {
   BodyShape shape;
   shape.name = body.name();
@@ -44,11 +55,17 @@ BodyShape DecodeBody(const v1::BodyGeometry& body) {
   CheckNodes(shape.triangles, shape.positions.size(), "a triangle");
   CheckNodes(shape.tetrahedra, shape.positions.size(), "a tetrahedron");
   CheckNodes(shape.bricks, shape.positions.size(), "a voxel or hexahedron");
+  DecodeHigherOrder(body, shape);
   if (!shape.fibres.empty() && shape.fibres.size() != shape.elements()) {
     throw std::runtime_error("the server sent fibres that don't fit the elements");
   }
   for (const v1::RegionGeometry& region : body.regions()) {
     shape.regions.push_back({region.name(), DecodeArray<std::uint32_t>(region.nodes(), "a region")});
+    if (shape.quadratic()) {
+      const auto more = DecodeArray<std::uint32_t>(region.higher_order_nodes(), "a region");
+      std::vector<std::uint32_t>& nodes = shape.regions.back().nodes;
+      nodes.insert(nodes.end(), more.begin(), more.end());
+    }
     for (const std::uint32_t node : shape.regions.back().nodes) {
       if (node >= shape.positions.size()) throw std::runtime_error("the server sent a region with an unknown node");
     }
@@ -87,6 +104,13 @@ FrameBytes::Bytes BytesOf(const google::protobuf::RepeatedField<double>& values)
 
 }  // namespace
 
+std::array<std::uint32_t, 10> BodyShape::TenNodes(std::size_t tetrahedron) const {
+  std::array<std::uint32_t, 10> nodes;
+  std::copy(tetrahedra[tetrahedron].begin(), tetrahedra[tetrahedron].end(), nodes.begin());
+  std::copy(mid_edges[tetrahedron].begin(), mid_edges[tetrahedron].end(), nodes.begin() + 4);
+  return nodes;
+}
+
 std::vector<BodyShape> DecodeGeometry(const v1::Geometry& geometry) {
   std::vector<BodyShape> shapes;
   for (const v1::BodyGeometry& body : geometry.bodies()) shapes.push_back(DecodeBody(body));
@@ -95,12 +119,18 @@ std::vector<BodyShape> DecodeGeometry(const v1::Geometry& geometry) {
 
 std::vector<Vec3> DecodePositions(const v1::BodyFrame& frame, std::size_t nodes) {
   std::vector<Vec3> positions = DecodeArray<Vec3>(frame.positions(), "positions");
+  if (positions.size() < nodes) {
+    const std::vector<Vec3> more = DecodeArray<Vec3>(frame.higher_order_positions(), "positions of mid-edge nodes");
+    positions.insert(positions.end(), more.begin(), more.end());
+  }
   if (positions.size() != nodes) throw std::runtime_error("the server sent positions that don't fit the mesh");
   return positions;
 }
 
 std::vector<double> DecodeField(const v1::FieldValues& field, const BodyShape& shape) {
-  std::vector<double> values = DecodeArray<double>(field.values(), "field " + field.name());
+  const bool has_all = field.location() == v1::FieldValues::LOCATION_NODE && shape.quadratic();
+  std::vector<double> values =
+      DecodeArray<double>(has_all ? field.all_values() : field.values(), "field " + field.name());
   const std::size_t tuples = field.location() == v1::FieldValues::LOCATION_NODE    ? shape.positions.size()
                              : field.location() == v1::FieldValues::LOCATION_BRICK ? shape.bricks.size()
                                                                                    : shape.tetrahedra.size();
@@ -187,8 +217,9 @@ void CheckDigest(const v1::Frame& frame) {
   for (const v1::BodyFrame& body : frame.bodies()) {
     FrameBytes::Body& of_body = bytes.bodies.emplace_back();
     of_body.positions = BytesOf(body.positions());
+    of_body.higher_order_positions = BytesOf(body.higher_order_positions());
     for (const v1::FieldValues& field : body.fields()) {
-      of_body.fields.push_back({field.name(), BytesOf(field.values())});
+      of_body.fields.push_back({field.name(), BytesOf(field.values()), BytesOf(field.all_values())});
     }
   }
   bytes.series = BytesOf(frame.series());

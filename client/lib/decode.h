@@ -18,23 +18,30 @@ namespace fascicle::client {
 // Rest geometry of one body.
 struct BodyShape {
   std::string name;
-  std::vector<Vec3> positions;                           // [m]
+  // Of all nodes: those of the mesh, then the mid-edge nodes of quadratic tetrahedra if the job has them [m].
+  std::vector<Vec3> positions;
   std::vector<std::array<std::uint32_t, 4>> tetrahedra;  // node indices, all in range
-  std::vector<std::array<std::uint32_t, 8>> bricks;      // in place of tetrahedra: voxels or hexahedra
-  std::vector<std::array<std::uint32_t, 3>> triangles;   // in place of tetrahedra: a closed surface
-  std::vector<Vec3> fibres;                              // unit, one for each element, or empty
+  // The mid-edge nodes of each tetrahedron in VTK's order, in the middle of its edges 01 12 02 03 13 23; empty if its
+  // edges are straight.
+  std::vector<std::array<std::uint32_t, 6>> mid_edges;
+  std::vector<std::array<std::uint32_t, 8>> bricks;     // in place of tetrahedra: voxels or hexahedra
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // in place of tetrahedra: a closed surface
+  std::vector<Vec3> fibres;                             // unit, one for each element, or empty
   struct Region {
     std::string name;
-    std::vector<std::uint32_t> nodes;  // all in range
+    std::vector<std::uint32_t> nodes;  // all in range; mid-edge nodes, too
   };
   std::vector<Region> regions;
 
   std::size_t elements() const { return tetrahedra.size() + bricks.size() + triangles.size(); }
+  bool quadratic() const { return !mid_edges.empty(); }
+  // The ten nodes of a tetrahedron that has mid-edge nodes.
+  std::array<std::uint32_t, 10> TenNodes(std::size_t tetrahedron) const;
 };
 
 std::vector<BodyShape> DecodeGeometry(const v1::Geometry& geometry);
 
-// Positions [m] of a body with `nodes` nodes.
+// Positions [m] of a body with `nodes` nodes in BodyShape::positions.
 std::vector<Vec3> DecodePositions(const v1::BodyFrame& frame, std::size_t nodes);
 
 // Values of a field, component fastest: `components` for each node or element of `shape`.

@@ -38,7 +38,7 @@ void AddLabels(const BodyShape& shape, const std::vector<Vec3>& positions, const
     dimensions[d] = std::max(2, dimensions[d]);
   }
   vtkNew<vtkResampleToImage> resample;
-  resample->SetInputDataObject(MakeGrid(shape, in_voxels));
+  resample->SetInputDataObject(MakeLinearGrid(shape, in_voxels));
   resample->UseInputBoundsOff();
   resample->SetSamplingBounds(bounds.data());
   resample->SetSamplingDimensions(dimensions.data());

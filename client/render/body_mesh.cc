@@ -1,5 +1,6 @@
 #include "client/render/body_mesh.h"
 
+#include <vtkCellArray.h>
 #include <vtkDataSetSurfaceFilter.h>
 #include <vtkDoubleArray.h>
 #include <vtkNew.h>
@@ -9,12 +10,19 @@
 #include <vtkWindowedSincPolyDataFilter.h>
 
 #include <algorithm>
+#include <array>
+#include <set>
 
+#include "client/lib/tetrahedra.h"
 #include "client/render/field_values.h"
 #include "client/vtk/body_grid.h"
 
 namespace fascicle::client {
 namespace {
+
+// Each subdivision of a quadratic face cuts its edges in half.
+constexpr int kSubdivisions = 2;
+constexpr int kEdgeParts = 1 << kSubdivisions;
 
 // Every n-th centroid; the same ones in every frame.
 template <class Elements>
@@ -36,14 +44,50 @@ vtkSmartPointer<vtkPolyData> MakeSeeds(const Elements& elements, const std::vect
 vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std::vector<Vec3>& positions,
                                               const std::vector<double>& values) {
   const auto grid = MakeGrid(shape, positions);
-  if (!values.empty()) {
-    vtkNew<vtkDoubleArray> colour;
-    colour->SetName("colour");
-    colour->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
-    std::copy(values.begin(), values.end(), colour->GetPointer(0));
-    grid->GetPointData()->SetScalars(colour);
-  }
+  SetColours(values, *grid);
   return grid;
+}
+
+void SetColours(const std::vector<double>& values, vtkUnstructuredGrid& grid) {
+  if (values.empty()) return;
+  vtkNew<vtkDoubleArray> colour;
+  colour->SetName("colour");
+  colour->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), colour->GetPointer(0));
+  grid.GetPointData()->SetScalars(colour);
+}
+
+vtkSmartPointer<vtkPolyData> MakeCurvedEdges(const BodyShape& shape, const std::vector<Vec3>& positions,
+                                             const std::vector<double>& values) {
+  // Ends and middle of each edge.
+  std::set<std::array<std::uint32_t, 3>> edges;
+  for (const SurfaceTriangle& triangle : SurfaceTriangles(shape)) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto [i, j] = std::minmax(triangle.corners[c], triangle.corners[(c + 1) % 3]);
+      edges.insert({i, j, triangle.middles[c]});
+    }
+  }
+  std::vector<Vec3> points;
+  vtkNew<vtkDoubleArray> colour;
+  colour->SetName("colour");
+  vtkNew<vtkCellArray> lines;
+  for (const auto& [i, j, middle] : edges) {
+    lines->InsertNextCell(kEdgeParts + 1);
+    for (int k = 0; k <= kEdgeParts; ++k) {
+      const double a = static_cast<double>(k) / kEdgeParts, b = 1 - a;
+      const auto at = [&, i = i, j = j, m = middle](const auto& of) {
+        return b * (2 * b - 1) * of[i] + a * (2 * a - 1) * of[j] + 4 * a * b * of[m];
+      };
+      lines->InsertCellPoint(static_cast<vtkIdType>(points.size()));
+      points.emplace_back(at(positions));
+      if (!values.empty()) colour->InsertNextValue(at(values));
+    }
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(MakePoints(points));
+  data->SetLines(lines);
+  if (!values.empty()) data->GetPointData()->SetScalars(colour);
+  return data;
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const RigidShape& body, const Pose& pose) {
@@ -70,6 +114,7 @@ bool IsOfVoxels(const BodyShape& shape) {
 vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid, bool smooth) {
   vtkNew<vtkDataSetSurfaceFilter> surface;
   surface->SetInputData(&grid);
+  surface->SetNonlinearSubdivisionLevel(kSubdivisions);
   // Taubin's filter, which does not shrink.
   vtkNew<vtkWindowedSincPolyDataFilter> sinc;
   sinc->SetInputConnection(surface->GetOutputPort());
@@ -88,7 +133,7 @@ vtkSmartPointer<vtkPolyData> MakeSurface(vtkUnstructuredGrid& grid, bool smooth)
 
 vtkSmartPointer<vtkPolyData> MakeFibreLines(const BodyShape& shape, const std::vector<Vec3>& positions, int seeds) {
   if (shape.fibres.empty()) return vtkSmartPointer<vtkPolyData>::New();
-  const auto grid = MakeGrid(shape, positions);
+  const auto grid = MakeLinearGrid(shape, positions);
   vtkNew<vtkDoubleArray> directions;
   directions->SetName("fibre");
   directions->SetNumberOfComponents(3);

@@ -5,16 +5,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "client/lib/tetrahedra.h"
 #include "core/base/component_names.h"
+#include "core/geometry/tet_mesh.h"
 
 namespace fascicle::client {
 namespace {
-
-Mat3 Edges(const std::vector<Vec3>& x, const std::array<std::uint32_t, 4>& t) {
-  Mat3 edges;
-  for (int i = 0; i < 3; ++i) edges.col(i) = x[t[static_cast<std::size_t>(i) + 1]] - x[t[0]];
-  return edges;
-}
 
 // The edges of a brick at its middle, with the volume of a parallelepiped.
 Mat3 Edges(const std::vector<Vec3>& x, const std::array<std::uint32_t, 8>& brick) {
@@ -25,33 +21,33 @@ Mat3 Edges(const std::vector<Vec3>& x, const std::array<std::uint32_t, 8>& brick
   return edges;
 }
 
-template <class Element>
-void AddFibre(const Element& element, const Vec3& fibre, const std::vector<Vec3>& rest_positions,
-              const std::vector<Vec3>& positions, std::vector<Vec3>& sums) {
-  const Mat3 rest = Edges(rest_positions, element);
-  const Vec3 deformed = Edges(positions, element) * rest.inverse() * fibre;
-  const double weight = std::abs(rest.determinant()) / deformed.norm();
-  if (!std::isfinite(weight)) return;
-  for (const std::uint32_t node : element) sums[node] += (sums[node].dot(deformed) < 0 ? -weight : weight) * deformed;
+// Calls visit(nodes, edges at its middle with nodes at given positions, index) for every element.
+template <class Visit>
+void ForElements(const BodyShape& shape, const Visit& visit) {
+  for (std::size_t e = 0; e < shape.tetrahedra.size(); ++e) {
+    const auto edges = [&, e](const std::vector<Vec3>& x) { return EdgesAt(shape, e, x, kCentroid); };
+    if (shape.quadratic()) {
+      visit(shape.TenNodes(e), edges, e);
+    } else {
+      visit(shape.tetrahedra[e], edges, e);
+    }
+  }
+  for (std::size_t e = 0; e < shape.bricks.size(); ++e) {
+    visit(
+        shape.bricks[e], [&, e](const std::vector<Vec3>& x) { return Edges(x, shape.bricks[e]); }, e);
+  }
 }
 
 // Averages the values of the elements around each node, weighted by rest volume.
 std::vector<double> AverageAtNodes(const BodyShape& shape, const std::vector<double>& values) {
   std::vector<double> sums(shape.positions.size(), 0.0), weights(shape.positions.size(), 0.0);
-  for (std::size_t e = 0; e < shape.tetrahedra.size(); ++e) {
-    const double volume = std::abs(Edges(shape.positions, shape.tetrahedra[e]).determinant());
-    for (const std::uint32_t node : shape.tetrahedra[e]) {
+  ForElements(shape, [&](const auto& nodes, const auto& edges, std::size_t e) {
+    const double volume = std::abs(edges(shape.positions).determinant());
+    for (const std::uint32_t node : nodes) {
       sums[node] += volume * values[e];
       weights[node] += volume;
     }
-  }
-  for (std::size_t e = 0; e < shape.bricks.size(); ++e) {
-    const double volume = std::abs(Edges(shape.positions, shape.bricks[e]).determinant());
-    for (const std::uint32_t node : shape.bricks[e]) {
-      sums[node] += volume * values[e];
-      weights[node] += volume;
-    }
-  }
+  });
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = weights[i] > 0 ? sums[i] / weights[i] : 0.0;
   return sums;
 }
@@ -62,6 +58,26 @@ struct Tuples {
   bool at_nodes = true;
   std::string unit;
 };
+
+// Forces on the nodes of quadratic elements alternate between corners and mid-edge nodes even where stresses are
+// uniform. For display, those on mid-edge nodes are halved between the ends of the edge, and interpolated there.
+Tuples ForcesOnCorners(const BodyShape& shape, const v1::FieldValues& field) {
+  BodyShape corners = shape;
+  corners.mid_edges.clear();
+  corners.positions.resize(field.values().size() / sizeof(Vec3));
+  Tuples tuples{DecodeField(field, corners), 3, true, field.unit()};
+  tuples.values.resize(3 * shape.positions.size());
+  for (std::size_t t = 0; t < shape.tetrahedra.size(); ++t) {
+    for (std::size_t k = 0; k < kTetEdges.size(); ++k) {
+      const std::size_t i = shape.tetrahedra[t][static_cast<std::size_t>(kTetEdges[k][0])],
+                        j = shape.tetrahedra[t][static_cast<std::size_t>(kTetEdges[k][1])];
+      for (std::size_t c = 0; c < 3; ++c) {
+        tuples.values[3 * shape.mid_edges[t][k] + c] = 0.5 * (tuples.values[3 * i + c] + tuples.values[3 * j + c]);
+      }
+    }
+  }
+  return tuples;
+}
 
 Tuples FindField(const BodyShape& shape, const v1::BodyFrame& frame, const std::string& name) {
   if (name == "displacement") {
@@ -75,6 +91,7 @@ Tuples FindField(const BodyShape& shape, const v1::BodyFrame& frame, const std::
   }
   for (const v1::FieldValues& field : frame.fields()) {
     if (field.name() == name) {
+      if (field.unit() == "N" && shape.quadratic()) return ForcesOnCorners(shape, field);
       return {DecodeField(field, shape), static_cast<std::size_t>(field.components()),
               field.location() == v1::FieldValues::LOCATION_NODE, field.unit()};
     }
@@ -133,13 +150,14 @@ NodeValues ValuesAtNodes(const BodyShape& shape, const v1::BodyFrame& frame, con
 
 std::vector<Vec3> FibresAtNodes(const BodyShape& shape, const std::vector<Vec3>& positions) {
   std::vector<Vec3> sums(shape.positions.size(), Vec3::Zero());
-  for (std::size_t e = 0; e < shape.fibres.size(); ++e) {
-    if (shape.bricks.empty()) {
-      AddFibre(shape.tetrahedra[e], shape.fibres[e], shape.positions, positions, sums);
-    } else {
-      AddFibre(shape.bricks[e], shape.fibres[e], shape.positions, positions, sums);
-    }
-  }
+  if (shape.fibres.empty()) return sums;
+  ForElements(shape, [&](const auto& nodes, const auto& edges, std::size_t e) {
+    const Mat3 rest = edges(shape.positions);
+    const Vec3 deformed = edges(positions) * rest.inverse() * shape.fibres[e];
+    const double weight = std::abs(rest.determinant()) / deformed.norm();
+    if (!std::isfinite(weight)) return;
+    for (const std::uint32_t n : nodes) sums[n] += (sums[n].dot(deformed) < 0 ? -weight : weight) * deformed;
+  });
   for (Vec3& sum : sums) {
     if (sum.norm() > 0) sum.normalize();
   }

@@ -85,8 +85,13 @@ void SetMatte(const double colour[3], vtkProperty& property) {
 void AddBody(const BodyShape& shape, const v1::BodyFrame& frame, const Colouring& colouring, std::size_t index,
              const PictureOptions& options, vtkRenderer& renderer) {
   const std::vector<Vec3> positions = DecodePositions(frame, shape.positions.size());
-  const auto grid = MakeGrid(shape, positions, colouring.bodies[index]);
-  if (options.volume) AddCloud(*grid, colouring.scale, renderer);
+  const std::vector<double>& values = colouring.bodies[index];
+  const auto grid = MakeGrid(shape, positions, values);
+  if (options.volume) {
+    const auto solid = MakeLinearGrid(shape, positions);
+    SetColours(values, *solid);
+    AddCloud(*solid, colouring.scale, renderer);
+  }
   const auto surface = MakeSurface(*grid, options.smooth);
   if (options.surface && !options.volume) {
     const auto actor = MakeActor(surface, colouring);
@@ -97,7 +102,8 @@ void AddBody(const BodyShape& shape, const v1::BodyFrame& frame, const Colouring
   }
   if (options.wireframe) {
     // On a surface, edges are dark; without a surface, they have the colours.
-    const auto edges = MakeActor(surface, options.surface ? Colouring{} : colouring);
+    const auto data = shape.quadratic() ? MakeCurvedEdges(shape, positions, values) : surface;
+    const auto edges = MakeActor(data, options.surface ? Colouring{} : colouring);
     edges->GetProperty()->SetRepresentationToWireframe();
     edges->GetProperty()->SetLineWidth(Canvas::kSampling * (options.surface ? 0.8F : 1.2F));
     edges->GetProperty()->SetColor(kInk[0], kInk[1], kInk[2]);

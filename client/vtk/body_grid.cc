@@ -23,6 +23,20 @@ vtkSmartPointer<vtkCellArray> MakeCells(const Elements& elements, const std::arr
   return cells;
 }
 
+// kTetEdges is VTK's order of mid-edge nodes.
+vtkSmartPointer<vtkCellArray> MakeQuadraticCells(const BodyShape& shape) {
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
+  const auto count = static_cast<vtkIdType>(shape.tetrahedra.size());
+  cells->AllocateExact(count, 10 * count);
+  for (std::size_t t = 0; t < shape.tetrahedra.size(); ++t) {
+    const std::array<std::uint32_t, 10> nodes = shape.TenNodes(t);
+    const std::array<vtkIdType, 10> ids = {nodes[0], nodes[1], nodes[2], nodes[3], nodes[4],
+                                           nodes[5], nodes[6], nodes[7], nodes[8], nodes[9]};
+    cells->InsertNextCell(10, ids.data());
+  }
+  return cells;
+}
+
 }  // namespace
 
 vtkSmartPointer<vtkPoints> MakePoints(const std::vector<Vec3>& positions) {
@@ -44,10 +58,28 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std:
     grid->SetCells(VTK_HEXAHEDRON, MakeCells(shape.bricks, kHexahedronCorners));
   } else if (!shape.triangles.empty()) {
     grid->SetCells(VTK_TRIANGLE, MakeTriangles(shape.triangles));
+  } else if (shape.quadratic()) {
+    grid->SetCells(VTK_QUADRATIC_TETRA, MakeQuadraticCells(shape));
   } else {
     grid->SetCells(VTK_TETRA, MakeCells(shape.tetrahedra, std::array<std::size_t, 4>{0, 1, 2, 3}));
   }
   return grid;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> MakeLinearGrid(const BodyShape& shape, const std::vector<Vec3>& positions) {
+  if (!shape.quadratic()) return MakeGrid(shape, positions);
+  // The corners are cut off; the octahedron between is divided around the diagonal from node 6 to node 8.
+  constexpr std::array<std::array<std::size_t, 4>, 8> kParts = {
+      {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}, {6, 8, 4, 5}, {6, 8, 5, 9}, {6, 8, 9, 7}, {6, 8, 7, 4}}};
+  BodyShape divided;
+  divided.tetrahedra.reserve(8 * shape.tetrahedra.size());
+  for (std::size_t t = 0; t < shape.tetrahedra.size(); ++t) {
+    const std::array<std::uint32_t, 10> nodes = shape.TenNodes(t);
+    for (const auto& part : kParts) {
+      divided.tetrahedra.push_back({nodes[part[0]], nodes[part[1]], nodes[part[2]], nodes[part[3]]});
+    }
+  }
+  return MakeGrid(divided, positions);
 }
 
 }  // namespace fascicle::client

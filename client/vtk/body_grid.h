@@ -22,8 +22,12 @@ vtkSmartPointer<vtkPoints> MakePoints(const std::vector<Vec3>& positions);
 
 vtkSmartPointer<vtkCellArray> MakeTriangles(const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
-// The elements of a body with its nodes at `positions`: tetrahedra, bricks as hexahedra, or triangles.
+// The elements of a body with its nodes at `positions`: tetrahedra of four or ten nodes, bricks as hexahedra, or
+// triangles.
 vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std::vector<Vec3>& positions);
+
+// The same with every quadratic tetrahedron divided into eight of four nodes, which use its mid-edge nodes.
+vtkSmartPointer<vtkUnstructuredGrid> MakeLinearGrid(const BodyShape& shape, const std::vector<Vec3>& positions);
 
 }  // namespace fascicle::client
 

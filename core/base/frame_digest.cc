@@ -1,5 +1,6 @@
 #include "core/base/frame_digest.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace fascicle {
@@ -22,10 +23,24 @@ void AddArray(Sha256& sha, FrameBytes::Bytes items, std::size_t item_size) {
   sha.Update(items);
 }
 
+constexpr std::size_t kNumber = sizeof(double), kPoint = 3 * kNumber, kPose = 7 * kNumber;
+
+// Positions and fields at the higher-order nodes of each body, if any body has some.
+void AddHigherOrder(Sha256& sha, const FrameBytes& frame) {
+  if (std::all_of(frame.bodies.begin(), frame.bodies.end(),
+                  [](const FrameBytes::Body& body) { return body.higher_order_positions.empty(); })) {
+    return;
+  }
+  AddText(sha, "higher_order");
+  for (const FrameBytes::Body& body : frame.bodies) {
+    AddArray(sha, body.higher_order_positions, kPoint);
+    for (const FrameBytes::Field& field : body.fields) AddArray(sha, field.all_values, kNumber);
+  }
+}
+
 }  // namespace
 
 Digest DigestOf(const FrameBytes& frame) {
-  constexpr std::size_t kNumber = sizeof(double), kPoint = 3 * kNumber, kPose = 7 * kNumber;
   Sha256 sha;
   Add(sha, frame.index);
   Add(sha, frame.time);
@@ -52,6 +67,7 @@ Digest DigestOf(const FrameBytes& frame) {
       AddArray(sha, line.values, kNumber);
     }
   }
+  AddHigherOrder(sha, frame);
   return sha.Finish();
 }
 

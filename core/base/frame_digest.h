@@ -17,11 +17,13 @@ struct FrameBytes {
   using Bytes = std::span<const std::byte>;
   struct Field {
     std::string_view name;
-    Bytes values;  // doubles
+    Bytes values;           // doubles
+    Bytes all_values = {};  // doubles
   };
   struct Body {
     Bytes positions;  // 3 doubles per node
     std::vector<Field> fields;
+    Bytes higher_order_positions = {};  // 3 doubles per node
   };
   struct Line {
     Bytes points;  // 3 doubles per point
@@ -38,8 +40,9 @@ struct FrameBytes {
 };
 
 // SHA-256 over index, time, step, bodies (positions, fields with their names) and series, in this order, then over
-// poses and lines if there are any. Frames of bodies only therefore have the same digest as before poses and lines
-// existed. Every array is preceded by its number of items, so that different frames never have the same bytes.
+// poses, lines and the values at higher-order nodes, each if there are any. Frames without them therefore have the same
+// digest as before they existed. Every array is preceded by its number of items, so that different frames never have
+// the same bytes.
 Digest DigestOf(const FrameBytes& frame);
 
 }  // namespace fascicle

@@ -259,7 +259,7 @@ void DropUnused(RawMesh& raw, std::vector<std::array<std::int32_t, 6>>& middles,
 // Turns mid-edge nodes into curved edges, or drops them where the edge is straight up to round-off, and renumbers the
 // remaining nodes.
 void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, const std::stop_token& stop, TetMesh& mesh,
-                 Problems& problems) {
+                 std::vector<std::array<std::int32_t, 2>>& node_places, Problems& problems) {
   constexpr double kStraight = 1e-9;
   std::vector<char> is_middle(mesh.nodes.size());
   std::map<std::array<std::int32_t, 2>, std::int32_t> edges;
@@ -299,6 +299,8 @@ void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, const 
     number[n] = count++;
   }
   mesh.nodes.resize(count);
+  for (const std::int32_t n : number) node_places.push_back({n, n});
+  for (const auto& [ends, middle] : edges) node_places[middle] = {number[ends[0]], number[ends[1]]};
   const auto renumber = [&](auto& cells) {
     for (auto& cell : cells) {
       for (std::int32_t& n : cell) n = number[n];
@@ -375,7 +377,7 @@ std::optional<TetMesh> MakeMesh(RawMesh& raw, Solids wanted, const std::stop_tok
   mesh.nodes = std::move(raw.nodes);
   OrientSolids(split, mesh);
   DropUnused(raw, middles, mesh);
-  if (!middles.empty()) TakeMiddles(middles, stop, mesh, problems);
+  if (!middles.empty()) TakeMiddles(middles, stop, mesh, raw.node_places, problems);
   if (problems.count() > before) return std::nullopt;
   return mesh;
 }
@@ -385,7 +387,7 @@ std::optional<TetMesh> MakeMesh(RawMesh& raw, Solids wanted, const std::stop_tok
 std::optional<TetMesh> FinishMesh(RawMesh raw, Solids solids, Problems& problems, const std::stop_token& stop,
                                   MeshRemarks* remarks) {
   std::optional<TetMesh> mesh = MakeMesh(raw, solids, stop, problems);
-  if (remarks != nullptr) *remarks = {std::move(raw.names), std::move(raw.notes)};
+  if (remarks != nullptr) *remarks = {std::move(raw.names), std::move(raw.notes), std::move(raw.node_places)};
   return mesh;
 }
 

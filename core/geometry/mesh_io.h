@@ -28,6 +28,9 @@ struct MeshFile {
 struct MeshRemarks {
   std::vector<TagName> names;      // of physical tags
   std::vector<std::string> notes;  // what was left out, or read in spite of a flaw
+  // Of a mesh of second order: where each node of the file is, in its order and without those that were left out: at a
+  // node of the mesh, given twice, or in the middle between two. Empty for other meshes.
+  std::vector<std::array<std::int32_t, 2>> node_places;
 };
 
 // Reads tetrahedra and tagged triangles and nodes from Gmsh 2.2/4.1 ASCII, VTK XML (.vtu: ascii, inline and appended,

@@ -49,6 +49,7 @@ struct RawMesh {
   std::size_t others = 0;         // cells of other kinds, skipped
   std::vector<TagName> names;
   std::vector<std::string> notes;
+  std::vector<std::array<std::int32_t, 2>> node_places;  // as in MeshRemarks, set by FinishMesh
 };
 
 // Looks up the nodes, splits or keeps solids as wanted, and makes a mesh of what a reader found. Adds to `problems`

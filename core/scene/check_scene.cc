@@ -6,8 +6,8 @@ namespace fascicle {
 void CheckScene(const Scene& scene, Problems& problems, const std::stop_token& stop) {
   using namespace scene_checks;  // NOLINT(google-build-using-namespace): all of them
   for (const auto check :
-       {CheckBodies, CheckCurves, CheckMaterials, CheckActivations, CheckInitialDisplacement, CheckFibres,
-        CheckConstraints, CheckLoads, CheckFloors, CheckTet, CheckVoxel, CheckEulerian, CheckOutput}) {
+       {CheckBodies, CheckCurves, CheckMaterials, CheckActivations, CheckInitialState, CheckFibres, CheckConstraints,
+        CheckLoads, CheckFloors, CheckTet, CheckVoxel, CheckEulerian, CheckOutput}) {
     ThrowIfStopped(stop);
     check(scene, problems);
   }

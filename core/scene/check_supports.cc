@@ -31,7 +31,7 @@ bool IsStatic(const Scene& scene) {
   if (scene.method == Method::kVoxel) {
     return scene.voxel.stepping == VoxelStepping::kStatic || scene.voxel.start_loaded;
   }
-  return scene.method == Method::kTet && scene.tet.stepping == Stepping::kQuasiStatic;
+  return scene.method == Method::kTet && (scene.tet.stepping == Stepping::kQuasiStatic || scene.start.equilibrium);
 }
 
 std::array<bool, 3> HeldAxes(const Body& body) {

@@ -12,8 +12,9 @@ void CheckBodies(const Scene& scene, Problems& problems);
 void CheckMaterials(const Scene& scene, Problems& problems);
 // Activations within [0, 1], of bodies and of their parts; activation scales.
 void CheckActivations(const Scene& scene, Problems& problems);
-// Initial displacements: one for each node, finite.
-void CheckInitialDisplacement(const Scene& scene, Problems& problems);
+// The start of the scene, which only the tet method has; initial displacements and velocities: one for each node,
+// finite.
+void CheckInitialState(const Scene& scene, Problems& problems);
 // Fibre directions, if a law needs them: one for each tetrahedron, finite and of unit length.
 void CheckFibres(const Scene& scene, Problems& problems);
 // Every curve of the scene: as many values as times, times increasing, all finite.

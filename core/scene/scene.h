@@ -14,6 +14,15 @@
 
 namespace fascicle {
 
+// How a scene of the tet method begins.
+struct Start {
+  bool equilibrium = false;  // solved for time 0
+  // Whether initial displacements and velocities are those of another run's frame.
+  bool frame = false;
+};
+template <>
+inline constexpr auto kFieldNames<Start> = FieldNames("equilibrium", "frame");
+
 // The definition of a simulation, in SI units with all references resolved. Its structs correspond to the messages of
 // scene.proto, which explains their fields. Built by the server's translation or by hand, checked by CheckScene, then
 // constant.
@@ -29,10 +38,11 @@ struct Scene {
   std::vector<PlaneForceField> squeezes;  // for the eulerian method
   double duration = 0;                    // [s]
   Output output;
+  Start start;
 };
 template <>
 inline constexpr auto kFieldNames<Scene> = FieldNames("name", "bodies", "gravity", "floors", "", "tet", "voxel",
-                                                      "eulerian", "squeezes", "duration", "output");
+                                                      "eulerian", "squeezes", "duration", "output", "start");
 
 // Checks relations between fields: contradictory constraints at a node, loads on regions without surface, missing
 // fibres, activation outside [0, 1], bodies without mass, bodies that start inside of a floor, number of frames, and

@@ -57,13 +57,15 @@ struct TetShape {
   Parts<Material> materials;
   std::vector<PronySeries> viscoelasticity;  // of each of materials.more; empty: these are elastic
   Parts<Curve> activations;
-  std::vector<double> activation_scale;    // fraction of the activation that reaches each element [0, 1]; empty: 1
-  std::vector<Vec3> initial_displacement;  // of each node at time 0 [m], may tangle the mesh; empty: none
+  std::vector<double> activation_scale;  // fraction of the activation that reaches each element [0, 1]; empty: 1
+  // Of each node of the mesh at time 0; for quadratic elements optionally followed by those of the mid-edge nodes, in
+  // the order of MeshEdges; empty: none. Displacements may tangle the mesh [m]; velocities [m/s].
+  std::vector<Vec3> initial_displacement, initial_velocity;
 };
 template <>
 inline constexpr auto kFieldNames<TetShape> = FieldNames("mesh", "fibres", "prestretch", "region_materials",
                                                          "viscoelasticity", "region_activations", "activation_scale",
-                                                         "initial_displacement");
+                                                         "initial_displacement", "initial_velocity");
 
 // Bricks, the solid voxels of a grid, for the voxel method.
 struct VoxelShape {

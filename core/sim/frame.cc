@@ -30,7 +30,10 @@ Digest DigestOf(const Frame& frame) {
   for (const BodyFrame& body : frame.bodies) {
     FrameBytes::Body& of_body = bytes.bodies.emplace_back();
     of_body.positions = BytesOf(body.positions);
-    for (const FieldValues& field : body.fields) of_body.fields.push_back({field.name, BytesOf(field.values)});
+    of_body.higher_order_positions = BytesOf(body.higher_order_positions);
+    for (const FieldValues& field : body.fields) {
+      of_body.fields.push_back({field.name, BytesOf(field.values), BytesOf(field.all_values)});
+    }
   }
   bytes.series = BytesOf(frame.series);
   bytes.poses = BytesOf(frame.poses);

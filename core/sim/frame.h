@@ -19,14 +19,18 @@ struct FieldValues {
   int components = 1;
   std::string unit;
   std::vector<double> values;  // component fastest
+  // Of a field at nodes, if the body has higher-order nodes: the values at all nodes, first those of the mesh. Forces
+  // there are those on the nodes themselves; `values` has those on a mid-edge node halved between the ends of its edge.
+  std::vector<double> all_values = {};
 };
 
 // A field with its values at a location (LocationOf).
 FieldValues FieldOf(OutputField field, FieldLocation location, std::vector<double> values);
 
 struct BodyFrame {
-  std::vector<Vec3> positions;  // [m]
+  std::vector<Vec3> positions;  // of the nodes of the mesh [m]
   std::vector<FieldValues> fields;
+  std::vector<Vec3> higher_order_positions = {};  // of HigherOrderNodes [m]
 };
 
 struct LineFrame {
@@ -69,11 +73,20 @@ struct LineInfo {
   std::vector<SeriesInfo> values;  // such as `activation`, `length`, `tension`
 };
 
+// The nodes that the elements of a body have beside their corners, which are the nodes of its mesh.
+struct HigherOrderNodes {
+  std::vector<Vec3> positions;  // at rest [m]
+  // Those of each element, in the mesh's order of elements and VTK's order of nodes, counted on from the mesh's nodes.
+  std::vector<std::int32_t> of_elements;
+  std::vector<std::vector<std::int32_t>> of_regions;  // those of each region of the body, ascending
+};
+
 // The contents of a simulation's frames besides bodies; constant.
 struct FrameLayout {
   std::vector<RigidBodyInfo> rigid_bodies;
   std::vector<LineInfo> lines;
   std::vector<SeriesInfo> series;
+  std::vector<HigherOrderNodes> higher_order = {};  // of each body; empty if no body has any
 };
 
 // See core/base/frame_digest.h.

@@ -62,6 +62,9 @@ class MethodRun {
   // Largest speed of a node [m/s].
   virtual double LargestSpeed() const = 0;
 
+  // The higher-order nodes of each body; empty if no body has any.
+  virtual std::vector<HigherOrderNodes> HigherOrder() const { return {}; }
+
   // Positions and the requested fields of every body. now: the controls at the current time; later: those after another
   // step of the same length as the last one.
   virtual std::vector<BodyFrame> MeasureBodies(const Controls& now, const Controls& later) const = 0;

@@ -86,7 +86,7 @@ struct Simulation::Impl {
         team(threads, std::move(stop)),
         source(*scene),
         method(MakeMethodRun(*scene, team, p)),
-        layout{FloorBodies(*scene), {}, SeriesOf(*method)},
+        layout{FloorBodies(*scene), {}, SeriesOf(*method), method->HigherOrder()},
         warnings(*scene, layout.series) {
     const double intervals = scene->duration / scene->output.frame_interval;
     // The tolerance prevents rounding from adding a frame to a whole number of intervals.
@@ -216,6 +216,7 @@ struct Simulation::Impl {
     if (next_frame == 0) {
       const StepOutcome start = method->SolveStart(now);
       if (start.problem != StepProblem::kNone) return Failed(FailureOf(start));
+      warnings.ObserveStep(start, 0);
     }
     while (!AtEnd()) {
       const double frame_time = TimeOfFrame(next_frame);

@@ -96,6 +96,33 @@ std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, 
   return values;
 }
 
+std::vector<HigherOrderNodes> HigherOrderNodesOf(const TetModel& model) {
+  std::vector<HigherOrderNodes> bodies;
+  if (model.order() != ElementOrder::kQuadratic) return bodies;
+  for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+    const TetBody& body = model.bodies()[b];
+    const TetMesh& mesh = body.source->tet().mesh;
+    const MeshEdges& edges = model.edges(b);
+    const auto first = static_cast<std::int32_t>(mesh.nodes.size());
+    HigherOrderNodes& nodes = bodies.emplace_back();
+    nodes.positions.assign(model.rest_positions().begin() + static_cast<std::ptrdiff_t>(body.mesh_node_end),
+                           model.rest_positions().begin() + static_cast<std::ptrdiff_t>(body.node_end));
+    nodes.of_elements.reserve(6 * mesh.tetrahedra.size());
+    for (const std::array<std::int32_t, 6>& of_tetrahedron : edges.of_tetrahedra) {
+      for (const std::int32_t edge : of_tetrahedron) nodes.of_elements.push_back(first + edge);
+    }
+    const std::vector<Triangle> boundary = BoundaryTriangles(mesh);
+    for (const Region& region : body.source->regions) {
+      std::vector<std::int32_t>& of_region = nodes.of_regions.emplace_back();
+      const std::vector<bool> within = EdgesWithin(mesh, edges, boundary, region.nodes);
+      for (std::size_t edge = 0; edge < within.size(); ++edge) {
+        if (within[edge]) of_region.push_back(first + static_cast<std::int32_t>(edge));
+      }
+    }
+  }
+  return bodies;
+}
+
 std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& state, const StateControls& controls,
                                      ThreadTeam& team) {
   std::vector<BodyFrame> frames(model.bodies().size());
@@ -103,9 +130,18 @@ std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& stat
     const TetBody& body = model.bodies()[b];
     frames[b].positions.assign(state.positions.begin() + static_cast<std::ptrdiff_t>(body.node_begin),
                                state.positions.begin() + static_cast<std::ptrdiff_t>(body.mesh_node_end));
+    frames[b].higher_order_positions.assign(state.positions.begin() + static_cast<std::ptrdiff_t>(body.mesh_node_end),
+                                            state.positions.begin() + static_cast<std::ptrdiff_t>(body.node_end));
     for (const OutputField field : model.scene().output.fields) {
-      frames[b].fields.push_back(FieldOf(field, LocationOf(InfoOf(field), body.source->shape),
-                                         FieldValuesOf(model, b, field, state, controls, team)));
+      NodeFieldValues values;
+      if (IsNodal(InfoOf(field))) {
+        values = NodeFieldOf(model, b, field, state, controls, team);
+      } else {
+        values.on_mesh = FieldValuesOf(model, b, field, state, controls, team);
+      }
+      const FieldLocation location = LocationOf(InfoOf(field), body.source->shape);
+      frames[b].fields.push_back(FieldOf(field, location, std::move(values.on_mesh)));
+      frames[b].fields.back().all_values = std::move(values.all);
     }
   }
   return frames;

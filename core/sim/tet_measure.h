@@ -23,6 +23,9 @@ std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, 
 std::vector<double> MeasureLaterSeries(const TetModel& model, const TetState& state, const Controls& now,
                                        const std::vector<Reaction>& reactions, ThreadTeam& team);
 
+// The mid-edge nodes of each body; empty unless elements are quadratic.
+std::vector<HigherOrderNodes> HigherOrderNodesOf(const TetModel& model);
+
 // Positions and the requested fields of every body.
 std::vector<BodyFrame> MeasureBodies(const TetModel& model, const TetState& state, const StateControls& controls,
                                      ThreadTeam& team);

@@ -19,20 +19,18 @@ class TetRun : public MethodRun {
   std::vector<SeriesInfo> LaterSeries() const override { return LaterSeriesOf(model_); }
 
   void Start(const Controls& start) override { state_ = solver_.InitialState(start); }
-  StepOutcome SolveStart(const Controls&) override { return {}; }
+  StepOutcome SolveStart(const Controls& start) override {
+    return model_.scene().start.equilibrium ? OutcomeOf(solver_.SolveEquilibrium(start, state_)) : StepOutcome();
+  }
   RunClock clock() const override { return {state_.time, state_.step, state_.time_step, state_.iterations}; }
   StepProposal ProposeStep(const Controls& now, double end) override { return solver_.ProposeStep(state_, now, end); }
   StepOutcome Step(const Controls& now, const Controls& next, double dt) override {
-    StepReport report = solver_.Step(state_, now, next, dt);
-    StepOutcome outcome = {report.problem, std::move(report.bad), report.try_shorter};
-    outcome.largest_strain = report.strain.value;
-    outcome.strained_body = report.strain.body;
-    outcome.strained_element = report.strain.element;
-    return outcome;
+    return OutcomeOf(solver_.Step(state_, now, next, dt));
   }
 
   double LargestSpeed() const override { return fascicle::LargestSpeed(state_.velocities); }
 
+  std::vector<HigherOrderNodes> HigherOrder() const override { return HigherOrderNodesOf(model_); }
   std::vector<BodyFrame> MeasureBodies(const Controls& now, const Controls& later) const override {
     return fascicle::MeasureBodies(model_, state_, {now, later}, team_);
   }
@@ -55,6 +53,14 @@ class TetRun : public MethodRun {
   void Load(ArchiveReader& archive) override { state_.Load(archive); }
 
  private:
+  static StepOutcome OutcomeOf(StepReport report) {
+    StepOutcome outcome = {report.problem, std::move(report.bad), report.try_shorter};
+    outcome.largest_strain = report.strain.value;
+    outcome.strained_body = report.strain.body;
+    outcome.strained_element = report.strain.element;
+    return outcome;
+  }
+
   ThreadTeam& team_;
   TetModel model_;
   TetSolver solver_;

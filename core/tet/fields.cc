@@ -186,11 +186,10 @@ NodalVector NodalForceOf(const TetModel& model, OutputField field, const TetStat
   return forces;
 }
 
-std::vector<double> AtNodes(const TetBody& body, const NodalVector& vectors) {
+std::vector<double> AtNodes(const NodalVector& vectors, std::size_t begin, std::size_t end) {
   std::vector<double> values;
-  for (std::size_t n = body.node_begin; n < body.mesh_node_end; ++n) {
-    values.insert(values.end(), vectors[n].begin(), vectors[n].end());
-  }
+  values.reserve(3 * (end - begin));
+  for (std::size_t n = begin; n < end; ++n) values.insert(values.end(), vectors[n].begin(), vectors[n].end());
   return values;
 }
 
@@ -271,15 +270,25 @@ std::vector<double> AtPlace(const FieldInputs& inputs, const TetPlace& place, Ou
 std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body_index, OutputField field,
                                   const TetState& state, const StateControls& controls, ThreadTeam& team) {
   const FieldSource from = InfoOf(field).from;
-  const TetBody& body = model.bodies()[body_index];
-  if (from == FieldSource::kMotion) return AtNodes(body, state.velocities);
-  if (from == FieldSource::kNodalForce) {
-    return AtNodes(body, OnMeshNodes(model, body, NodalForceOf(model, field, state, controls, team)));
-  }
+  if (IsNodal(InfoOf(field))) return NodeFieldOf(model, body_index, field, state, controls, team).on_mesh;
   const FieldInputs inputs(model, from, state, controls.now, team);
   return WithSource(from, [&]<FieldSource kFrom>() {
     return FromMeans(field, OverElements<kFrom>(inputs, body_index, InfoOf(field).mean_of, team));
   });
+}
+
+NodeFieldValues NodeFieldOf(const TetModel& model, std::size_t body_index, OutputField field, const TetState& state,
+                            const StateControls& controls, ThreadTeam& team) {
+  const TetBody& body = model.bodies()[body_index];
+  const bool has_more = body.node_end > body.mesh_node_end;
+  const auto values_of = [&](const NodalVector& on_mesh, const NodalVector& on_nodes) {
+    NodeFieldValues values = {AtNodes(on_mesh, body.node_begin, body.mesh_node_end), {}};
+    if (has_more) values.all = AtNodes(on_nodes, body.node_begin, body.node_end);
+    return values;
+  };
+  if (InfoOf(field).from == FieldSource::kMotion) return values_of(state.velocities, state.velocities);
+  const NodalVector forces = NodalForceOf(model, field, state, controls, team);
+  return values_of(OnMeshNodes(model, body, forces), forces);
 }
 
 std::vector<double> FieldValuesAt(const TetModel& model, const Probe& probe, OutputField field, const TetState& state,

@@ -19,9 +19,17 @@ struct StateControls {
 };
 
 // Values at the mesh nodes or the elements of one body. Those of elements are averages over quadrature points, or
-// follow from such averages (OutputFieldInfo::mean_of).
+// follow from such averages (OutputFieldInfo::mean_of). Forces on a mid-edge node count half for each end of its edge.
 std::vector<double> FieldValuesOf(const TetModel& model, std::size_t body, OutputField field, const TetState& state,
                                   const StateControls& controls, ThreadTeam& team);
+
+// A field at nodes: its values at the mesh nodes, as above, and at all nodes of the body, where a force is that on the
+// node itself; `all` is empty if the body has no other nodes.
+struct NodeFieldValues {
+  std::vector<double> on_mesh, all;
+};
+NodeFieldValues NodeFieldOf(const TetModel& model, std::size_t body, OutputField field, const TetState& state,
+                            const StateControls& controls, ThreadTeam& team);
 
 // Values at a probe, which may be inside of an element; not of nodal forces, which exist at nodes only.
 std::vector<double> FieldValuesAt(const TetModel& model, const Probe& probe, OutputField field, const TetState& state,

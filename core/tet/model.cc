@@ -47,21 +47,35 @@ Vec3 TetModel::Fibres::operator[](std::size_t tet) const {
   });
 }
 
+namespace {
+
+// Adds the initial values of a body's nodes: of all, or of those of its mesh only.
+void AddInitial(const std::vector<Vec3>& values, const TetBody& body, const MeshEdges& edges, NodalVector& sum) {
+  if (values.empty()) return;
+  for (std::size_t n = 0; n < values.size(); ++n) sum[body.node_begin + n] += values[n];
+  if (values.size() == body.node_end - body.node_begin) return;
+  for (std::size_t edge = 0; edge < edges.ends.size(); ++edge) {
+    const auto& [i, j] = edges.ends[edge];
+    sum[body.mesh_node_end + edge] += 0.5 * (values[i] + values[j]);
+  }
+}
+
+}  // namespace
+
 NodalVector TetModel::InitialPositions() const {
   NodalVector x = rest_positions_;
-  for (const TetBody& body : bodies_) {
-    const std::vector<Vec3>& displacement = body.source->tet().initial_displacement;
-    if (displacement.empty()) continue;
-    for (std::size_t n = 0; n < displacement.size(); ++n) x[body.node_begin + n] += displacement[n];
-    if (order() != ElementOrder::kQuadratic) continue;
-    for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
-      for (int k = 0; k < 6; ++k) {
-        const auto& [i, j] = kTetEdges[k];
-        x[edge_nodes_[e][k]] = 0.5 * (x[tetrahedra_[e][i]] + x[tetrahedra_[e][j]]);
-      }
-    }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    AddInitial(bodies_[b].source->tet().initial_displacement, bodies_[b], edges_[b], x);
   }
   return x;
+}
+
+NodalVector TetModel::InitialVelocities() const {
+  NodalVector v(nodes(), Vec3::Zero());
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    AddInitial(bodies_[b].source->tet().initial_velocity, bodies_[b], edges_[b], v);
+  }
+  return v;
 }
 
 double TetModel::PrestretchOf(std::size_t tet) const {

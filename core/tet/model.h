@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/geometry/mesh_edges.h"
 #include "core/linalg/nodal_vector.h"
 #include "core/scene/nodal_forces.h"
 #include "core/scene/scene.h"
@@ -89,8 +90,10 @@ class TetModel {
   std::size_t elements() const { return source_element_.size(); }
 
   const NodalVector& rest_positions() const { return rest_positions_; }  // X [m]
-  // X plus the bodies' initial displacements [m].
+  // X plus the bodies' initial displacements [m], and their initial velocities [m/s]. At mid-edge nodes that have none
+  // of their own, means of those at the ends of the edge.
   NodalVector InitialPositions() const;
+  NodalVector InitialVelocities() const;
   const std::vector<Tetrahedron>& corners() const { return tetrahedra_; }  // of tetrahedra; empty for hexahedra
   ElementOrder order() const { return scene_->tet.element; }
   // Calls visitor(LinearElement{}), visitor(QuadraticElement{}) or visitor(HexahedralElement{}).
@@ -113,6 +116,9 @@ class TetModel {
       return nodes;
     }
   }
+  // The edges of a body's mesh: its mid-edge nodes are mesh_node_end + their numbers. Empty unless elements are
+  // quadratic.
+  const MeshEdges& edges(std::size_t body) const { return edges_[body]; }
   int nodes_per_element() const { return nodes_per_element_; }
   int points_per_element() const { return points_per_element_; }
   const std::vector<TetGroup>& groups() const { return groups_; }
@@ -207,6 +213,7 @@ class TetModel {
   std::vector<Tetrahedron> tetrahedra_;                  // for both kinds of tetrahedra
   std::vector<Hexahedron> hexahedra_;                    // for hexahedra
   std::vector<std::array<std::int32_t, 6>> edge_nodes_;  // for quadratic elements
+  std::vector<MeshEdges> edges_;                         // of each body
   std::vector<std::int32_t> source_element_;
   std::vector<std::int32_t> law_of_;
   VolumePatches patches_;

@@ -117,28 +117,21 @@ void TetModelBuilder::AddBody(const Body& body) {
   model_.bodies_.push_back(entry);
 }
 
-// Adds the nodes of the mesh and, for quadratic elements, a mid-edge node for every edge, in the order in which
-// elements first refer to them.
+// Adds the nodes of the mesh and, for quadratic elements, a mid-edge node for every edge, in the order of MeshEdges.
 void TetModelBuilder::AddNodes(const Body& body, TetBody& entry) {
   const TetMesh& mesh = body.tet().mesh;
   entry.node_begin = model_.nodes();
   model_.rest_positions_.insert(model_.rest_positions_.end(), mesh.nodes.begin(), mesh.nodes.end());
   entry.mesh_node_end = entry.node_end = model_.nodes();
+  MeshEdges& edges = model_.edges_.emplace_back();
   if (model_.order() == ElementOrder::kQuadratic) {
-    const auto first = static_cast<std::int32_t>(entry.node_begin);
-    for (const Tetrahedron& tet : mesh.tetrahedra) {
-      HeedStop();
-      std::array<std::int32_t, 6>& edges = model_.edge_nodes_.emplace_back();
-      for (int k = 0; k < 6; ++k) {
-        const std::int32_t i = first + tet[kTetEdges[k][0]], j = first + tet[kTetEdges[k][1]];
-        const auto [place, is_new] = middles_.try_emplace(std::minmax(i, j), static_cast<std::int32_t>(model_.nodes()));
-        if (is_new) model_.rest_positions_.push_back(0.5 * (model_.rest_positions_[i] + model_.rest_positions_[j]));
-        edges[k] = place->second;
-      }
-    }
-    for (const CurvedEdge& edge : mesh.curved_edges) {
-      const std::int32_t i = first + edge.ends[0], j = first + edge.ends[1];
-      model_.rest_positions_[MiddleOf(i, j)] = edge.middle;
+    edges = NumberEdges(mesh, stop_);
+    const std::vector<Vec3> middles = EdgeMiddles(mesh, edges);
+    model_.rest_positions_.insert(model_.rest_positions_.end(), middles.begin(), middles.end());
+    const auto first = static_cast<std::int32_t>(entry.mesh_node_end);
+    for (std::array<std::int32_t, 6> nodes : edges.of_tetrahedra) {
+      for (std::int32_t& n : nodes) n += first;
+      model_.edge_nodes_.push_back(nodes);
     }
     entry.node_end = model_.nodes();
   }

@@ -65,14 +65,13 @@ class TetModelBuilder {
   void AddContactNodes(const TetBody& body);
 
   // The mid-edge node between nodes i and j of a quadratic element.
-  std::int32_t MiddleOf(std::int32_t i, std::int32_t j) const { return middles_.at(std::minmax(i, j)); }
+  std::int32_t MiddleOf(std::int32_t i, std::int32_t j) const;
   void HeedStop() const { ThrowIfStopped(stop_); }
 
   const Scene& scene_;
   TetModel& model_;
   std::stop_token stop_;
   std::size_t activations_ = 0;  // of the bodies so far, with those of their parts
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles_;  // the lower end first
   // For each point and each element, in double precision.
   std::vector<Mat3> Dm_inverse_;
   std::vector<double> rest_volume_;

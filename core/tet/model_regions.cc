@@ -1,5 +1,3 @@
-#include <set>
-
 #include "core/tet/model_builder.h"
 
 namespace fascicle {
@@ -11,28 +9,26 @@ Quad Shifted(const Quad& quad, std::int32_t first) {
 
 }  // namespace
 
-// The nodes of a region, ascending: those of the mesh and, for quadratic elements, mid-edge nodes. A mid-edge node
-// belongs to the region if both ends of its edge do and the edge lies on the boundary or in an element all of whose
-// corners belong to the region. (An edge through the body between two sides of a region does not.)
+// The node in the middle of an edge between two nodes of the model.
+std::int32_t TetModelBuilder::MiddleOf(std::int32_t i, std::int32_t j) const {
+  std::size_t b = model_.bodies_.size() - 1;
+  while (model_.bodies_[b].node_begin > static_cast<std::size_t>(i)) --b;
+  const auto first = static_cast<std::int32_t>(model_.bodies_[b].node_begin);
+  return static_cast<std::int32_t>(model_.bodies_[b].mesh_node_end) + model_.edges_[b].Between(i - first, j - first);
+}
+
+// The nodes of a region, ascending: those of the mesh and, for quadratic elements, mid-edge nodes (EdgesWithin).
 std::vector<std::int32_t> TetModelBuilder::NodesOfRegion(const Region& region, const TetBody& body) const {
   const auto first = static_cast<std::int32_t>(body.node_begin);
   std::vector<std::int32_t> nodes;
   for (const std::int32_t n : region.nodes) nodes.push_back(first + n);
   if (model_.order() != ElementOrder::kQuadratic) return nodes;
-  std::vector<bool> inside(body.node_end - body.node_begin, false);
-  for (const std::int32_t n : region.nodes) inside[n] = true;
-  std::set<std::int32_t> middles;
-  const auto add = [&](std::int32_t i, std::int32_t j) {
-    if (inside[i] && inside[j]) middles.insert(MiddleOf(first + i, first + j));
-  };
-  for (const Triangle& t : BoundaryTriangles(body.source->tet().mesh)) {
-    for (int c = 0; c < 3; ++c) add(t[c], t[(c + 1) % 3]);
+  const TetMesh& mesh = body.source->tet().mesh;
+  const auto b = static_cast<std::size_t>(&body - model_.bodies_.data());
+  const std::vector<bool> within = EdgesWithin(mesh, model_.edges_[b], BoundaryTriangles(mesh), region.nodes);
+  for (std::size_t edge = 0; edge < within.size(); ++edge) {
+    if (within[edge]) nodes.push_back(static_cast<std::int32_t>(body.mesh_node_end + edge));
   }
-  for (const Tetrahedron& tet : body.source->tet().mesh.tetrahedra) {
-    if (!std::all_of(tet.begin(), tet.end(), [&](std::int32_t n) { return inside[n]; })) continue;
-    for (const auto& [i, j] : kTetEdges) add(tet[i], tet[j]);
-  }
-  nodes.insert(nodes.end(), middles.begin(), middles.end());
   return nodes;
 }
 

@@ -38,13 +38,20 @@ TetState TetSolver::InitialState(const Controls& start) {
   const StageTimer timer(profile_, "initial state");
   TetState state;
   state.positions = model_.InitialPositions();
-  state.velocities.assign(model_.nodes(), Vec3::Zero());
+  state.velocities = model_.InitialVelocities();
   if (IsImplicit()) {
-    state.accelerations = state.previous_velocities = state.velocities;
+    state.accelerations.assign(model_.nodes(), Vec3::Zero());
+    state.previous_velocities = state.velocities;
     state.previous_positions = state.positions;
     state.pressures.assign(model_.patches().size(), 0.0);
   }
   PrescribePositions(model_, start, state.positions);
+  CompleteState(start, state);
+  return state;
+}
+
+// Sets what follows from the positions, and from the velocities of free components.
+void TetSolver::CompleteState(const Controls& start, TetState& state) {
   PrescribeVelocities(model_, start, state.velocities);
   const ForceReport forces =
       UpdateForce(method_.stepping == Stepping::kExplicit && model_.has_strain_damping() ? &state.velocities : nullptr,
@@ -52,7 +59,6 @@ TetState TetSolver::InitialState(const Controls& start) {
   if (method_.stepping == Stepping::kNewmark && forces.valid) SetFirstAcceleration(start, state);
   state.stable.activation.assign(start.activations.size(), 0.0);
   if (HasBranches()) state.branches = RelaxedBranches(model_, state.positions, team_, forces_);
-  return state;
 }
 
 // a = M^-1 (f + loads) - a_m v. With a = 0 the first step of a released body would be of first order.

@@ -38,8 +38,14 @@ class TetSolver {
   // Model, team and profile must outlive the solver. Stages of a step are timed in `profile`, which may be null.
   TetSolver(const TetModel& model, ThreadTeam& team, Profile* profile = nullptr);
 
-  // The state at time 0: at rest, with prescribed components at their values. start: the controls at time 0.
+  // The state at time 0: with the scene's initial displacements and velocities, and prescribed components at their
+  // values. start: the controls at time 0.
   TetState InitialState(const Controls& start);
+
+  // Moves a state of time 0 to the equilibrium of the controls, at rest except for prescribed motions, whatever the
+  // stepping: Newton's method of a quasi-static step (start_equilibrium.cc). If it finds none, loads, activations and
+  // motions grow in shorter parts, down to 1/4096 of them. On a problem the state is the last one in equilibrium.
+  StepReport SolveEquilibrium(const Controls& start, TetState& state);
 
   // The next step from `state`, under the controls at its time, towards `end` [s], which it never passes and hits
   // exactly. Explicit and mixed steps are within the stable step, which is found again when it is due, and half as long
@@ -85,7 +91,9 @@ class TetSolver {
   void AcceptImplicit(TetState& state, const StepReport& report, double dt);
   bool CutImplicit(TetState& state, double dt) const;
   bool IsImplicit() const { return method_.stepping != Stepping::kExplicit && method_.stepping != Stepping::kMixed; }
+  void CompleteState(const Controls& start, TetState& state);
   void SetFirstAcceleration(const Controls& start, TetState& state);
+  StepReport SolveStatic(const Controls& controls, TetState& state);
   double SmallestRatio(const NodalVector& x) const;
   FibreDrive DriveOf(const TetState& now, const StepControls& step) const;
 

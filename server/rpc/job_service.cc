@@ -9,6 +9,7 @@
 #include "core/base/stop.h"
 #include "server/rpc/job_messages.h"
 #include "server/rpc/names.h"
+#include "server/rpc/start_state.h"
 #include "server/translate/translate.h"
 
 namespace fascicle::server {
@@ -43,15 +44,22 @@ grpc::ServerUnaryReactor* JobServiceImpl::CreateJob(grpc::CallbackServerContext*
 grpc::Status JobServiceImpl::Create(const v1::CreateJobRequest& request, v1::Job& response, std::size_t details_limit,
                                     const std::stop_token& stop) {
   ThrowIfStopped(stop);
-  const std::vector<std::string> missing = MissingAssets(request.job().scene());
+  Problems problems;
+  v1::Job job = request.job();
+  if (job.has_scene() && job.scene().has_start()) {
+    Problems found;
+    StoreStartState(context_.store, *job.mutable_scene(), found);
+    problems.Append("job.scene", found);
+    if (!found.empty()) job.mutable_scene()->clear_start();  // the rest is checked all the same
+  }
+  const std::vector<std::string> missing = MissingAssets(job.scene());
   if (!missing.empty()) {
     return FailedPrecondition("MISSING_ASSET", missing, "an asset of the scene was not uploaded", details_limit);
   }
-  Problems problems;
   CheckRequest(request, problems);
   Profile profile;
   std::shared_ptr<const Scene> scene;
-  if (request.job().has_scene()) scene = Translate(request.job().scene(), profile, stop, problems);
+  if (job.has_scene()) scene = Translate(job.scene(), profile, stop, problems);
   if (!problems.empty()) return InvalidArgument(problems, details_limit);
   if (request.validate_only()) {
     response.set_scene_name(request.job().scene().name());
@@ -61,10 +69,10 @@ grpc::Status JobServiceImpl::Create(const v1::CreateJobRequest& request, v1::Job
   JobRecord record;
   record.scene_name = request.job().scene().name();
   record.threads = request.job().threads();
-  record.spec = SpecOf(request.job());
+  record.spec = SpecOf(job);
   record.profile = EncodeProfileOfCheck(profile).SerializeAsString();
   record.request_id = request.request_id();
-  record.request_digest = Hex(Sha256Of(record.spec));
+  record.request_digest = Hex(Sha256Of(SpecOf(request.job())));
   const std::string digest = record.request_digest;
   bool repeated = false;
   const JobView view = context_.jobs.Submit(std::move(record), &repeated, std::move(scene));

@@ -22,6 +22,7 @@ struct BodySource {
   int refinements = 0;  // times that each element is divided
   // Whether bodies of the tet method keep their hexahedra.
   Cells cells = Cells::kTetrahedra;
+  bool quadratic = false;  // whether its elements are quadratic
 };
 
 // Adds a problem for each of the named fields that the body has, because its shape does not support them.

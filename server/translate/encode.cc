@@ -44,11 +44,7 @@ std::vector<Brick> BricksOf(const std::vector<Hexahedron>& hexahedra) {
 }
 
 void EncodeShape(const TetShape& shape, v1::BodyGeometry& geometry) {
-  if (shape.mesh.hexahedra.empty()) {
-    geometry.set_tetrahedra(Bytes(shape.mesh.tetrahedra));
-  } else {
-    geometry.set_bricks(Bytes(BricksOf(shape.mesh.hexahedra)));
-  }
+  EncodeElements(shape, geometry);
   geometry.set_fibres(Bytes(shape.fibres));
 }
 
@@ -65,6 +61,14 @@ void EncodeSeries(const std::vector<SeriesInfo>& series, google::protobuf::Repea
     one.set_name(info.name);
     one.set_unit(info.unit);
     one.set_description(info.description);
+  }
+}
+
+void EncodeHigherOrder(const HigherOrderNodes& nodes, v1::BodyGeometry& geometry) {
+  geometry.set_higher_order_positions(Bytes(nodes.positions));
+  geometry.set_higher_order_nodes(Bytes(nodes.of_elements));
+  for (std::size_t r = 0; r < nodes.of_regions.size(); ++r) {
+    geometry.mutable_regions(static_cast<int>(r))->set_higher_order_nodes(Bytes(nodes.of_regions[r]));
   }
 }
 
@@ -86,6 +90,14 @@ v1::Failure::ObjectKind KindOf(ObjectKind kind) {
 
 }  // namespace
 
+void EncodeElements(const TetShape& shape, v1::BodyGeometry& geometry) {
+  if (shape.mesh.hexahedra.empty()) {
+    geometry.set_tetrahedra(Bytes(shape.mesh.tetrahedra));
+  } else {
+    geometry.set_bricks(Bytes(BricksOf(shape.mesh.hexahedra)));
+  }
+}
+
 v1::Geometry EncodeGeometry(const Scene& scene, const FrameLayout& layout) {
   v1::Geometry geometry;
   for (const Body& body : scene.bodies) {
@@ -99,6 +111,9 @@ v1::Geometry EncodeGeometry(const Scene& scene, const FrameLayout& layout) {
       nodes.set_name(region.name);
       nodes.set_nodes(Bytes(region.nodes));
     }
+  }
+  for (std::size_t b = 0; b < layout.higher_order.size(); ++b) {
+    EncodeHigherOrder(layout.higher_order[b], *geometry.mutable_bodies(static_cast<int>(b)));
   }
   for (const RigidBodyInfo& body : layout.rigid_bodies) {
     v1::RigidBodyGeometry& encoded = *geometry.add_rigid_bodies();
@@ -126,6 +141,7 @@ v1::Frame EncodeFrame(const Frame& frame) {
   for (const BodyFrame& body : frame.bodies) {
     v1::BodyFrame& target = *encoded.add_bodies();
     target.set_positions(Bytes(body.positions));
+    target.set_higher_order_positions(Bytes(body.higher_order_positions));
     for (const FieldValues& field : body.fields) {
       v1::FieldValues& values = *target.add_fields();
       values.set_name(field.name);
@@ -133,6 +149,7 @@ v1::Frame EncodeFrame(const Frame& frame) {
       values.set_components(field.components);
       values.set_unit(field.unit);
       values.set_values(Bytes(field.values));
+      values.set_all_values(Bytes(field.all_values));
     }
   }
   encoded.mutable_series()->Assign(frame.series.begin(), frame.series.end());

@@ -34,8 +34,8 @@ void AddNotes(const std::vector<std::string>& found, const std::string& path, st
   for (const std::string& note : found) notes.push_back(path + ": " + note);
 }
 
-std::optional<TetMesh> ReadMeshFile(const BodySource& source, const std::string& path, std::vector<std::string>& notes,
-                                    Problems& problems) {
+std::optional<TetMesh> ReadMeshFile(const BodySource& source, const std::string& path, MeshRemarks& remarks,
+                                    std::vector<std::string>& notes, Problems& problems) {
   const v1::Mesh& mesh = source.wire.mesh();
   CheckElements(mesh, path, problems);
   const std::string file_path = JoinPath(path, "file");
@@ -52,7 +52,6 @@ std::optional<TetMesh> ReadMeshFile(const BodySource& source, const std::string&
                          .bytes = *bytes,
                          .element_bytes = element_bytes ? *element_bytes : std::string_view(),
                          .solids = source.cells == Cells::kHexahedra ? Solids::kKeep : Solids::kSplit};
-  MeshRemarks remarks;
   auto read = ReadMesh(file, own, source.tools.stop, &remarks);
   AddNotes(remarks.notes, file_path, notes);
   problems.Append(file_path, own);
@@ -124,10 +123,10 @@ bool IsOfTetrahedra(const BodySource& source, Method method, Problems& problems)
   return true;
 }
 
-std::optional<TetMesh> TetrahedraOfFile(const BodySource& source, const std::string& path,
+std::optional<TetMesh> TetrahedraOfFile(const BodySource& source, const std::string& path, MeshRemarks& remarks,
                                         std::vector<std::string>& notes, Problems& problems) {
   CheckUnit(source, "mesh", problems);
-  auto mesh = ReadMeshFile(source, path, notes, problems);
+  auto mesh = ReadMeshFile(source, path, remarks, notes, problems);
   if (!mesh || !Spend(static_cast<std::int64_t>(mesh->tetrahedra.size()), "tetrahedra", source.budget,
                       JoinPath(path, "file"), "use a coarser mesh", problems)) {
     return std::nullopt;
@@ -186,14 +185,15 @@ std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source
       !IsOfTetrahedra(source, method, problems)) {
     return std::nullopt;
   }
-  auto mesh = source.wire.mesh().has_file() ? TetrahedraOfFile(source, path, notes, problems)
+  MeshRemarks remarks;
+  auto mesh = source.wire.mesh().has_file() ? TetrahedraOfFile(source, path, remarks, notes, problems)
                                             : TetrahedraOfShape(source, path, problems);
   if (!mesh) return std::nullopt;
   Problems own;
   CheckMesh(*mesh, own, source.tools.stop);
   problems.Append(SourcePath(source.wire.mesh(), source.path), own);
   if (!IsAddressable(*mesh)) return std::nullopt;
-  return TranslatedTetrahedra{std::move(*mesh), own.empty()};
+  return TranslatedTetrahedra{std::move(*mesh), own.empty(), std::move(remarks.node_places)};
 }
 
 std::optional<BrickMesh> TranslateBricks(const BodySource& source, std::vector<std::string>& notes,

@@ -24,6 +24,8 @@ std::string SourcePath(const v1::Mesh& mesh, const std::string& body_path);
 struct TranslatedTetrahedra {
   TetMesh mesh;       // indices in range and coordinates finite
   bool sound = true;  // whether CheckMesh found no problem
+  // Of a file of second order: MeshRemarks::node_places.
+  std::vector<std::array<std::int32_t, 2>> node_places = {};
 };
 
 // From a mesh file or a built-in shape. `method` is for messages. Adds to `notes` what was left out of the file.

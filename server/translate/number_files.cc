@@ -27,9 +27,19 @@ std::vector<double> ReadLines(std::string_view text, const NumberFile& expected,
       problems.Add(
           {}, where + Text(*wrong) + " is outside the range [" + Text(expected.min) + ", " + Text(expected.max) + "]");
     }
-    if (expected.lines && count < *expected.lines) values.insert(values.end(), line.begin(), line.end());
+    if (expected.lines && count < std::max(*expected.lines, expected.or_lines))
+      values.insert(values.end(), line.begin(), line.end());
   }
-  if (expected.lines) CheckLineCount(count, *expected.lines, expected.item, problems);
+  if (!expected.lines || count == expected.or_lines) return values;
+  if (expected.or_item == nullptr) {
+    CheckLineCount(count, *expected.lines, expected.item, problems);
+  } else if (count != *expected.lines) {
+    problems.Add({},
+                 std::to_string(count) + " lines for " + std::to_string(*expected.lines) + " " + expected.item +
+                     ", or " + std::to_string(expected.or_lines) + " " + expected.or_item,
+                 std::string("give one line for each of the ") + expected.item + ", or of the " + expected.or_item +
+                     ", in the order of the mesh");
+  }
   return values;
 }
 

@@ -20,6 +20,9 @@ struct NumberFile {
   std::size_t columns;               // numbers per line
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
+  // Another number of lines that is allowed, and what the file then has a line for.
+  std::size_t or_lines = 0;
+  const char* or_item = nullptr;
 };
 
 // The numbers, line by line. Empty if something is wrong, or if the mesh is unknown; every bad line is reported.

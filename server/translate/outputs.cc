@@ -50,10 +50,23 @@ std::vector<OutputField> TranslateFields(const v1::Scene& scene, Method method, 
   return fields;
 }
 
-void CheckFrameSize(const Output& output, const std::vector<Body>& bodies, std::int64_t max_bytes, Problems& problems) {
+// About the size of what a frame has at the mid-edge nodes of quadratic elements. A closed mesh without holes has as
+// many edges as nodes, tetrahedra and half of its boundary's triangles together, less one.
+std::int64_t HigherOrderBytes(const Output& output, const TetMesh& mesh) {
+  const std::size_t edges = mesh.nodes.size() + mesh.tetrahedra.size();
+  std::size_t bytes = edges * sizeof(Vec3);
+  for (const OutputField field : output.fields) {
+    if (IsNodal(InfoOf(field))) bytes += (mesh.nodes.size() + edges) * sizeof(Vec3);
+  }
+  return static_cast<std::int64_t>(bytes);
+}
+
+void CheckFrameSize(const Output& output, const std::vector<Body>& bodies, bool quadratic, std::int64_t max_bytes,
+                    Problems& problems) {
   std::int64_t bytes = 0;
   for (const Body& body : bodies) {
     bytes += static_cast<std::int64_t>(body.nodes().size() * sizeof(Vec3));
+    if (quadratic) bytes += HigherOrderBytes(output, body.tet().mesh);
     for (const OutputField field : output.fields) {
       const OutputFieldInfo& info = InfoOf(field);
       bytes += static_cast<std::int64_t>(info.components * sizeof(double) * PlacesOf(info, body.shape));
@@ -126,8 +139,8 @@ std::vector<SupportMoment> TranslateMoments(const v1::Scene& scene, const std::v
 
 }  // namespace
 
-Output TranslateOutput(const v1::Scene& scene, Method method, std::vector<Body>& bodies, const Names& body_names,
-                       std::int64_t max_frame_bytes, Problems& problems) {
+Output TranslateOutput(const v1::Scene& scene, Method method, ElementOrder order, std::vector<Body>& bodies,
+                       const Names& body_names, std::int64_t max_frame_bytes, Problems& problems) {
   Output output;
   if (!scene.has_output()) {
     problems.Add("output", "is missing", "give at least frame_interval [s]");
@@ -142,7 +155,8 @@ Output TranslateOutput(const v1::Scene& scene, Method method, std::vector<Body>&
     output.line_of_action = ToDirection(scene.output().line_of_action(), "output.line_of_action", problems);
   }
   if (scene.output().has_settle_speed()) output.settle_speed = scene.output().settle_speed();
-  CheckFrameSize(output, bodies, max_frame_bytes, problems);
+  const bool quadratic = method == Method::kTet && order == ElementOrder::kQuadratic;
+  CheckFrameSize(output, bodies, quadratic, max_frame_bytes, problems);
   return output;
 }
 

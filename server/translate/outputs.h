@@ -14,8 +14,8 @@ namespace fascicle::server {
 
 // The output settings. `bodies` are those of the scene; a body without nodes is unknown and ignored. Adds a note to a
 // body for each probe outside of it.
-Output TranslateOutput(const v1::Scene& scene, Method method, std::vector<Body>& bodies, const Names& body_names,
-                       std::int64_t max_frame_bytes, Problems& problems);
+Output TranslateOutput(const v1::Scene& scene, Method method, ElementOrder order, std::vector<Body>& bodies,
+                       const Names& body_names, std::int64_t max_frame_bytes, Problems& problems);
 
 }  // namespace fascicle::server
 

@@ -9,12 +9,13 @@
 #include "core/base/problems.h"
 #include "core/scene/shape.h"
 #include "server/translate/body_source.h"
+#include "server/translate/meshes.h"
 #include "server/translate/regions.h"
 
 namespace fascicle::server {
 
-// Data of the parts of a body: materials, activations, initial displacements. Empty if something is wrong.
-//   elements, nodes  their number in the mesh; if absent, only what does not depend on the mesh is checked
+// Data of the parts of a body: materials, activations, initial states. Empty if something is wrong.
+//   elements  their number in the mesh; if absent, only what does not depend on the mesh is checked
 
 // region_materials and element_parameters. An element has the material of the last region that contains it, otherwise
 // the one with its own parameters, otherwise that of the body.
@@ -41,9 +42,10 @@ std::vector<double> TranslateActivationScale(const BodySource& source, std::opti
 std::vector<double> TranslatePrestretch(const BodySource& source, std::optional<std::size_t> elements,
                                         Problems& problems);
 
-// initial_displacement [m].
-std::vector<Vec3> TranslateInitialDisplacement(const BodySource& source, std::optional<std::size_t> nodes,
-                                               Problems& problems);
+// initial_displacement and initial_velocity. Adds to `notes` if mid-edge nodes are interpolated, or ignored. `mesh` may
+// be null.
+void TranslateInitialState(const BodySource& source, const TranslatedTetrahedra* mesh, TetShape& shape,
+                           std::vector<std::string>& notes, Problems& problems);
 
 // Assigns `value` to the elements of region `name`; a problem if there is no such region or it contains no element.
 // `parts` has one entry for each element.

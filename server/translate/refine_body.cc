@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/mesh_edges.h"
 #include "core/geometry/refinement.h"
 
 namespace fascicle::server {
@@ -18,16 +19,30 @@ void RepeatForParts(std::vector<Value>& values) {
   values = std::move(repeated);
 }
 
+// Adds values of the new nodes, which are in the middle of those of `between`: the value of a mid-edge node that has
+// one, else a mean. Mid-edge nodes of the refined mesh have none of their own.
+template <class Between>
+void RefineValues(const Between& between, const TetMesh& coarse, std::vector<Vec3>& values) {
+  const std::size_t nodes = coarse.nodes.size();
+  const std::vector<Vec3> given = values;
+  const MeshEdges edges = given.size() > nodes ? NumberEdges(coarse) : MeshEdges();
+  values.resize(nodes);
+  for (const auto& ends : between) {
+    if (given.size() > nodes) {
+      values.push_back(given[nodes + static_cast<std::size_t>(edges.Between(ends[0], ends[1]))]);
+      continue;
+    }
+    Vec3 sum = Vec3::Zero();
+    for (const std::int32_t n : ends) sum += values[static_cast<std::size_t>(n)];
+    values.emplace_back(sum / static_cast<double>(ends.size()));
+  }
+}
+
 // Takes the refined mesh; new nodes are in the middle of those of `between`.
 template <class Between>
 void TakeRefined(TetMesh mesh, const Between& between, TetShape& shape) {
-  if (!shape.initial_displacement.empty()) {
-    std::vector<Vec3>& u = shape.initial_displacement;
-    for (const auto& nodes : between) {
-      Vec3 sum = Vec3::Zero();
-      for (const std::int32_t n : nodes) sum += u[static_cast<std::size_t>(n)];
-      u.emplace_back(sum / static_cast<double>(nodes.size()));
-    }
+  for (std::vector<Vec3>* values : {&shape.initial_displacement, &shape.initial_velocity}) {
+    if (!values->empty()) RefineValues(between, shape.mesh, *values);
   }
   shape.mesh = std::move(mesh);
 }

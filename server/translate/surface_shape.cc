@@ -76,10 +76,10 @@ bool TranslateBoundary(const BodySource& source, const RegionSelectors& selector
 
 bool TranslateSurfaceShape(const BodySource& source, const RegionSelectors& selectors, Body& body, Problems& structure,
                            Problems& others) {
-  RefuseFields(
-      source,
-      {"region_materials", "element_parameters", "region_activations", "activation_scale", "initial_displacement"},
-      "a body of the eulerian method has no elements", "omit it, or use the tet method", others);
+  RefuseFields(source,
+               {"region_materials", "element_parameters", "region_activations", "activation_scale",
+                "initial_displacement", "initial_velocity"},
+               "a body of the eulerian method has no elements", "omit it, or use the tet method", others);
   body.regions = EmptyRegions(selectors);
   body.shape = SurfaceShape();
   const v1::Body& wire = source.wire;

@@ -12,10 +12,9 @@ bool TranslateTetShape(const BodySource& source, const RegionSelectors& selector
   RefuseFields(source, {"plasticity"}, "only the eulerian method supports plastic flow",
                "omit it, or use the eulerian method", others);
   auto tetrahedra = TranslateTetrahedra(source, Method::kTet, body.notes, structure);
-  std::optional<std::size_t> elements, nodes;
+  std::optional<std::size_t> elements;
   if (tetrahedra) {
     elements = ElementCount(tetrahedra->mesh);
-    nodes = tetrahedra->mesh.nodes.size();
     body.regions = SelectRegions(selectors, tetrahedra->mesh, source.tools.stop);
     CheckRegions(source.wire, source.path, selectors, body.regions, tetrahedra->mesh, structure);
   } else {
@@ -29,7 +28,7 @@ bool TranslateTetShape(const BodySource& source, const RegionSelectors& selector
   shape.viscoelasticity = TranslatePartViscoelasticity(source, shape.materials.more.size(), others);
   shape.activations = TranslateActivationParts(source, elements, regions, others);
   shape.activation_scale = TranslateActivationScale(source, elements, others);
-  shape.initial_displacement = TranslateInitialDisplacement(source, nodes, others);
+  TranslateInitialState(source, tetrahedra ? &*tetrahedra : nullptr, shape, body.notes, others);
   if (tetrahedra) shape.mesh = std::move(tetrahedra->mesh);
   body.shape = std::move(shape);
   return elements.has_value();

@@ -17,6 +17,7 @@
 #include "server/translate/names.h"
 #include "server/translate/outputs.h"
 #include "server/translate/scene_checks.h"
+#include "server/translate/start.h"
 #include "server/translate/supports_and_loads.h"
 #include "server/translate/unused_fields.h"
 
@@ -103,6 +104,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
 
   const bool hexahedral = result->method == Method::kTet && result->tet.element == ElementOrder::kHexahedral;
   const Cells cells = hexahedral ? Cells::kHexahedra : Cells::kTetrahedra;
+  const bool quadratic = result->method == Method::kTet && result->tet.element == ElementOrder::kQuadratic;
   Names names("body");
   std::vector<bool> complete;
   std::vector<std::string> sources;  // of the surfaces of bodies
@@ -111,15 +113,17 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     ThrowIfStopped(tools.stop);
     const std::string path = IndexPath("bodies", static_cast<std::size_t>(i));
     names.Add(filled.bodies(i).name(), JoinPath(path, "name"), found);
-    const BodySource source = {filled.bodies(i), path, assets, budget, tools, refinements, cells};
+    const BodySource source = {filled.bodies(i), path, assets, budget, tools, refinements, cells, quadratic};
     TranslatedBody body = TranslateBody(source, result->method, found);
     complete.push_back(body.complete);
     sources.push_back(SourcePath(filled.bodies(i).mesh(), path));
     AddCurvedEdgesNote(result->tet, path, body.body);
     result->bodies.push_back(std::move(body.body));
   }
+  TranslateStart(filled, assets, *result, found);
   FindEndsOfLineSprings(filled, names, result->bodies, found);
-  result->output = TranslateOutput(filled, result->method, result->bodies, names, limits.max_frame_bytes, found);
+  result->output = TranslateOutput(filled, result->method, result->tet.element, result->bodies, names,
+                                   limits.max_frame_bytes, found);
   AddUnusedFieldNotes(scene, result->bodies);
 
   if (result->method == Method::kEulerian && result->eulerian.cell_size > 0) {

@@ -54,6 +54,9 @@ struct TranslateTools {
 std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetReader& assets, Problems& problems,
                                             const TranslateLimits& limits = {}, const TranslateTools& tools = {});
 
+// The tetrahedra or hexahedra of a shape.
+void EncodeElements(const TetShape& shape, v1::BodyGeometry& geometry);
+
 // Conversion to the wire format. A frame's digest and numbers are copied bit by bit.
 v1::Geometry EncodeGeometry(const Scene& scene, const FrameLayout& layout);
 v1::Frame EncodeFrame(const Frame& frame);

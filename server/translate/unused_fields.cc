@@ -42,6 +42,7 @@ void AddNotesOnCurves(const v1::Material& material, const std::string& path, std
 
 void AddNotesOnMotion(const v1::Body& body, const std::string& path, const std::string& why,
                       std::vector<std::string>& notes) {
+  AddNotes(body, path, {"initial_velocity"}, why, notes);
   AddNotes(body.damping(), JoinPath(path, "damping"), {"mass_proportional", "stiffness_proportional", "viscosity"}, why,
            notes);
   AddNotesOnMaterial(body.material(), JoinPath(path, "material"), why, notes);

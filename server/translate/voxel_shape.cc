@@ -11,7 +11,7 @@ bool TranslateVoxelShape(const BodySource& source, const RegionSelectors& select
   RefuseFields(source, {"fibres"}, "voxels have no fibres", "omit them, or use the tet method", others);
   RefuseFields(source, {"region_activations", "activation_scale"}, "voxels don't contract",
                "apply the muscle's force as a load on a region, or use the tet method", others);
-  RefuseFields(source, {"initial_displacement"}, "voxels start from rest",
+  RefuseFields(source, {"initial_displacement", "initial_velocity"}, "voxels start from rest",
                "use start_loaded to start in equilibrium with loads", others);
   RefuseFields(source, {"plasticity"}, "only the eulerian method supports plastic flow",
                "omit it, or use the eulerian method", others);

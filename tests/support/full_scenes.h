@@ -44,6 +44,7 @@ inline TetShape FullTetShape() {
   shape.activations = {{Curve::Constant(0.5)}, {0, 0, 0, 1, 1, 1}};
   shape.activation_scale.assign(6, 0.5);
   shape.initial_displacement.assign(8, Vec3(0, 0, 1e-3));
+  shape.initial_velocity.assign(8, Vec3(0, 1e-3, 0));
   return shape;
 }
 

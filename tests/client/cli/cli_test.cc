@@ -262,6 +262,70 @@ TEST_F(CliTest, AFolderStandsForItsJob) {
   EXPECT_THAT(unknown.err, HasSubstr("no job's name begins or ends with zzz"));
 }
 
+// A dynamic run starts where a static one ended, and another one where that was, from folders.
+TEST_F(CliTest, ARunStartsWhereAnotherEnded) {
+  const Finished example = Fascicle({"examples", "show", "released_bar"});
+  json scene = json::parse(example.out, nullptr, true, true);
+  scene.erase("start");
+  scene["bodies"][0]["loads"][0].erase("scale");
+  scene["duration"] = 0.05;
+  const std::string dynamic = File("dynamic.json", scene.dump());
+  scene["tet"] = {{"stepping", "quasi_static"}};
+  const std::string quasi_static = File("static.json", scene.dump());
+  const std::string out = folder_ / "out", after = folder_ / "after";
+  const auto run = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"run", "--json"});
+    const Finished finished = Fascicle(arguments);
+    EXPECT_EQ(finished.exit_code, 0) << finished.err << finished.out;
+    return json::parse(finished.out);
+  };
+  const double end = run({quasi_static, "--out", out})["series"]["probe/end/z"]["final"];
+  EXPECT_LT(end, -0.005);
+  const json second = run({dynamic, "--out", after, "--start", out});
+  EXPECT_NEAR(second["series"]["probe/end/z"]["min"], end, 1e-9);
+  EXPECT_NEAR(second["series"]["probe/end/z"]["max"], end, 1e-9);
+  EXPECT_THAT(second["notes"].dump(), HasSubstr("start.frame: begins as frame 5 (0.05 s) of jobs/"));
+  // In place: the folder's own job is read before it is replaced. A scene may name the job, too.
+  EXPECT_EQ(run({dynamic, "--out", after, "--start", after + ":2"})["state"], "succeeded");
+  EXPECT_EQ(run({dynamic, "--set", R"(start={"frame": {"job": ")" + after + R"("}})"})["state"], "succeeded");
+
+  const auto refused = [&](const std::string& start, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"run", dynamic, "--start", start};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished finished = Fascicle(arguments, kNobody);
+    EXPECT_EQ(finished.exit_code, 2) << finished.err;
+    return finished.err;
+  };
+  EXPECT_THAT(refused(out + ":99"), HasSubstr("has 6 frames, from 0 on"));
+  EXPECT_THAT(refused(out + ":last"), HasSubstr("--start: expects JOB or JOB:FRAME"));
+  EXPECT_THAT(refused(out, {"--set", "bodies[0].mesh.box.divisions=[6, 1, 1]"}),
+              HasSubstr("start.frame: has another mesh"));
+  EXPECT_THAT(refused(out, {"--set", "tet.element=linear"}), HasSubstr("start.frame: has other mid-edge nodes"));
+}
+
+// A data folder that a server wrote before frames had mid-edge nodes, of a scene with quadratic elements.
+TEST_F(CliTest, JobsOfOlderServersStayReadable) {
+  const fs::path old = ProjectRoot() / "tests/client/cli/old_jobs";
+  const Finished unpacked =
+      RunProgram({"/bin/tar", "xzf", (old / "corner_nodes.tar.gz").string(), "-C", folder_.path().string()});
+  ASSERT_EQ(unpacked.exit_code, 0) << unpacked.err;
+  const std::string data = folder_ / "data";
+  EXPECT_EQ(json::parse(Fascicle({"show", data, "--json"}, kNobody).out)["frames"], 3);
+  const Finished region = Fascicle({"sample", data, "--region", "right", "--json"}, kNobody);
+  ASSERT_EQ(region.exit_code, 0) << region.err;
+  EXPECT_NEAR(json::parse(region.out)["fields"]["displacement/z"]["mean"], -0.0146, 2e-4);
+  const Finished fibres = Fascicle({"sample", data, "--fibres", "--deformed", "--json"}, kNobody);
+  ASSERT_EQ(fibres.exit_code, 0) << fibres.err;
+  EXPECT_EQ(Fascicle({"export", data, "--out", File("e")}, kNobody).exit_code, 0);
+  EXPECT_GT(fs::file_size(folder_.path() / "e/frames/box_000002.vtu"), 500u);
+  EXPECT_EQ(Fascicle({"render", data, "--out", File("a.png"), "--wireframe", "--fibres"}, kNobody).exit_code, 0);
+  const std::string scene = File("again.json", ReadFile(old / "corner_nodes.json"));
+  const Finished again = Fascicle({"validate", scene, "--start", data});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_THAT(again.err, HasSubstr("start.frame: has corner nodes of `box` only"));
+  EXPECT_THAT(again.err, HasSubstr("run jobs of older versions again"));
+}
+
 TEST_F(CliTest, PicturesOfOtherFormatsAreRefused) {
   const std::string scene = File("scene.json", SceneText(2, 5)), out = folder_ / "out";
   ASSERT_EQ(Fascicle({"run", scene, "--out", out}).exit_code, 0);

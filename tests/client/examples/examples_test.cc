@@ -394,6 +394,16 @@ TEST_F(ExampleTest, TorusBounce) {
   EXPECT_NEAR(impulse / touching, weight, 0.3 * weight);
 }
 
+// Nothing moves before the load ends, from the first frame on.
+TEST_F(ExampleTest, ReleasedBar) {
+  RunExample("released_bar", {"--out", folder_ / "out"});
+  const std::vector<double> end = SeriesOf(folder_ / "out/series.csv", "probe/end/z");
+  ASSERT_EQ(end.size(), 51u);
+  EXPECT_NEAR(end[0], -0.009, 0.001);
+  for (int frame = 1; frame <= 10; ++frame) EXPECT_NEAR(end[frame], end[0], 1e-9);
+  EXPECT_GT(*std::max_element(end.begin(), end.end()), 0);
+}
+
 TEST_F(ExampleTest, Twitch) {
   const json summary = RunExample("twitch");
   EXPECT_NEAR(Final(summary, "strip/activation"), 0.8, 1e-4);

@@ -8,9 +8,12 @@
 
 #include "core/geometry/hexahedron.h"
 #include "core/geometry/shapes.h"
+#include "tests/support/curved_ball.h"
 
 namespace fascicle::client {
 namespace {
+
+using ::fascicle::testing::CurvedBall;
 
 BodySnapshot SnapshotOfMesh(const TetMesh& mesh, const Vec3& fibre, const Mat3& F) {
   BodySnapshot body;
@@ -141,6 +144,27 @@ TEST(FibreArchitectureTest, OfHexahedra) {
   EXPECT_NEAR(of_hexahedra->pennation, of_tetrahedra->pennation, 1e-9);
   EXPECT_NEAR(of_hexahedra->volume, 2e-5, 1e-17);
   EXPECT_NEAR(FibreArchitectureOf(body, std::nullopt, true)->volume, 2.5e-5, 1e-17);
+}
+
+// Curved surfaces: a ball's cross-sections and volume, at rest and stretched.
+TEST(FibreArchitectureTest, OfQuadraticElements) {
+  const CurvedBall ball(8);
+  const Snapshot snapshot = SnapshotOf(ball.geometry(), ball.frame(2));
+  const BodySnapshot& body = snapshot.bodies[0];
+  constexpr double kRadius = CurvedBall::kRadius;
+  const double volume = 4 * std::numbers::pi / 3 * std::pow(kRadius, 3);
+  const auto rest = FibreArchitectureOf(body, Vec3::UnitX(), false);
+  const auto deformed = FibreArchitectureOf(body, Vec3::UnitX(), true);
+  ASSERT_TRUE(rest && deformed);
+  EXPECT_NEAR(rest->volume, volume, 1e-3 * volume);
+  EXPECT_NEAR(deformed->volume, 1.2 * rest->volume, 1e-12 * volume);
+  EXPECT_NEAR(deformed->length, 1.2 * rest->length, 1e-12);
+  EXPECT_NEAR(deformed->pennation, 0, 1e-6);
+  const CrossSectionAreas cut = CrossSectionAreasOf(body, Vec3::UnitX(), 5, true);
+  for (std::size_t k = 0; k < 5; ++k) {
+    const double X = cut.places[k] / 1.2, exact = std::numbers::pi * (kRadius * kRadius - X * X);
+    EXPECT_NEAR(cut.areas[k], exact, 2e-3 * exact);
+  }
 }
 
 TEST(FibreArchitectureTest, NeedsFibres) {

@@ -1,9 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <vtkCell.h>
 #include <vtkCellData.h>
+#include <vtkCellType.h>
 #include <vtkDataArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLPolyDataReader.h>
@@ -18,6 +21,7 @@
 #include "client/lib/decode.h"
 #include "client/lib/replace_file.h"
 #include "client/lib/series_table.h"
+#include "tests/support/curved_ball.h"
 #include "tests/support/files.h"
 #include "tests/support/sample_job.h"
 #include "tests/support/sample_objects.h"
@@ -27,6 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::fascicle::testing::Bytes;
+using ::fascicle::testing::CurvedBall;
 using ::fascicle::testing::ReadFile;
 using ::fascicle::testing::SampleJob;
 using ::fascicle::testing::SampleObjects;
@@ -81,6 +86,44 @@ TEST(VtkSeriesWriter, WritesWhatVtkReadsBack) {
 }
 
 // Hexahedra: cells in VTK's order, with a fibre and a value each.
+// VTK finds the volume of the curved cells, so its order of nodes is that of the file.
+TEST(VtkSeriesWriter, WritesQuadraticCells) {
+  const CurvedBall ball;
+  const TemporaryFolder folder;
+  VtkSeriesWriter writer(ball.geometry(), folder.path());
+  writer.Add(ball.frame(5));
+  writer.Finish();
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName((folder / "frames/ball_000005.vtu").c_str());
+  reader->Update();
+  vtkUnstructuredGrid& grid = *reader->GetOutput();
+  const BodyShape shape = DecodeGeometry(ball.geometry())[0];
+  ASSERT_EQ(static_cast<std::size_t>(grid.GetNumberOfPoints()), ball.nodes());
+  ASSERT_EQ(static_cast<std::size_t>(grid.GetNumberOfCells()), shape.tetrahedra.size());
+  vtkDataArray* displacement = grid.GetPointData()->GetArray("displacement");
+  vtkDataArray* velocity = grid.GetPointData()->GetArray("velocity");
+  vtkDataArray* region = grid.GetPointData()->GetArray("region/surface");
+  ASSERT_TRUE(displacement && velocity && region);
+  for (vtkIdType i = 0; i < grid.GetNumberOfPoints(); ++i) {
+    const Vec3& X = shape.positions[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(displacement->GetComponent(i, 0), 0.5 * X.x(), 1e-16);
+    EXPECT_DOUBLE_EQ(velocity->GetComponent(i, 0), X.x() * X.x());
+    EXPECT_EQ(region->GetTuple1(i) != 0, X.norm() > 0.999 * CurvedBall::kRadius);
+  }
+  for (vtkIdType e = 0; e < grid.GetNumberOfCells(); ++e) {
+    ASSERT_EQ(grid.GetCellType(e), VTK_QUADRATIC_TETRA);
+    // VTK's shape functions put each mid-edge node between the corners of its edge.
+    vtkCell* const cell = grid.GetCell(e);
+    ASSERT_EQ(cell->GetNumberOfEdges(), 6);
+    for (int k = 0; k < 6; ++k) {
+      vtkCell* const edge = cell->GetEdge(k);
+      const Vec3 a(edge->GetPoints()->GetPoint(0)), b(edge->GetPoints()->GetPoint(1)),
+          m(edge->GetPoints()->GetPoint(2));
+      EXPECT_LT((m - 0.5 * (a + b)).norm(), 0.3 * (b - a).norm());
+    }
+  }
+}
+
 TEST(VtkSeriesWriter, WritesHexahedraWithTheirFibres) {
   v1::Geometry geometry;
   v1::BodyGeometry& body = *geometry.add_bodies();

@@ -8,12 +8,14 @@
 
 #include "client/export/read_series.h"
 #include "client/export/vtk_series.h"
+#include "tests/support/curved_ball.h"
 #include "tests/support/files.h"
 #include "tests/support/sample_job.h"
 
 namespace fascicle::client {
 namespace {
 
+using ::fascicle::testing::CurvedBall;
 using ::fascicle::testing::SampleJob;
 using ::fascicle::testing::TemporaryFolder;
 using ::testing::HasSubstr;
@@ -125,6 +127,37 @@ TEST(SampleTest, RegionsAreFoundByNameAndBody) {
 }
 
 // An exported frame reads back as the frame.
+// Quadratic elements: x^2 is exact where edges are straight, and points below the curved surface are inside.
+TEST(SampleTest, QuadraticElementsAreInterpolatedByTheirShapeFunctions) {
+  const CurvedBall ball(8);
+  constexpr double kRadius = CurvedBall::kRadius;
+  const Snapshot snapshot = SnapshotOf(ball.geometry(), ball.frame(2));
+  const auto velocity = [&](const Vec3& point, bool deformed) {
+    for (const SampledColumn& column : SampleAtPoints(snapshot, {point}, deformed)) {
+      if (column.name == "velocity/x") return column.values[0];
+    }
+    return 0.0;
+  };
+  for (const double x : {-0.31, 0.123, 0.4}) {
+    const Vec3 X = kRadius * Vec3(x, 0.21, -0.17);
+    EXPECT_NEAR(velocity(X, false), X.x() * X.x(), 1e-16);
+    EXPECT_NEAR(velocity(Vec3(1.2 * X.x(), X.y(), X.z()), true), X.x() * X.x(), 1e-16);
+  }
+  // In the middle of a triangle of the surface, between the flat triangle and the sphere.
+  const Triangle t = BoundaryTriangles(ball.mesh())[40];
+  const Vec3 middle = (ball.mesh().nodes[t[0]] + ball.mesh().nodes[t[1]] + ball.mesh().nodes[t[2]]) / 3;
+  const Vec3 below = (0.5 * middle.norm() + 0.5 * kRadius) * middle.normalized();
+  EXPECT_NEAR(velocity(below, false), below.x() * below.x(), 1e-3 * kRadius * kRadius);
+  EXPECT_TRUE(std::isnan(velocity(1.01 * kRadius * middle.normalized(), false)));
+  // The integral of x^2 over the sphere is 4 pi R^4 / 3; over the ball, 4 pi R^5 / 15.
+  const auto surface = SampleRegion(snapshot, "surface", false);
+  ASSERT_TRUE(surface && !surface->is_volume);
+  EXPECT_NEAR(surface->size / (4 * M_PI * kRadius * kRadius), 1, 1e-3);
+  for (const RegionStatistics& field : surface->fields) {
+    if (field.name == "velocity/x") EXPECT_NEAR(field.integral / (4 * M_PI / 3 * std::pow(kRadius, 4)), 1, 2e-3);
+  }
+}
+
 TEST(SampleTest, AnExportedSeriesIsTheSame) {
   const SampleJob job;
   const TemporaryFolder folder;

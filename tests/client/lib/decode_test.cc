@@ -7,15 +7,20 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <span>
 #include <stdexcept>
 
 #include "client/lib/series_table.h"
+#include "client/lib/tetrahedra.h"
+#include "core/base/frame_digest.h"
+#include "tests/support/curved_ball.h"
 #include "tests/support/sample_objects.h"
 
 namespace fascicle::client {
 namespace {
 
 using ::fascicle::testing::Bytes;
+using ::fascicle::testing::CurvedBall;
 using ::fascicle::testing::QuarterTurn;
 using ::fascicle::testing::SampleObjects;
 using ::fascicle::testing::SampleObjectsFrame;
@@ -36,6 +41,89 @@ TEST(DecodeRigidBodies, GivesShapesAndPosesOfAllOfThem) {
   EXPECT_EQ(poses[1].position, Vec3(0, 0, -0.1)) << "what stays has no pose in frames";
   // A quarter turn brings the corner (20, 10, 10) mm to (-10, 20, 10) mm.
   EXPECT_NEAR((PositionsAt(bodies[0], poses[0])[7] - Vec3(0.03, 0.04, 0.01)).norm(), 0, 1e-15);
+}
+
+TEST(DecodeGeometry, HasMidEdgeNodesAfterThoseOfTheMesh) {
+  const CurvedBall ball;
+  const BodyShape shape = DecodeGeometry(ball.geometry())[0];
+  const std::size_t corners = ball.mesh().nodes.size();
+  ASSERT_TRUE(shape.quadratic());
+  ASSERT_EQ(shape.positions.size(), ball.nodes());
+  ASSERT_EQ(shape.mid_edges.size(), shape.tetrahedra.size());
+  double volume = 0;
+  for (std::size_t t = 0; t < shape.tetrahedra.size(); ++t) volume += VolumeOf(shape, t, shape.positions);
+  const double exact = 4. / 3 * M_PI * std::pow(CurvedBall::kRadius, 3);
+  EXPECT_NEAR(volume, exact, 0.01 * exact) << "that of straight edges is 7 % too small";
+  for (const std::uint32_t n : shape.regions[0].nodes) {
+    EXPECT_NEAR(shape.positions[n].norm(), CurvedBall::kRadius, 1e-15);
+  }
+  EXPECT_GT(shape.regions[0].nodes.back(), corners);
+  const v1::Frame frame = ball.frame(3);
+  const std::vector<Vec3> x = DecodePositions(frame.bodies(0), shape.positions.size());
+  const std::vector<double> v = DecodeField(frame.bodies(0).fields(0), shape);
+  ASSERT_EQ(v.size(), 3 * shape.positions.size());
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    EXPECT_DOUBLE_EQ(x[n].x(), 1.3 * shape.positions[n].x());
+    EXPECT_DOUBLE_EQ(v[3 * n], shape.positions[n].x() * shape.positions[n].x());
+  }
+}
+
+// Jobs of older servers have corners only; their frames keep the digest that they were stored with.
+TEST(DecodeGeometry, ReadsJobsWithoutMidEdgeNodes) {
+  const CurvedBall ball;
+  const BodyShape shape = DecodeGeometry(CurvedBall::WithoutMidEdgeNodes(ball.geometry()))[0];
+  EXPECT_FALSE(shape.quadratic());
+  ASSERT_EQ(shape.positions.size(), ball.mesh().nodes.size());
+  v1::Frame frame = CurvedBall::WithoutMidEdgeNodes(ball.frame(3));
+  EXPECT_EQ(DecodePositions(frame.bodies(0), shape.positions.size()).size(), shape.positions.size());
+  EXPECT_EQ(DecodeField(frame.bodies(0).fields(0), shape).size(), 3 * shape.positions.size());
+  // Written out as it was before higher-order nodes existed.
+  Sha256 sha;
+  const auto add = [&sha](const auto& value) { sha.Update(std::as_bytes(std::span(&value, 1))); };
+  const auto add_array = [&](const std::string& bytes, std::size_t size) {
+    add(static_cast<std::uint64_t>(bytes.size() / size));
+    sha.Update(std::as_bytes(std::span(bytes)));
+  };
+  add(std::int64_t{3});
+  add(0.0);
+  add(std::int64_t{0});
+  add(std::uint64_t{1});
+  add_array(frame.bodies(0).positions(), 24);
+  add(std::uint64_t{1});
+  add_array("velocity", 1);
+  add_array(frame.bodies(0).fields(0).values(), 8);
+  add(std::uint64_t{0});
+  const Digest digest = sha.Finish();
+  frame.set_digest(digest.data(), digest.size());
+  EXPECT_NO_THROW(CheckDigest(frame));
+}
+
+// Elements of a later server: hexahedra of 20 nodes are drawn with their corners.
+TEST(DecodeGeometry, LeavesOutHigherOrderNodesThatItDoesNotKnow) {
+  const CurvedBall ball;
+  v1::Geometry geometry = ball.geometry();
+  *geometry.mutable_bodies(0)->mutable_higher_order_nodes() += geometry.bodies(0).higher_order_nodes();
+  const BodyShape shape = DecodeGeometry(geometry)[0];
+  EXPECT_FALSE(shape.quadratic());
+  EXPECT_EQ(DecodePositions(ball.frame(1).bodies(0), shape.positions.size()).size(), ball.mesh().nodes.size());
+}
+
+TEST(DecodeGeometry, RefusesMidEdgeNodesThatDoNotFit) {
+  const CurvedBall ball;
+  for (const auto& damage :
+       {std::function<void(v1::BodyGeometry&)>([](auto& body) { body.mutable_higher_order_positions()->pop_back(); }),
+        std::function<void(v1::BodyGeometry&)>(
+            [](auto& body) { body.mutable_higher_order_positions()->resize(24); })}) {
+    v1::Geometry geometry = ball.geometry();
+    damage(*geometry.mutable_bodies(0));
+    EXPECT_THROW(DecodeGeometry(geometry), std::runtime_error);
+  }
+  const BodyShape shape = DecodeGeometry(ball.geometry())[0];
+  v1::Frame frame = ball.frame(1);
+  frame.mutable_bodies(0)->mutable_higher_order_positions()->resize(240);
+  EXPECT_THROW(DecodePositions(frame.bodies(0), shape.positions.size()), std::runtime_error);
+  frame.mutable_bodies(0)->mutable_fields(0)->clear_all_values();
+  EXPECT_THROW(DecodeField(frame.bodies(0).fields(0), shape), std::runtime_error);
 }
 
 TEST(DecodeLines, GivesPathsThatChangeTheirNumberOfPoints) {

@@ -1,9 +1,12 @@
 #include <gif_lib.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <vtkDataArray.h>
+#include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
+#include <vtkPointData.h>
 
 #include <array>
 #include <cmath>
@@ -22,6 +25,8 @@
 #include "client/render/slices.h"
 #include "client/render/ticks.h"
 #include "client/render/view.h"
+#include "client/vtk/body_grid.h"
+#include "tests/support/curved_ball.h"
 #include "tests/support/files.h"
 #include "tests/support/sample_job.h"
 #include "tests/support/sample_objects.h"
@@ -32,6 +37,7 @@ namespace {
 using ::fascicle::testing::AddLine;
 using ::fascicle::testing::AddRigidBody;
 using ::fascicle::testing::Bytes;
+using ::fascicle::testing::CurvedBall;
 using ::fascicle::testing::SampleJob;
 using ::fascicle::testing::SampleObjects;
 using ::fascicle::testing::SampleObjectsFrame;
@@ -261,6 +267,76 @@ TEST_F(RenderTest, SurfacesAreDrawnInTheColoursOfTheirNodes) {
   const Image edges = ReadPng(path);
   EXPECT_GT(edges.Count(IsYellow), 20u);
   EXPECT_LT(edges.Count(IsYellow), image.Count(IsYellow) / 2);
+}
+
+double AreaOf(vtkPolyData& surface) {
+  double area = 0;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < surface.GetNumberOfCells(); ++cell) {
+    surface.GetCellPoints(cell, ids);
+    if (ids->GetNumberOfIds() != 3) continue;
+    const Vec3 a(surface.GetPoint(ids->GetId(0))), b(surface.GetPoint(ids->GetId(1))),
+        c(surface.GetPoint(ids->GetId(2)));
+    area += 0.5 * (b - a).cross(c - a).norm();
+  }
+  return area;
+}
+
+// A ball of few quadratic elements is round, and so are its edges.
+TEST(BodyMesh, SidesOfQuadraticElementsAreCurved) {
+  const CurvedBall ball(4);
+  constexpr double kRadius = CurvedBall::kRadius, kArea = 4 * M_PI * kRadius * kRadius;
+  const BodyShape shape = DecodeGeometry(ball.geometry())[0];
+  const BodyShape corners = DecodeGeometry(CurvedBall::WithoutMidEdgeNodes(ball.geometry()))[0];
+  std::vector<double> values;
+  for (const Vec3& X : shape.positions) values.push_back(X.x());
+  const auto grid = MakeGrid(shape, shape.positions, values);
+  EXPECT_NEAR(AreaOf(*MakeSurface(*grid)) / kArea, 1, 0.01);
+  EXPECT_LT(AreaOf(*MakeSurface(*MakeGrid(corners, corners.positions, {}))) / kArea, 0.94);
+  const auto edges = MakeCurvedEdges(shape, shape.positions, values);
+  ASSERT_GT(edges->GetNumberOfLines(), 50);
+  vtkDataArray& colour = *edges->GetPointData()->GetScalars();
+  for (vtkIdType i = 0; i < edges->GetNumberOfPoints(); ++i) {
+    const Vec3 x(edges->GetPoint(i));
+    EXPECT_NEAR(x.norm() / kRadius, 1, 0.02);
+    EXPECT_NEAR(colour.GetTuple1(i), x.x(), 1e-15) << "a field that is x is x along the curve";
+  }
+}
+
+// Volume rendering, slices and fibres use eight straight tetrahedra for each: their volume is nearly that of the ball.
+TEST(BodyMesh, QuadraticElementsAreDividedForSampling) {
+  const CurvedBall ball(6);
+  const BodyShape shape = DecodeGeometry(ball.geometry())[0];
+  const auto grid = MakeLinearGrid(shape, shape.positions);
+  ASSERT_EQ(grid->GetNumberOfCells(), static_cast<vtkIdType>(8 * shape.tetrahedra.size()));
+  double volume = 0;
+  for (vtkIdType e = 0; e < grid->GetNumberOfCells(); ++e) {
+    vtkIdType count;
+    const vtkIdType* nodes;
+    grid->GetCellPoints(e, count, nodes);
+    ASSERT_EQ(count, 4);
+    const Vec3 a(grid->GetPoint(nodes[0])), b(grid->GetPoint(nodes[1])), c(grid->GetPoint(nodes[2])),
+        d(grid->GetPoint(nodes[3]));
+    const double of_part = (b - a).cross(c - a).dot(d - a) / 6;
+    EXPECT_GT(of_part, 0);
+    volume += of_part;
+  }
+  const double exact = 4 * M_PI / 3 * std::pow(CurvedBall::kRadius, 3);
+  EXPECT_NEAR(volume / exact, 1, 0.015);
+  EXPECT_GT(MakeFibreLines(shape, shape.positions, 20)->GetNumberOfLines(), 10);
+}
+
+TEST(ValuesAtNodes, ForcesOnMidEdgeNodesAreCountedAtCorners) {
+  const CurvedBall ball(2);
+  const BodyShape shape = DecodeGeometry(ball.geometry())[0];
+  v1::BodyFrame frame = ball.frame(0).bodies(0);
+  v1::FieldValues& force = *frame.mutable_fields(0);
+  force.set_name("internal_force");
+  force.set_unit("N");
+  const std::size_t corners = ball.mesh().nodes.size();
+  force.set_values(Bytes(std::vector<double>(3 * corners, 1)));
+  force.set_all_values(Bytes(std::vector<double>(3 * shape.positions.size(), 9)));
+  EXPECT_EQ(ValuesAtNodes(shape, frame, "internal_force/x").values, std::vector<double>(shape.positions.size(), 1));
 }
 
 TEST_F(RenderTest, PanelsShareEyeAndScale) {

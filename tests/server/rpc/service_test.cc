@@ -1,4 +1,7 @@
 // Correct calls.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <map>
 #include <set>
 #include <string>
@@ -166,6 +169,65 @@ TEST_F(JobsTest, ValidateOnlyCreatesNothing) {
   v1::ListJobsResponse list;
   ASSERT_TRUE(stubs_->jobs->ListJobs(&context, {}, &list).ok());
   EXPECT_EQ(list.jobs_size(), 0);
+}
+
+// A static job, and one with inertia that starts as its last frame: nothing moves, although the first job is deleted at
+// once. The state is the job's own asset.
+TEST_F(JobsTest, AJobStartsAsAFrameOfAnother) {
+  v1::Scene scene = SwingingBox(0.05, 0.01);
+  scene.mutable_gravity()->mutable_scale()->add_times(0);
+  scene.mutable_gravity()->mutable_scale()->add_values(1);
+  scene.mutable_output()->add_fields(v1::FIELD_VELOCITY);
+  scene.mutable_tet()->set_stepping(v1::STEPPING_QUASI_STATIC);
+  const std::string source = stubs_->Submit(scene);
+  ASSERT_TRUE(stubs_->AwaitState(source, v1::Job::STATE_SUCCEEDED));
+  const v1::Frame last = ReadStream(*stubs_, AllFramesOf(source)).frames.back();
+  ASSERT_FALSE(last.bodies(0).higher_order_positions().empty());
+
+  scene.mutable_tet()->set_stepping(v1::STEPPING_BDF2);
+  scene.mutable_start()->mutable_frame()->set_job(source);
+  const std::string name = stubs_->Submit(scene);
+  grpc::ClientContext context;
+  v1::DeleteJobRequest request;
+  request.set_name(source);
+  google::protobuf::Empty nothing;
+  ASSERT_TRUE(stubs_->jobs->DeleteJob(&context, request, &nothing).ok());
+  ASSERT_TRUE(stubs_->AwaitState(name, v1::Job::STATE_SUCCEEDED));
+  EXPECT_TRUE(stubs_->Get(name).scene().start().frame().state().asset().starts_with("assets/"));
+  const StreamRecord record = ReadStream(*stubs_, AllFramesOf(name));
+  ASSERT_EQ(record.frames.size(), 6u);
+  const auto largest_difference = [&](const std::string& a, const std::string& b) {
+    EXPECT_EQ(a.size(), b.size());
+    double largest = 0;
+    for (std::size_t i = 0; i + 8 <= a.size(); i += 8) {
+      double x, y;
+      std::memcpy(&x, &a[i], 8);
+      std::memcpy(&y, &b[i], 8);
+      largest = std::max(largest, std::abs(x - y));
+    }
+    return largest;
+  };
+  for (const v1::Frame& frame : record.frames) {
+    const v1::BodyFrame &now = frame.bodies(0), &then = last.bodies(0);
+    EXPECT_LT(largest_difference(now.positions(), then.positions()), 1e-9) << "frame " << frame.index();
+    EXPECT_LT(largest_difference(now.higher_order_positions(), then.higher_order_positions()), 1e-9);
+  }
+
+  v1::CreateJobRequest create;
+  *create.mutable_job()->mutable_scene() = scene;  // from the job that is no more
+  create.mutable_job()->mutable_scene()->mutable_bodies(0)->set_density(-1);
+  v1::Job job;
+  const grpc::Status status = stubs_->Create(create, job);
+  EXPECT_EQ(ReasonOf(status), "3 INVALID_ARGUMENT");
+  const auto bad = DetailOf<google::rpc::BadRequest>(status);
+  ASSERT_TRUE(bad);
+  std::set<std::string> fields;
+  for (const auto& violation : bad->field_violations()) fields.insert(violation.field());
+  EXPECT_EQ(fields, (std::set<std::string>{"job.scene.bodies[0].density", "job.scene.start.frame.job"}));
+  create.mutable_job()->mutable_scene()->mutable_bodies(0)->clear_density();
+  create.mutable_job()->mutable_scene()->mutable_start()->mutable_frame()->set_job(name);
+  create.mutable_job()->mutable_scene()->mutable_start()->mutable_frame()->set_frame(6);
+  EXPECT_EQ(ReasonOf(stubs_->Create(create, job)), "3 INVALID_ARGUMENT") << "it has the frames 0 to 5";
 }
 
 TEST_F(JobsTest, PagesListEveryJobOnceNewestFirst) {
