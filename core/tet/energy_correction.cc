@@ -64,23 +64,22 @@ void EnergyCorrection::At(const NodalVector& x, ThreadTeam& team, NodalVector& c
   patches.Smooth(secant_, acting_);
   model_.VisitElement([&]<class Element>(Element) {
     element_forces_.assign(Element::kNodes * model_.elements(), Vec3::Zero());
-    ForPoints<Element>(x, next_, patches_end_, team,
-                       [&](std::size_t e, int q, const Mat3& F, const Mat3& P, double energy) {
-                         const std::size_t at = Element::kPoints * e + q;
-                         const Mat3 F_start = GradientAt<Element>(model_, e, ValuesOf<Element>(model_, e, *start_), q);
-                         const Mat3 change = F - F_start;
-                         const double secant = PatchPressure<Element>(patches, acting_, e, q);
-                         const double lacking = energy - points_[at].energy +
-                                                secant * (Determinant(F) - Determinant(F_start)) -
-                                                0.5 * (points_[at].P + P).cwiseProduct(change).sum();
-                         const double c = lacking / (change.squaredNorm() + kLeastChange * kLeastChange);
-                         CornerValues corners;
-                         SetCornerForces(c * change, model_.Dm_inverse()[at], model_.rest_volume()[at], corners);
-                         std::array<Vec3, Element::kNodes> nodes;
-                         nodes.fill(Vec3::Zero());
-                         Element::AddCorners(corners, q, nodes);
-                         for (int a = 0; a < Element::kNodes; ++a) element_forces_[Element::kNodes * e + a] += nodes[a];
-                       });
+    ForPoints<Element>(
+        x, next_, patches_end_, team, [&](std::size_t e, int q, const Mat3& F, const Mat3& P, double energy) {
+          const std::size_t at = Element::kPoints * e + q;
+          const Mat3 F_start = GradientAt<Element>(model_, e, ValuesOf<Element>(model_, e, *start_), q);
+          const Mat3 change = F - F_start;
+          const double secant = PatchPressure<Element>(patches, acting_, e, q);
+          const double lacking = energy - points_[at].energy + secant * (Determinant(F) - Determinant(F_start)) -
+                                 0.5 * (points_[at].P + P).cwiseProduct(change).sum();
+          const double c = lacking / (change.squaredNorm() + kLeastChange * kLeastChange);
+          CornerValues corners;
+          SetCornerForces(c * change, model_.Dm_inverse()[at], model_.rest_volume()[at], corners);
+          std::array<Vec3, Element::kNodes> nodes;
+          nodes.fill(Vec3::Zero());
+          Element::AddCorners(corners, q, nodes);
+          for (int a = 0; a < Element::kNodes; ++a) element_forces_[Element::kNodes * e + a] += nodes[a];
+        });
   });
   correction.resize(model_.nodes());
   ForNodes(team, model_.nodes(), [&](std::size_t n) {
@@ -89,21 +88,6 @@ void EnergyCorrection::At(const NodalVector& x, ThreadTeam& team, NodalVector& c
       correction[n] += element_forces_[model_.node_uses()[k]];
     }
   });
-  AddFloors(x, correction);
-}
-
-void EnergyCorrection::AddFloors(const NodalVector& x, NodalVector& correction) const {
-  for (const Floor& floor : model_.scene().floors) {
-    for (const ContactNode& contact : model_.contact_nodes()) {
-      const double from = (floor.point - (*start_)[contact.node]).dot(floor.normal);
-      const double to = (floor.point - x[contact.node]).dot(floor.normal);
-      // Where the node stays on one side, the mean is exact.
-      if ((from > 0) == (to > 0)) continue;
-      const double depth = std::max(from, to);
-      const double exact = 0.5 * depth * depth / std::abs(to - from);
-      correction[contact.node] += contact.stiffness * (exact - 0.5 * depth) * floor.normal;
-    }
-  }
 }
 
 }  // namespace fascicle

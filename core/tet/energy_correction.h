@@ -14,9 +14,9 @@ namespace fascicle {
 //   P* = (P + P')/2 + c (F' - F),   c = (W' - W + p* (J' - J) - (P + P')/2 : (F' - F)) / |F' - F|^2,
 //
 // where P includes the pressure of patches, p* is W applied to (U' - U) / (theta' - theta) of each patch, and W is the
-// energy of the law at the mean activation. Floors have the same in their depth. Then f* . (x' - x) = -(energy' -
-// energy) for every law. Linear momentum is conserved. c is of second order in the step and smooth. Fibres are
-// isometric here, and Maxwell branches left out: what these do is no change of an energy. Not thread-safe.
+// energy of the law at the mean activation. Then f* . (x' - x) = -(energy' - energy) for every law. Linear momentum is
+// conserved. c is of second order in the step and smooth. Fibres are isometric here, and Maxwell branches left out:
+// what these do is no change of an energy. Not thread-safe.
 class EnergyCorrection {
  public:
   // The model must outlive this.
@@ -26,7 +26,7 @@ class EnergyCorrection {
   void Start(const NodalVector& x, std::span<const double> activation, std::span<const double> activation_next,
              ThreadTeam& team);
 
-  // Sets `correction` to the nodal forces of c (F' - F) and of floors [N] for a step that ends at x [m].
+  // Sets `correction` to the nodal forces of c (F' - F) [N] for a step that ends at x [m].
   void At(const NodalVector& x, ThreadTeam& team, NodalVector& correction);
 
  private:
@@ -37,7 +37,6 @@ class EnergyCorrection {
   template <class Element, class Visit>
   void ForPoints(const NodalVector& x, std::span<const double> activation, const ForceWorkspace& patches,
                  ThreadTeam& team, const Visit& visit) const;
-  void AddFloors(const NodalVector& x, NodalVector& correction) const;
 
   const TetModel& model_;
   const NodalVector* start_ = nullptr;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/tet/diagnostics.h"
+#include "core/tet/floor_contact.h"
 #include "core/tet/solver.h"
 
 namespace fascicle {
@@ -11,7 +12,7 @@ namespace {
 
 // After a step with at most this many iterations the next one may be twice as long.
 constexpr int kEasyIterations = 10;
-// A run fails when it needs steps shorter than this part of its duration.
+// A run fails when it needs steps shorter than this part of its fixed step, or else of its duration.
 constexpr double kShortestStep = 0x1p-12;
 // A step whose loads still depend on its positions after this many expansions is too long.
 constexpr int kMostExpansions = 30;
@@ -137,7 +138,8 @@ void TetSolver::AcceptImplicit(TetState& state, const StepReport& report, double
 
 bool TetSolver::CutImplicit(TetState& state, double dt) const {
   state.next_step = dt / 2;
-  return !(dt / 2 < kShortestStep * model_.scene().duration);
+  const double duration = model_.scene().duration;
+  return !(dt / 2 < kShortestStep * (method_.time_step ? std::min(*method_.time_step, duration) : duration));
 }
 
 StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step, TetState& next) {
@@ -155,6 +157,7 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
   if (is_static) potential_.drive.inverse_step = 0;
   potential_.previous = &now.positions;
   potential_.viscous_rate = is_static || !model_.has_strain_damping() ? 0 : 1 / dt;
+  potential_.floor_start = is_alpha ? &now.positions : nullptr;
   held_load_ = external_next_;
   Scheme scheme;
   NodalVector continued = now.positions;  // extrapolated, as if free components kept their acceleration
@@ -203,6 +206,16 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
       next.force[n] = free.cwiseProduct(scheme.share * model_.mass()[n] * next.accelerations[n] - kept);
     }
     PrescribeVelocities(model_, step.next, next.velocities);
+  }
+  if (is_alpha && !model_.scene().floors.empty()) {
+    // The next step begins with the floors' own force, in place of that which made the mean exact.
+    NodalVector own(model_.nodes(), Vec3::Zero()), mean(model_.nodes(), Vec3::Zero());
+    AddFloorForce(model_, next.positions, own);
+    AddFloorForce(model_, next.positions, mean, &now.positions);
+    for (std::size_t n = 0; n < model_.nodes(); ++n) {
+      const Vec3 free = model_.mass()[n] * model_.inverse_mass()[n];
+      next.force[n] += free.cwiseProduct(own[n] - mean[n]);
+    }
   }
   if (is_static) report.strain = LargestStepStrain(model_, now.positions, next.positions);
   next.stable = now.stable;

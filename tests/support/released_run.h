@@ -4,7 +4,7 @@
 #include "core/tet/floor_contact.h"
 #include "tests/support/static_run.h"
 
-// Bodies let go from a static equilibrium.
+// Bodies released from a static equilibrium.
 namespace fascicle::testing {
 
 // Lets a run move on from `positions` at rest, with the acceleration of its forces.

@@ -1,5 +1,5 @@
-// Undamped motion over ten thousand steps of Newmark's method: releases and impacts of rubbers and muscles. Their energy
-// is that of the start, whatever the step resolves.
+// Undamped motion over many steps of Newmark's method (ten thousand in the slow program): releases and impacts of
+// rubbers and muscles keep the energy of their start.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -73,10 +73,15 @@ struct Release {
 std::vector<Release> Releases() {
   return {
       {"rubber cantilever", 1e-3, [] { return LoadedBar(kRubber, Vec3(0, 0, -600)); }},
-      {"compressible cantilever", 1e-3, [] { return LoadedBar(NeoHookean(std::array{2e5, 0.3}), Vec3(0, 0, -600)); }},
+      {"compressible cantilever", 1e-3,
+       [] {
+         return LoadedBar(NeoHookean(std::array{2e5, 0.3}), Vec3(0, 0, -600));
+       }},
       {"stretched rubber", 5e-4, [] { return LoadedBar(kRubber, Vec3(3e4, 0, 0)); }},
       {"skew pull on rubber", 1e-3,
-       [] { return LoadedBar(Ogden(std::array{4e4, 1.3, 3e3, 5.0, 2e4, -2.0, 4e6}), Vec3(5e3, 2e3, -2e3)); }},
+       [] {
+         return LoadedBar(Ogden(std::array{4e4, 1.3, 3e3, 5.0, 2e4, -2.0, 4e6}), Vec3(5e3, 2e3, -2e3));
+       }},
       {"hexahedra", 1e-3, [] { return LoadedBar(kRubber, Vec3(0, 0, -600), ElementOrder::kHexahedral); }},
       {"linear elements", 1e-3, [] { return LoadedBar(kRubber, Vec3(0, 0, -600), ElementOrder::kLinear); }},
       {"passive muscle", 1e-3, [] { return LoadedBar(kMuscle, Vec3(1e4, 0, -500)); }},
@@ -92,7 +97,9 @@ std::vector<Release> Releases() {
 std::vector<Release> Impacts() {
   return {
       {"rubber cube", 5e-4,
-       [] { return Thrown(BoxBody(Vec3(0.02, 0.02, 0.02), {2, 2, 2}, NeoHookean(std::array{2e4, 0.3})), 0.005); }},
+       [] {
+         return Thrown(BoxBody(Vec3(0.02, 0.02, 0.02), {2, 2, 2}, NeoHookean(std::array{2e4, 0.3})), 0.005);
+       }},
       {"bar on its edge", 5e-4,
        [] {
          Body bar = BoxBody(Vec3(0.04, 0.01, 0.01), {4, 1, 1}, kRubber);
@@ -102,8 +109,8 @@ std::vector<Release> Impacts() {
        }},
       {"ring", 5e-4,
        [] {
-         TetMesh ring = MakeTorus(
-             {.major_radius = 0.02, .minor_radius = 0.005, .divisions_around = 10, .divisions_across = 1});
+         TetMesh ring =
+             MakeTorus({.major_radius = 0.02, .minor_radius = 0.005, .divisions_around = 10, .divisions_across = 1});
          for (Vec3& X : ring.nodes) X = Vec3(X[0], X[2], X[1] + 0.03);
          for (Tetrahedron& tet : ring.tetrahedra) std::swap(tet[2], tet[3]);
          return Thrown(MakeBody("ring", std::move(ring), kRubber), 0.005);
