@@ -37,11 +37,12 @@ struct TetMethod {
   double newton_tolerance = 1e-8;  // relative force at which Newton iterations end
   double safety = 0.9;             // fraction of the stable step
   double solver_tolerance = 1e-8;  // relative residual of the linear solves of damping
+  double spectral_radius = 1;      // of kNewmark at infinite frequency; 1: undamped
 };
 template <>
 inline constexpr auto kFieldNames<TetMethod> = FieldNames("stepping", "element", "volume", "precision", "time_step",
                                                           "linear_solver", "newton_tolerance", "safety",
-                                                          "solver_tolerance");
+                                                          "solver_tolerance", "spectral_radius");
 
 enum class VoxelStepping { kStatic, kDynamic };
 

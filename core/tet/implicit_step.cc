@@ -1,9 +1,10 @@
-// Implicit steps, which solve for the positions at their end: backward Euler, Newmark, BDF2 and quasi-static.
+// Implicit steps, which solve for the positions at their end: backward Euler, generalized alpha, BDF2 and quasi-static.
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/tet/diagnostics.h"
+#include "core/tet/floor_contact.h"
 #include "core/tet/solver.h"
 
 namespace fascicle {
@@ -11,17 +12,40 @@ namespace {
 
 // After a step with at most this many iterations the next one may be twice as long.
 constexpr int kEasyIterations = 10;
-// A run fails when it needs steps shorter than this part of its duration.
+// A run fails when it needs steps shorter than this part of its fixed step, or else of its duration.
 constexpr double kShortestStep = 0x1p-12;
 // A step whose loads still depend on its positions after this many expansions is too long.
 constexpr int kMostExpansions = 30;
 
-// Velocity and inertia force at the end of a step as functions of the positions there: v = rate (x - v_centre), M a =
-// inertia M (x - a_centre).
+// The correction of forces is repeated until it agrees with the positions, at most so often, to a tolerance that falls
+// by this factor from the first.
+constexpr int kMostCorrections = 12;
+constexpr double kFirstTolerance = 1e-4, kToleranceFactor = 1e-2;
+// A correction agrees with the positions if it changes by less than this part of the forces.
+constexpr double kAgreement = 1e-6;
+
+// Velocity and acceleration at the end of a step as functions of the positions there, v = rate (x - v_centre),
+// a = inertia (x - a_centre), and the balance that determines x: all forces at the end, plus those kept from its start,
+// equal share M a. Generalized alpha divides its balance by the weight of the end.
 struct Scheme {
   double rate = 0;     // [1/s]
   double inertia = 0;  // [1/s^2]
+  double share = 1;
   NodalVector v_centre, a_centre;
+  NodalVector kept;  // [N]; empty: none
+};
+
+// Generalized alpha [Chung & Hulbert 1993, A time integration algorithm for structural dynamics with improved numerical
+// dissipation, J. Appl. Mech. 60]:
+//   (1 - inertia_weight) M a' + inertia_weight M a = (1 - force_weight) f' + force_weight f.
+struct Alpha {
+  double inertia_weight, force_weight, beta, gamma;
+
+  explicit Alpha(double spectral_radius)
+      : inertia_weight((2 * spectral_radius - 1) / (spectral_radius + 1)),
+        force_weight(spectral_radius / (spectral_radius + 1)),
+        beta(0.25 * std::pow(1 - inertia_weight + force_weight, 2)),
+        gamma(0.5 - inertia_weight + force_weight) {}
 };
 
 // The rate at the end of a step is (c0 x + c1 x_n + c2 x_{n-1}) / dt. The previous step had length dt / ratio.
@@ -49,22 +73,24 @@ Scheme BackwardScheme(const BackwardDifference& d, const TetState& now, double d
   return scheme;
 }
 
-// Average acceleration: beta = 1/4, gamma = 1/2 [Newmark 1959].
-Scheme NewmarkScheme(const TetState& now, double dt) {
-  Scheme scheme;
-  scheme.rate = 2 / dt;
-  scheme.inertia = 4 / (dt * dt);
-  for (std::size_t n = 0; n < now.positions.size(); ++n) {
-    scheme.v_centre.push_back(now.positions[n] + dt / 2 * now.velocities[n]);
-    scheme.a_centre.push_back(now.positions[n] + dt * now.velocities[n] + dt * dt / 4 * now.accelerations[n]);
-  }
-  return scheme;
-}
-
-Scheme SchemeOf(Stepping stepping, const TetState& now, double dt) {
-  if (stepping == Stepping::kNewmark) return NewmarkScheme(now, dt);
+Scheme BackwardSchemeOf(Stepping stepping, const TetState& now, double dt) {
   const bool has_history = stepping == Stepping::kBdf2 && now.step > 0;
   return BackwardScheme(has_history ? SecondOrder(dt / now.time_step) : BackwardDifference(), now, dt);
+}
+
+Scheme AlphaScheme(const Alpha& alpha, const TetModel& model, const TetState& now, double dt) {
+  Scheme scheme;
+  scheme.rate = alpha.gamma / (alpha.beta * dt);
+  scheme.inertia = 1 / (alpha.beta * dt * dt);
+  scheme.share = (1 - alpha.inertia_weight) / (1 - alpha.force_weight);
+  for (std::size_t n = 0; n < now.positions.size(); ++n) {
+    const Vec3 &x = now.positions[n], &v = now.velocities[n], &a = now.accelerations[n];
+    scheme.a_centre.push_back(x + dt * v + dt * dt * (0.5 - alpha.beta) * a);
+    scheme.v_centre.push_back(scheme.a_centre.back() - (v + dt * (1 - alpha.gamma) * a) / scheme.rate);
+    scheme.kept.push_back((alpha.force_weight * now.force[n] - alpha.inertia_weight * model.mass()[n] * a) /
+                          (1 - alpha.force_weight));
+  }
+  return scheme;
 }
 
 StepProblem ProblemOf(const NewtonResult& result) {
@@ -112,12 +138,15 @@ void TetSolver::AcceptImplicit(TetState& state, const StepReport& report, double
 
 bool TetSolver::CutImplicit(TetState& state, double dt) const {
   state.next_step = dt / 2;
-  return !(dt / 2 < kShortestStep * model_.scene().duration);
+  const double duration = model_.scene().duration;
+  return !(dt / 2 < kShortestStep * (method_.time_step ? std::min(*method_.time_step, duration) : duration));
 }
 
 StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step, TetState& next) {
   const double dt = step.dt;
   const bool is_static = method_.stepping == Stepping::kQuasiStatic;
+  const bool is_alpha = method_.stepping == Stepping::kNewmark;
+  const Alpha alpha(method_.spectral_radius);
   next.positions = now.positions;
   next.pressures = now.pressures;
   NodalVector target = now.positions;
@@ -126,27 +155,32 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
   potential_.drive = DriveOf(now, step);
   // Fibres of a state of rest are isometric.
   if (is_static) potential_.drive.inverse_step = 0;
-  potential_.load = &external_next_;
   potential_.previous = &now.positions;
   potential_.viscous_rate = is_static || !model_.has_strain_damping() ? 0 : 1 / dt;
+  potential_.floor_start = is_alpha ? &now.positions : nullptr;
+  held_load_ = external_next_;
   Scheme scheme;
   NodalVector continued = now.positions;  // extrapolated, as if free components kept their acceleration
   if (!is_static) {
-    scheme = SchemeOf(method_.stepping, now, dt);
+    scheme = is_alpha ? AlphaScheme(alpha, model_, now, dt) : BackwardSchemeOf(method_.stepping, now, dt);
     // Mass damping a M v is combined with inertia: m (x - c) = M [inertia (x - a_centre) + a rate (x - v_centre)].
     potential_.inertia.resize(model_.nodes());
     potential_.inertia_centre.resize(model_.nodes());
+    const double inertia = scheme.share * scheme.inertia;
     for (std::size_t n = 0; n < model_.nodes(); ++n) {
       const double damping = model_.mass_damping()[n] * scheme.rate;
-      const double sum = scheme.inertia + damping;
+      const double sum = inertia + damping;
       potential_.inertia[n] = model_.mass()[n] * sum;
-      potential_.inertia_centre[n] = (scheme.inertia * scheme.a_centre[n] + damping * scheme.v_centre[n]) / sum;
+      potential_.inertia_centre[n] = (inertia * scheme.a_centre[n] + damping * scheme.v_centre[n]) / sum;
       const Vec3 free = model_.mass()[n] * model_.inverse_mass()[n];
       const Vec3 ahead = scheme.a_centre[n] + now.accelerations[n] / scheme.inertia;
       continued[n] += free.cwiseProduct(ahead - now.positions[n]);
+      if (is_alpha) held_load_[n] += scheme.kept[n];
     }
   }
-  const NewtonResult result = SolvePositions(target, is_static ? nullptr : &continued, step.next, next);
+  const PositionSolve solve = {target, is_static ? nullptr : &continued, step.next, method_.newton_tolerance};
+  const NewtonResult result =
+      is_alpha ? SolveCorrected(solve, now, step, 1 - alpha.force_weight, next) : SolvePositions(solve, next);
 
   StepReport report;
   report.iterations = result.iterations;
@@ -161,48 +195,95 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
   next.accelerations.assign(model_.nodes(), Vec3::Zero());
   next.previous_positions = now.positions;
   next.previous_velocities = now.velocities;
+  next.force = now.force;
   if (!is_static) {
     for (std::size_t n = 0; n < model_.nodes(); ++n) {
       next.velocities[n] = scheme.rate * (next.positions[n] - scheme.v_centre[n]);
       const Vec3 free = model_.mass()[n] * model_.inverse_mass()[n];
       next.accelerations[n] = free.cwiseProduct(scheme.inertia * (next.positions[n] - scheme.a_centre[n]));
+      if (!is_alpha) continue;
+      const Vec3 kept = scheme.kept[n] + correction_[n] / (1 - alpha.force_weight);
+      next.force[n] = free.cwiseProduct(scheme.share * model_.mass()[n] * next.accelerations[n] - kept);
     }
     PrescribeVelocities(model_, step.next, next.velocities);
   }
+  if (is_alpha && !model_.scene().floors.empty()) {
+    // The next step begins with the floors' own force, in place of that which made the mean exact.
+    NodalVector own(model_.nodes(), Vec3::Zero()), mean(model_.nodes(), Vec3::Zero());
+    AddFloorForce(model_, next.positions, own);
+    AddFloorForce(model_, next.positions, mean, &now.positions);
+    for (std::size_t n = 0; n < model_.nodes(); ++n) {
+      const Vec3 free = model_.mass()[n] * model_.inverse_mass()[n];
+      next.force[n] += free.cwiseProduct(own[n] - mean[n]);
+    }
+  }
   if (is_static) report.strain = LargestStepStrain(model_, now.positions, next.positions);
-  next.force = now.force;
   next.stable = now.stable;
   next.smallest_ratio = SmallestRatio(next.positions);
   next.peak_kinetic = now.peak_kinetic;
   return report;
 }
 
+// Solves for the positions at the end of a step whose forces are corrected so that they do the work that the energy
+// loses (EnergyCorrection). The correction belongs to the last positions: it is small and smooth, so that few
+// repetitions with falling tolerances suffice. `weight` is that of the forces at the end.
+NewtonResult TetSolver::SolveCorrected(PositionSolve solve, const TetState& now, const StepControls& step,
+                                       double weight, TetState& next) {
+  const double tolerance = solve.tolerance;
+  const NodalVector held = held_load_;
+  {
+    const StageTimer timer(profile_, "energy correction");
+    energy_correction_->Start(now.positions, step.now.activations, step.next.activations, team_);
+  }
+  correction_.assign(model_.nodes(), Vec3::Zero());
+  solve.tolerance = std::max(tolerance, kFirstTolerance);
+  NewtonResult total;
+  for (int k = 0; k < kMostCorrections; ++k) {
+    const NewtonResult result = SolvePositions(solve, next);
+    AddTo(total, result);
+    if (result.end != NewtonResult::End::kConverged) return total;
+    const StageTimer timer(profile_, "energy correction");
+    energy_correction_->At(next.positions, team_, corrected_);
+    const double change = std::sqrt(SumOverNodes(
+        team_, model_.nodes(), [&](std::size_t n) { return (corrected_[n] - correction_[n]).squaredNorm(); }));
+    const bool agrees = change <= std::max(tolerance, kAgreement) * result.force_scale;
+    if (agrees && solve.tolerance == tolerance) return total;
+    // What comes next is the last solution, or one with a better correction.
+    solve.tolerance = agrees ? tolerance : std::max(tolerance, kToleranceFactor * solve.tolerance);
+    solve.guess = nullptr;
+    std::swap(correction_, corrected_);
+    ForNodes(team_, model_.nodes(), [&](std::size_t n) { held_load_[n] = held[n] + correction_[n] / weight; });
+  }
+  total.end = NewtonResult::End::kNotConverged;
+  return total;
+}
+
 // Solves for the positions and pressures at the end of the step. Loads that depend on positions are expanded about the
 // last solution until the expansion is as exact as the equilibrium: a pressure has no potential at a free rim, so that
 // Newton's line search has nothing to decrease but that of its expansion.
-NewtonResult TetSolver::SolvePositions(const NodalVector& target, const NodalVector* guess, const Controls& controls,
-                                       TetState& next) {
+NewtonResult TetSolver::SolvePositions(const PositionSolve& solve, TetState& next) {
   const StageTimer timer(profile_, "Newton");
   NewtonOptions options;
-  options.tolerance = method_.newton_tolerance;
-  options.guess = guess;
+  options.tolerance = solve.tolerance;
+  options.guess = solve.guess;
+  potential_.load = &held_load_;
   if (model_.position_loads().empty()) {
-    return newton_->Solve(potential_, target, options, next.positions, next.pressures);
+    return newton_->Solve(potential_, solve.target, options, next.positions, next.pressures);
   }
   NewtonResult total;
   for (int expansions = 0; expansions < kMostExpansions; ++expansions) {
-    const LoadExpansion expansion = ExpandPositionLoads(model_, controls.load_scales, next.positions);
-    NodalVector load = external_next_;
-    AddPositionLoads(model_, controls.load_scales, next.positions, load);
+    const LoadExpansion expansion = ExpandPositionLoads(model_, solve.controls.load_scales, next.positions);
+    NodalVector load = held_load_;
+    AddPositionLoads(model_, solve.controls.load_scales, next.positions, load);
     potential_.load = &load;
     potential_.expansion = &expansion;
-    const NewtonResult result = newton_->Solve(potential_, target, options, next.positions, next.pressures);
-    potential_.load = &external_next_;
+    const NewtonResult result = newton_->Solve(potential_, solve.target, options, next.positions, next.pressures);
+    potential_.load = &held_load_;
     potential_.expansion = nullptr;
     options.guess = nullptr;
     AddTo(total, result);
     if (result.end != NewtonResult::End::kConverged) return total;
-    const double error = ErrorOf(expansion, load, controls, next.positions);
+    const double error = ErrorOf(expansion, load, solve.controls, next.positions);
     if (error <= options.tolerance * result.force_scale) return total;
   }
   total.end = NewtonResult::End::kNotConverged;
@@ -212,7 +293,7 @@ NewtonResult TetSolver::SolvePositions(const NodalVector& target, const NodalVec
 // Norm of what the expansion misses in the force on free components [N]. `load` is the force at its centre.
 double TetSolver::ErrorOf(const LoadExpansion& expansion, const NodalVector& load, const Controls& controls,
                           const NodalVector& x) const {
-  NodalVector exact = external_next_, change;
+  NodalVector exact = held_load_, change;
   AddPositionLoads(model_, controls.load_scales, x, exact);
   expansion.Multiply(x, change);
   return std::sqrt(SumOverNodes(team_, model_.nodes(), [&](std::size_t n) {

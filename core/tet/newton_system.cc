@@ -158,8 +158,8 @@ NewtonSystem::Evaluation NewtonSystem::Evaluate(const IncrementalPotential& pote
                     });
   }
   if (!potential.untangling) {
-    AddFloorForce(model_, x, force);
-    total.energy += FloorEnergy(model_, x);
+    AddFloorForce(model_, x, force, potential.floor_start);
+    total.energy += FloorEnergy(model_, x, potential.floor_start);
   }
   total.valid &= elements.finite && std::isfinite(total.energy);
   const double loads = SumOverNodes(team, model_.nodes(), [&](std::size_t n) { return load[n].squaredNorm(); });

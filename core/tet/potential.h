@@ -25,6 +25,7 @@ struct IncrementalPotential {
   NodalVector inertia_centre;                // c [m]
   const NodalVector* previous = nullptr;     // positions one step ago, for W_v [m]
   double viscous_rate = 0;                   // 1/dt [1/s]; 0 without W_v
+  const NodalVector* floor_start = nullptr;  // of the step, for floors whose work is exact (floor_contact.h); or null
   // Whether UntanglingLaw replaces W, U and W_v.
   bool untangling = false;
 };

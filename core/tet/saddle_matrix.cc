@@ -154,7 +154,8 @@ void SaddleAssembly::Assemble(const IncrementalPotential& potential, const Nodal
   };
   for (std::size_t n = 0; n < potential.inertia.size(); ++n) diagonal(n).diagonal().array() += potential.inertia[n];
   if (!potential.untangling) {
-    ForFloorStiffness(model_, x, [&](std::size_t n, const Mat3& stiffness) { diagonal(n) += stiffness; });
+    ForFloorStiffness(model_, x, potential.floor_start,
+                      [&](std::size_t n, const Mat3& stiffness) { diagonal(n) += stiffness; });
   }
   if (potential.expansion != nullptr) {
     for (const auto& [row, column, block] : potential.expansion->stiffness) {

@@ -24,6 +24,20 @@ constexpr double kFaintMotion = 1e-6;
 constexpr std::int64_t kGrowAfter = 50;
 // A run fails when it needs more steps than this to the next frame.
 constexpr double kMostSteps = 1e9;
+// Stiffness that holds corners while mid-edge nodes find their places, relative to that of an element.
+constexpr double kHoldOfCorners = 1e4;
+
+// Whether a body has initial displacements, of the nodes of its mesh alone.
+bool DisplacesCornersOnly(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
+    const TetShape& shape = body.tet();
+    return !shape.initial_displacement.empty() && shape.initial_displacement.size() == shape.mesh.nodes.size();
+  });
+}
+
+double SumOfModuli(const Material& material) {
+  return std::visit([](const auto& law) { return law.ShearModulus() + law.BulkModulus(); }, material);
+}
 
 }  // namespace
 
@@ -32,6 +46,7 @@ TetSolver::TetSolver(const TetModel& model, ThreadTeam& team, Profile* profile)
   if (!IsImplicit()) return;
   const StageTimer timer(profile_, "matrix pattern");
   newton_ = std::make_unique<NewtonSolver>(model, team, profile);
+  if (method_.stepping == Stepping::kNewmark) energy_correction_ = std::make_unique<EnergyCorrection>(model);
 }
 
 TetState TetSolver::InitialState(const Controls& start) {
@@ -46,6 +61,9 @@ TetState TetSolver::InitialState(const Controls& start) {
     state.pressures.assign(model_.patches().size(), 0.0);
   }
   PrescribePositions(model_, start, state.positions);
+  if (IsImplicit() && model_.order() == ElementOrder::kQuadratic && DisplacesCornersOnly(model_.scene())) {
+    SettleMiddles(start, state);
+  }
   CompleteState(start, state);
   return state;
 }
@@ -61,6 +79,32 @@ void TetSolver::CompleteState(const Controls& start, TetState& state) {
   if (HasBranches()) state.branches = RelaxedBranches(model_, state.positions, team_, forces_);
 }
 
+// Initial displacements are those of corners. On straight edges, most of the energy would be that of mid-edge nodes out
+// of place, whose vibrations no step resolves. So these start in equilibrium between the corners, which stiff springs
+// hold; where there is none, edges stay straight.
+void TetSolver::SettleMiddles(const Controls& start, TetState& state) {
+  ExternalForce(model_, start, team_, held_load_);
+  IncrementalPotential potential;
+  potential.drive = FibreDrive{start.activations};
+  potential.load = &held_load_;
+  potential.inertia.assign(model_.nodes(), 0.0);
+  potential.inertia_centre = state.positions;
+  for (const TetBody& body : model_.bodies()) {
+    double volume = 0;
+    const std::size_t points = static_cast<std::size_t>(model_.points_per_element());
+    for (std::size_t p = points * body.tet_begin; p < points * body.tet_end; ++p) volume += model_.rest_volume()[p];
+    const double size = std::cbrt(volume / static_cast<double>(body.tet_end - body.tet_begin));
+    const double stiffness = kHoldOfCorners * size * SumOfModuli(body.source->material);
+    for (std::size_t n = body.node_begin; n < body.mesh_node_end; ++n) potential.inertia[n] = stiffness;
+  }
+  NodalVector x = state.positions;
+  std::vector<double> pressures = state.pressures;
+  if (newton_->Solve(potential, state.positions, {}, x, pressures).end != NewtonResult::End::kConverged) return;
+  for (const TetBody& body : model_.bodies()) {
+    for (std::size_t n = body.mesh_node_end; n < body.node_end; ++n) state.positions[n] = x[n];
+  }
+}
+
 // a = M^-1 (f + loads) - a_m v. With a = 0 the first step of a released body would be of first order.
 void TetSolver::SetFirstAcceleration(const Controls& start, TetState& state) {
   ExternalForce(model_, start, team_, external_next_);
@@ -69,6 +113,7 @@ void TetSolver::SetFirstAcceleration(const Controls& start, TetState& state) {
     const Vec3 damping = model_.mass_damping()[n] * state.velocities[n];
     state.accelerations[n] =
         model_.inverse_mass()[n].cwiseProduct(state.force[n] + external_next_[n] - model_.mass()[n] * damping);
+    state.force[n] = model_.mass()[n] * state.accelerations[n];
   }
 }
 

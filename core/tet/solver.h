@@ -9,6 +9,7 @@
 #include "core/tet/bad_elements.h"
 #include "core/tet/branches.h"
 #include "core/tet/controls.h"
+#include "core/tet/energy_correction.h"
 #include "core/tet/forces.h"
 #include "core/tet/newton.h"
 #include "core/tet/stable_step.h"
@@ -82,7 +83,16 @@ class TetSolver {
 
   // Steppings that solve for the end of the step: implicit_step.cc.
   StepReport StepImplicit(const TetState& now, const StepControls& step, TetState& next);
-  NewtonResult SolvePositions(const NodalVector& target, const NodalVector* guess, const Controls& controls,
+  // What a step solves for: the positions of prescribed components, a start (may be null), the controls at the end, and
+  // the tolerance of Newton's method.
+  struct PositionSolve {
+    const NodalVector& target;
+    const NodalVector* guess;
+    const Controls& controls;
+    double tolerance;
+  };
+  NewtonResult SolvePositions(const PositionSolve& solve, TetState& next);
+  NewtonResult SolveCorrected(PositionSolve solve, const TetState& now, const StepControls& step, double weight,
                               TetState& next);
   double ErrorOf(const LoadExpansion& expansion, const NodalVector& load, const Controls& controls,
                  const NodalVector& x) const;
@@ -92,6 +102,7 @@ class TetSolver {
   bool CutImplicit(TetState& state, double dt) const;
   bool IsImplicit() const { return method_.stepping != Stepping::kExplicit && method_.stepping != Stepping::kMixed; }
   void CompleteState(const Controls& start, TetState& state);
+  void SettleMiddles(const Controls& start, TetState& state);
   void SetFirstAcceleration(const Controls& start, TetState& state);
   StepReport SolveStatic(const Controls& controls, TetState& state);
   double SmallestRatio(const NodalVector& x) const;
@@ -130,13 +141,15 @@ class TetSolver {
   const TetMethod& method_;
   // Scratch memory: nothing here outlives a step.
   NodalVector external_now_, external_next_;
+  NodalVector held_load_, correction_, corrected_;  // all that an implicit step holds fixed; of EnergyCorrection
   NodalVector right_side_, inverse_diagonal_;
   NodalVector force_before_, force_after_, mean_rate_, viscous_;  // for the work of supports
   ForceWorkspace forces_;
   BranchDrive step_branches_, state_branches_;
   CgWorkspace cg_;
   StableStepWorkspace stable_step_;
-  std::unique_ptr<NewtonSolver> newton_;  // for implicit steppings
+  std::unique_ptr<NewtonSolver> newton_;                 // for implicit steppings
+  std::unique_ptr<EnergyCorrection> energy_correction_;  // for kNewmark
   IncrementalPotential potential_;
   TetState next_;
 };

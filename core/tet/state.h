@@ -25,7 +25,7 @@ struct TetState {
   NodalVector positions;   // x [m]
   NodalVector velocities;  // v [m/s]
   // Force at `positions` [N]: elastic forces and floors; with explicit stepping also the viscous force of the previous
-  // half step.
+  // half step. Of kNewmark: all forces on free components, loads and damping included.
   NodalVector force;
   // For implicit and quasi-static steps: accelerations [m/s^2] (kNewmark), positions and velocities one step ago
   // (kBdf2), the pressure of each patch [Pa], and the length of the next step to try [s], 0 for the whole interval.

@@ -73,6 +73,7 @@ TetMethod TranslateTetMethod(const v1::Scene& scene) {
   if (scene.tet().has_time_step()) method.time_step = scene.tet().time_step();
   method.safety = scene.tet().safety();
   method.solver_tolerance = scene.tet().solver_tolerance();
+  method.spectral_radius = scene.tet().spectral_radius();
   return method;
 }
 

@@ -63,6 +63,7 @@ void AddNotesOnMethod(const v1::Scene& scene, std::vector<std::string>& notes) {
     AddNotes(scene.tet(), "tet", {"safety"}, "in implicit and quasi-static stepping", notes);
   }
   if (!is_mixed) AddNotes(scene.tet(), "tet", {"solver_tolerance"}, "without mixed stepping", notes);
+  if (stepping != v1::STEPPING_NEWMARK) AddNotes(scene.tet(), "tet", {"spectral_radius"}, "without Newmark", notes);
   if (scene.voxel().stepping() != v1::VOXEL_STEPPING_DYNAMIC) {
     AddNotes(scene.voxel(), "voxel", {"time_step", "start_loaded"}, "in static stepping", notes);
   }
