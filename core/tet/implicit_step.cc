@@ -11,6 +11,8 @@ namespace {
 
 // After a step with at most this many iterations the next one may be twice as long.
 constexpr int kEasyIterations = 10;
+// Static solutions are extrapolated to at most this multiple of the last step.
+constexpr double kFarthest = 4;
 // A run fails when it needs steps shorter than this part of its duration.
 constexpr double kShortestStep = 0x1p-12;
 // A step whose loads still depend on its positions after this many expansions is too long.
@@ -146,7 +148,14 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
       continued[n] += free.cwiseProduct(ahead - now.positions[n]);
     }
   }
-  const NewtonResult result = SolvePositions(target, is_static ? nullptr : &continued, step.next, next);
+  NewtonOptions options;
+  options.tolerance = method_.newton_tolerance;
+  if (!is_static) options.guess = &continued;
+  if (is_static && now.step > 0 && dt <= kFarthest * now.time_step) {
+    options.before = &now.previous_positions;
+    options.ahead = dt / now.time_step;
+  }
+  const NewtonResult result = SolvePositions(target, options, step.next, next);
 
   StepReport report;
   report.iterations = result.iterations;
@@ -180,12 +189,9 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
 // Solves for the positions and pressures at the end of the step. Loads that depend on positions are expanded about the
 // last solution until the expansion is as exact as the equilibrium: a pressure has no potential at a free rim, so that
 // Newton's line search has nothing to decrease but that of its expansion.
-NewtonResult TetSolver::SolvePositions(const NodalVector& target, const NodalVector* guess, const Controls& controls,
+NewtonResult TetSolver::SolvePositions(const NodalVector& target, NewtonOptions options, const Controls& controls,
                                        TetState& next) {
   const StageTimer timer(profile_, "Newton");
-  NewtonOptions options;
-  options.tolerance = method_.newton_tolerance;
-  options.guess = guess;
   if (model_.position_loads().empty()) {
     return newton_->Solve(potential_, target, options, next.positions, next.pressures);
   }
@@ -199,7 +205,7 @@ NewtonResult TetSolver::SolvePositions(const NodalVector& target, const NodalVec
     const NewtonResult result = newton_->Solve(potential_, target, options, next.positions, next.pressures);
     potential_.load = &external_next_;
     potential_.expansion = nullptr;
-    options.guess = nullptr;
+    options.guess = options.before = nullptr;
     AddTo(total, result);
     if (result.end != NewtonResult::End::kConverged) return total;
     const double error = ErrorOf(expansion, load, controls, next.positions);

@@ -76,7 +76,7 @@ class TetSolver {
 
   // Steppings that solve for the end of the step: implicit_step.cc.
   StepReport StepImplicit(const TetState& now, const StepControls& step, TetState& next);
-  NewtonResult SolvePositions(const NodalVector& target, const NodalVector* guess, const Controls& controls,
+  NewtonResult SolvePositions(const NodalVector& target, NewtonOptions options, const Controls& controls,
                               TetState& next);
   double ErrorOf(const LoadExpansion& expansion, const NodalVector& load, const Controls& controls,
                  const NodalVector& x) const;
