@@ -18,6 +18,8 @@ constexpr double kGain = 1e-4;
 // How far the residual in double precision may exceed the tolerance. A refinement that reduces it by less than
 // kLeastGain has failed.
 constexpr double kSlack = 1.1, kLeastGain = 0.5;
+// The least reduction that is worth a refinement.
+constexpr double kLeastPass = 0.1;
 
 // Interpolation from the corners of quadratic elements to all of their nodes, along straight edges; nothing for other
 // elements.
@@ -163,8 +165,8 @@ IterativeSaddleSolver::Result IterativeSaddleSolver::Solve(const SaddleMatrix& m
   volume_residual_.assign(volume.begin(), volume.end());
   for (double norm = start; norm > kSlack * tolerance * start;) {
     saddle_.FromDouble(residual_, volume_residual_, 1 / norm, team, side_);
-    const GmresResult pass =
-        Iterate(std::max(kGain, tolerance * start / norm), kMaxIterations - result.iterations, team);
+    const double goal = std::clamp(tolerance * start / norm, kGain, kLeastPass);
+    const GmresResult pass = Iterate(goal, kMaxIterations - result.iterations, team);
     result.iterations += pass.iterations;
     result.is_minimum &= pass.least_eigenvalue >= 0;
     if (!pass.converged || !result.is_minimum) return result;
