@@ -9,7 +9,8 @@ namespace fascicle {
 struct Prolongation {
   BlockPattern pattern;
   BlockValues values;
-  std::size_t coarse = 0;  // number of blocks of the coarser level
+  std::size_t coarse = 0;    // number of blocks of the coarser level
+  bool is_diagonal = false;  // whether all blocks are diagonal matrices
 };
 
 // Meaning of the three components of a block: the translation of a point, or a rotation about it.
@@ -42,6 +43,10 @@ class GalerkinProduct {
   const TransposedPattern& restriction() const { return restriction_; }
 
  private:
+  template <class Add>
+  static void Multiply(const BlockPattern& left, const BlockPattern& right, const BlockPattern& product,
+                       ThreadTeam& team, BlockValues& values, const Add& add);
+
   BlockPattern product_, coarse_;  // of A P, of P^T A P
   TransposedPattern restriction_;
   BlockValues product_values_;  // scratch

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "core/base/parallel.h"
-
 namespace fascicle {
 
 // Iterations between two computations of the Ritz values.
@@ -25,53 +23,45 @@ struct GmresResult {
 double LeastRealPart(const Eigen::MatrixXd& matrix);
 
 // Scratch memory of FlexibleGmres; reused by later calls.
+template <class Vector>
 struct GmresWorkspace {
-  std::vector<Eigen::VectorXd> basis, preconditioned;
+  std::vector<Vector> basis, preconditioned;
 };
 
 // Solves A x = b by flexible GMRES without restart, preconditioned from the right [Saad 1993, A flexible inner-outer
 // preconditioned GMRES algorithm, SIAM J. Sci. Comput. 14].
+//   space                              operations on vectors: Dot(u, v), Add(scale, v, sum), Scale(scale, v), Zero()
 //   apply(v, Av), precondition(r, z)   neither needs to be symmetric; precondition may change from call to call
 //   x                                  the result; the initial guess is zero
 // Stops when the norm of the residual is at most `tolerance` times that of b, when a Ritz value is negative, or after
-// `max_iterations`. Keeps two vectors for each iteration. The same bits for any number of threads.
-template <class Apply, class Precondition>
-GmresResult FlexibleGmres(ThreadTeam& team, const Apply& apply, const Precondition& precondition,
-                          const Eigen::VectorXd& b, double tolerance, int max_iterations, Eigen::VectorXd& x,
-                          GmresWorkspace& ws) {
-  using Eigen::VectorXd;
-  const auto dot = [&](const VectorXd& u, const VectorXd& v) {
-    return team.Sum(u.size(), [&](std::size_t begin, std::size_t end) {
-      return u.segment(begin, end - begin).dot(v.segment(begin, end - begin));
-    });
-  };
-  const auto add = [&](double scale, const VectorXd& v, VectorXd& sum) {
-    team.For(v.size(), 8192, [&](std::size_t begin, std::size_t end) {
-      sum.segment(begin, end - begin) += scale * v.segment(begin, end - begin);
-    });
-  };
-  x = VectorXd::Zero(b.size());
+// `max_iterations`. Keeps two vectors for each iteration. The same bits for any number of threads if the operations
+// have them.
+template <class Space, class Vector, class Apply, class Precondition>
+GmresResult FlexibleGmres(const Space& space, const Apply& apply, const Precondition& precondition, const Vector& b,
+                          double tolerance, int max_iterations, Vector& x, GmresWorkspace<Vector>& ws) {
+  x = space.Zero();
   GmresResult result;
-  const double b_norm = std::sqrt(dot(b, b));
+  const double b_norm = std::sqrt(space.Dot(b, b));
   result.converged = b_norm == 0;
   if (!(b_norm > 0)) return result;
   ws.basis.resize(max_iterations + 1);
   ws.preconditioned.resize(max_iterations);
-  ws.basis[0] = b / b_norm;
+  ws.basis[0] = b;
+  space.Scale(1 / b_norm, ws.basis[0]);
   // The Hessenberg matrix, reduced to triangular form by Givens rotations as it grows, and the rotated right-hand side.
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(max_iterations + 1, max_iterations), H_before = H;
-  VectorXd cosine(max_iterations), sine(max_iterations), side = VectorXd::Zero(max_iterations + 1);
+  Eigen::VectorXd cosine(max_iterations), sine(max_iterations), side = Eigen::VectorXd::Zero(max_iterations + 1);
   side[0] = b_norm;
   int k = 0;
   for (result.residual = 1; k < max_iterations && result.residual > tolerance;) {
     precondition(ws.basis[k], ws.preconditioned[k]);
-    VectorXd& w = ws.basis[k + 1];
+    Vector& w = ws.basis[k + 1];
     apply(ws.preconditioned[k], w);
     for (int i = 0; i <= k; ++i) {
-      H(i, k) = dot(w, ws.basis[i]);
-      add(-H(i, k), ws.basis[i], w);
+      H(i, k) = space.Dot(w, ws.basis[i]);
+      space.Add(-H(i, k), ws.basis[i], w);
     }
-    const double norm = std::sqrt(dot(w, w));
+    const double norm = std::sqrt(space.Dot(w, w));
     if (!std::isfinite(norm)) break;
     H_before.col(k) = H.col(k);
     H_before(k + 1, k) = norm;
@@ -91,14 +81,14 @@ GmresResult FlexibleGmres(ThreadTeam& team, const Apply& apply, const Preconditi
     ++k;
     if (norm == 0) break;
     if (k % kRitzInterval == 0 && LeastRealPart(H_before.topLeftCorner(k, k)) < 0) break;
-    w /= norm;
+    space.Scale(1 / norm, w);
   }
   result.iterations = k;
   result.converged = result.residual <= tolerance;
   if (k == 0) return result;
   result.least_eigenvalue = LeastRealPart(H_before.topLeftCorner(k, k));
-  const VectorXd y = H.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(side.head(k));
-  for (int i = 0; i < k; ++i) add(y[i], ws.preconditioned[i], x);
+  const Eigen::VectorXd y = H.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(side.head(k));
+  for (int i = 0; i < k; ++i) space.Add(y[i], ws.preconditioned[i], x);
   return result;
 }
 

@@ -33,7 +33,7 @@ void FloatMatrix::SetValues(const BlockPattern& pattern, const BlockValues& valu
   blocks_.resize(values.size());
   inverse_diagonal_.resize(pattern.rows());
   ForNodes(team, pattern.rows(), [&](std::size_t i) {
-    for (std::int32_t k = pattern.begin[i]; k < pattern.begin[i + 1]; ++k) blocks_[k] = FloatBlock(values[k]);
+    for (std::int32_t k = pattern.begin[i]; k < pattern.begin[i + 1]; ++k) blocks_.Set(k, values[k]);
     const auto n = static_cast<std::int32_t>(i);
     inverse_diagonal_[i] = FloatBlock(PositiveInverse(values[pattern.PlaceOf(n, n)]));
   });

@@ -23,6 +23,24 @@ struct FloatBlock {
   Vec4f TransposedTimes(const Vec4f& x) const { return Vec4f(column[0].dot(x), column[1].dot(x), column[2].dot(x), 0); }
 };
 
+// Blocks of nine numbers each, column by column without gaps: what products read most of.
+class FloatBlocks {
+ public:
+  void resize(std::size_t blocks) { numbers_.resize(9 * blocks + 1); }  // columns are read as four numbers
+  void Set(std::size_t k, const Mat3& block) {
+    for (int i = 0; i < 9; ++i) numbers_[9 * k + i] = static_cast<float>(block.data()[i]);
+  }
+  // sum += block k times x; the fourth component of the sum is meaningless.
+  [[gnu::always_inline]] void AddProduct(std::size_t k, const Vec4f& x, Vec4f& sum) const {
+    using Column = Eigen::Map<const Vec4f>;
+    const float* at = &numbers_[9 * k];
+    sum += Column(at) * x[0] + Column(at + 3) * x[1] + Column(at + 6) * x[2];
+  }
+
+ private:
+  std::vector<float> numbers_;
+};
+
 // The inverse of a symmetric block whose eigenvalues are replaced by their absolute values and bounded away from zero.
 Mat3 PositiveInverse(const Mat3& block);
 
@@ -36,15 +54,17 @@ class FloatMatrix {
   Vec4f RowTimes(std::size_t i, const FloatField& v) const {
     Vec4f sum = Vec4f::Zero();
     for (std::int32_t k = pattern_->begin[i]; k < pattern_->begin[i + 1]; ++k) {
-      sum += blocks_[k] * v[pattern_->column[k]];
+      blocks_.AddProduct(k, v[pattern_->column[k]], sum);
     }
+    sum[3] = 0;
     return sum;
   }
   const FloatBlock& inverse_diagonal(std::size_t i) const { return inverse_diagonal_[i]; }
 
  private:
   const BlockPattern* pattern_ = nullptr;
-  std::vector<FloatBlock> blocks_, inverse_diagonal_;
+  FloatBlocks blocks_;
+  std::vector<FloatBlock> inverse_diagonal_;
 };
 
 }  // namespace fascicle

@@ -25,7 +25,6 @@ double Sum(ThreadTeam& team, std::size_t nodes, const Term& term) {
 MixedPrecisionCg::Result MixedPrecisionCg::Solve(const BlockPattern& pattern, const BlockValues& values,
                                                  const NodalVector& b, double tolerance, int max_iterations,
                                                  ThreadTeam& team, NodalVector& x) {
-  matrix_.SetValues(pattern, values, team);
   x.assign(b.size(), Vec3::Zero());
   Result result;
   const double start = StartFrom(b, team);

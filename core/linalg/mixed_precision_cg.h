@@ -17,7 +17,12 @@ class MixedPrecisionCg {
     bool is_positive = true;  // no direction of non-positive curvature was met
     int iterations = 0;
   };
-  // Starts from x = 0. Components that are isolated in A (IsolatePrescribed) and zero in b stay zero.
+  // Takes the values of a matrix.
+  void SetUp(const BlockPattern& pattern, const BlockValues& values, ThreadTeam& team) {
+    matrix_.SetValues(pattern, values, team);
+  }
+  // Solves with the matrix of the last SetUp, which is given again for residuals. Starts from x = 0. Components that
+  // are isolated in A (IsolatePrescribed) and zero in b stay zero.
   Result Solve(const BlockPattern& pattern, const BlockValues& values, const NodalVector& b, double tolerance,
                int max_iterations, ThreadTeam& team, NodalVector& x);
 

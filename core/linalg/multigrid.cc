@@ -7,25 +7,20 @@
 namespace fascicle {
 namespace {
 
-using Field = FloatField;
-
 // A level with at most this many blocks is factored.
 constexpr std::size_t kCoarsest = 500;
 constexpr std::size_t kMostLevels = 10;
-constexpr int kSmoothing = 3;  // degree of the smoothing polynomials
-// The polynomials damp the part of the spectrum between this multiple of the largest eigenvalue and the eigenvalue
-// itself.
-constexpr float kDamped = 1.0f / 8;
-// Spectra with a ratio of the largest to the least eigenvalue below this need no coarser levels.
-constexpr double kMostSpread = 3000;
+// Matrices whose least eigenvalue, preconditioned by their diagonal blocks, is above this (the largest is about 3) need
+// no coarser levels.
+constexpr double kLeastForSmoothing = 1e-3;
 constexpr int kPowerIterations = 12;
-constexpr float kEigenvalueMargin = 1.15f;
+constexpr double kEigenvalueMargin = 1.15;
 // Added to the coarsest diagonal, relative to it, for rotations that have no stiffness.
 constexpr double kCoarseRegularization = 1e-9;
 
 // A pseudorandom vector, the same every time.
-Field StartVector(std::size_t size) {
-  Field start(size);
+FloatField StartVector(std::size_t size) {
+  FloatField start(size);
   std::uint32_t state = 1;
   for (Vec4f& v : start) {
     for (int c = 0; c < 3; ++c) {
@@ -37,58 +32,34 @@ Field StartVector(std::size_t size) {
   return start;
 }
 
-float SquaredNorm(const Field& v, ThreadTeam& team) {
-  return static_cast<float>(
-      SumOverNodes(team, v.size(), [&](std::size_t n) { return static_cast<double>(v[n].squaredNorm()); }));
+// An upper estimate for the matrix preconditioned by its diagonal blocks, by power iteration.
+double LargestPreconditioned(const SweepMatrix& matrix, ThreadTeam& team) {
+  FloatField v = StartVector(matrix.rows()), w(matrix.rows());
+  const auto length_of = [&](const FloatField& field) {
+    return std::sqrt(
+        SumOverNodes(team, field.size(), [&](std::size_t n) { return static_cast<double>(field[n].squaredNorm()); }));
+  };
+  double length = length_of(v);
+  for (int i = 0; i < kPowerIterations; ++i) {
+    const auto scale = static_cast<float>(1 / length);
+    matrix.Multiply(v, team, w);
+    ForNodes(team, v.size(), [&](std::size_t n) { v[n] = matrix.inverse_diagonal(n) * (scale * w[n]); });
+    length = length_of(v);
+  }
+  return length * kEigenvalueMargin;
+}
+
+NodalVector PositionsOf(const std::vector<RigidBlock>& blocks) {
+  NodalVector positions;
+  for (const RigidBlock& block : blocks) positions.push_back(block.position);
+  return positions;
 }
 
 }  // namespace
 
 struct Multigrid::Level {
-  explicit Level(const BlockPattern& p) : pattern(&p), free(p.rows(), {true, true, true}) {
-    for (Field* field : {&x, &b, &r, &d, &d_next}) field->assign(p.rows(), Vec4f::Zero());
-  }
-
-  // By power iteration.
-  void FindLargestEigenvalue(ThreadTeam& team) {
-    Field v = StartVector(pattern->rows()), w(pattern->rows());
-    double length = std::sqrt(SquaredNorm(v, team));
-    for (int i = 0; i < kPowerIterations; ++i) {
-      const auto scale = static_cast<float>(1 / length);
-      ForNodes(team, v.size(),
-               [&](std::size_t n) { w[n] = matrix.inverse_diagonal(n) * (matrix.RowTimes(n, v) * scale); });
-      std::swap(v, w);
-      length = std::sqrt(SquaredNorm(v, team));
-    }
-    largest_eigenvalue = static_cast<float>(length) * kEigenvalueMargin;
-  }
-
-  // x += q(D^-1 A) D^-1 (b - A x) with a polynomial q; from_zero: x counts as zero, whatever it holds.
-  void Smooth(bool from_zero, ThreadTeam& team) {
-    const std::size_t size = pattern->rows();
-    const float centre = 0.5f * (1 + damped) * largest_eigenvalue, half = 0.5f * (1 - damped) * largest_eigenvalue;
-    const float sigma = centre / half;
-    float rho = 1 / sigma;
-    ForNodes(team, size, [&](std::size_t n) {
-      r[n] = from_zero ? b[n] : Vec4f(b[n] - matrix.RowTimes(n, x));
-      d[n] = (matrix.inverse_diagonal(n) * r[n]) / centre;
-    });
-    for (int k = 0; k < kSmoothing; ++k) {
-      if (k + 1 == kSmoothing) {
-        ForNodes(team, size, [&](std::size_t n) { x[n] = from_zero && k == 0 ? d[n] : Vec4f(x[n] + d[n]); });
-        return;
-      }
-      const float rho_next = 1 / (2 * sigma - rho);
-      const float keep = rho_next * rho, step = 2 * rho_next / half;
-      ForNodes(team, size, [&](std::size_t n) {
-        x[n] = from_zero && k == 0 ? d[n] : Vec4f(x[n] + d[n]);
-        r[n] -= matrix.RowTimes(n, d);
-        d_next[n] = keep * d[n] + step * (matrix.inverse_diagonal(n) * r[n]);
-      });
-      std::swap(d, d_next);
-      rho = rho_next;
-    }
-  }
+  Level(const BlockPattern& p, std::vector<RigidBlock> meaning)
+      : pattern(&p), free(p.rows(), {true, true, true}), blocks(std::move(meaning)), matrix(p, PositionsOf(blocks)) {}
 
   // Isolates components that no free component of the finer level depends on.
   void IsolateUnused(BlockValues& values) {
@@ -105,23 +76,25 @@ struct Multigrid::Level {
   const BlockPattern* pattern;  // owned by the caller or the finer level
   FreeComponents free;
   std::vector<RigidBlock> blocks;
-  FloatMatrix matrix;
-  float largest_eigenvalue = 1;
-  float damped = kDamped;  // part of the spectrum that is damped, see kDamped
-  Field x, b, r, d, d_next;
-  // Interpolation from the next coarser level, where there is one.
+  SweepMatrix matrix;
+  FloatField r, coarse_b, coarse_x;  // scratch
+  // Interpolation from the next coarser level, where there is one. `rows` and `columns` have its float values in the
+  // order of both levels' matrices.
   std::optional<Prolongation> prolongation;
   GalerkinProduct galerkin;
+  BlockPattern rows;
+  TransposedPattern columns;
   std::vector<FloatBlock> interpolation;
   BlockValues coarse_values;
 };
 
 Multigrid::Multigrid(const BlockPattern& pattern, const NodalVector& positions, const FreeComponents& free,
                      std::optional<Prolongation> first) {
-  levels_.push_back(std::make_unique<Level>(pattern));
+  std::vector<RigidBlock> blocks;
+  for (const Vec3& X : positions) blocks.push_back({X, 0});
+  levels_.push_back(std::make_unique<Level>(pattern, std::move(blocks)));
   Level& finest = *levels_.front();
   finest.free = free;
-  for (const Vec3& X : positions) finest.blocks.push_back({X, 0});
   finest.prolongation = std::move(first);
   first_is_given_ = finest.prolongation.has_value();
 }
@@ -129,21 +102,18 @@ Multigrid::Multigrid(const BlockPattern& pattern, const NodalVector& positions, 
 Multigrid::~Multigrid() = default;
 
 bool Multigrid::SetUp(const BlockValues& values, ThreadTeam& team, double least_eigenvalue) {
+  smoothes_only_ = least_eigenvalue >= kLeastForSmoothing;
   const BlockValues* current = &values;
   for (std::size_t l = 0; HasCoarser(l); ++l) {
     Level& level = *levels_[l];
-    level.matrix.SetValues(*level.pattern, *current, team);
-    level.FindLargestEigenvalue(team);
-    if (l == 0) {
-      smoothes_only_ = least_eigenvalue * kMostSpread >= level.largest_eigenvalue;
-      level.damped = smoothes_only_ ? static_cast<float>(least_eigenvalue) / level.largest_eigenvalue : kDamped;
-      if (smoothes_only_) return true;
-    }
-    if (l + 1 == levels_.size()) AddLevel(*current);
+    level.matrix.SetValues(*current, team);
+    if (smoothes_only_) return true;
+    if (l + 1 == levels_.size()) AddLevel(*current, team);
     level.galerkin.Compute(*level.pattern, *current, *level.prolongation, team, level.coarse_values);
     levels_[l + 1]->IsolateUnused(level.coarse_values);
     current = &level.coarse_values;
   }
+  if (levels_.size() == 1) levels_.front()->matrix.SetValues(values, team);
   return FactorCoarsest(*current);
 }
 
@@ -160,7 +130,7 @@ bool Multigrid::HasCoarser(std::size_t l) const {
 }
 
 // Adds a level below the last one, whose values are given.
-void Multigrid::AddLevel(const BlockValues& values) {
+void Multigrid::AddLevel(const BlockValues& values, ThreadTeam& team) {
   Level& level = *levels_.back();
   std::vector<RigidBlock> coarse_blocks;
   if (!level.prolongation) {
@@ -170,7 +140,7 @@ void Multigrid::AddLevel(const BlockValues& values) {
       inverse_diagonal[i] = PositiveInverse(values[level.pattern->PlaceOf(n, n)]);
     }
     level.prolongation = SmoothedAggregation(*level.pattern, values, level.free, level.blocks, inverse_diagonal,
-                                             level.largest_eigenvalue, coarse_blocks);
+                                             LargestPreconditioned(level.matrix, team), coarse_blocks);
   } else {
     // A block of the coarser level has the position of the finer block that depends on it alone.
     coarse_blocks.resize(level.prolongation->coarse);
@@ -179,11 +149,21 @@ void Multigrid::AddLevel(const BlockValues& values) {
       if (rows.begin[i + 1] - rows.begin[i] == 1) coarse_blocks[rows.column[rows.begin[i]]] = level.blocks[i];
     }
   }
-  level.interpolation.clear();
-  for (const Mat3& block : level.prolongation->values) level.interpolation.emplace_back(block);
   level.galerkin = GalerkinProduct(*level.pattern, *level.prolongation);
-  levels_.push_back(std::make_unique<Level>(level.galerkin.pattern()));
-  levels_.back()->blocks = std::move(coarse_blocks);
+  levels_.push_back(std::make_unique<Level>(level.galerkin.pattern(), std::move(coarse_blocks)));
+  const SweepOrder& fine = level.matrix.order();
+  const SweepOrder& coarse = levels_.back()->matrix.order();
+  level.rows = {};
+  level.interpolation.clear();
+  for (const std::int32_t i : fine.row) {
+    const BlockPattern& pattern = level.prolongation->pattern;
+    for (std::int32_t k = pattern.begin[i]; k < pattern.begin[i + 1]; ++k) {
+      level.rows.column.push_back(coarse.place[pattern.column[k]]);
+      level.interpolation.emplace_back(level.prolongation->values[k]);
+    }
+    level.rows.begin.push_back(static_cast<std::int32_t>(level.rows.column.size()));
+  }
+  level.columns = TransposedPattern(level.rows, coarse.row.size());
 }
 
 bool Multigrid::FactorCoarsest(const BlockValues& values) {
@@ -215,53 +195,55 @@ bool Multigrid::FactorCoarsest(const BlockValues& values) {
   return factored.ok;
 }
 
-void Multigrid::Apply(const NodalVector& r, ThreadTeam& team, NodalVector& z) {
-  Level& finest = *levels_.front();
-  ForNodes(team, r.size(), [&](std::size_t n) { finest.b[n] << r[n].cast<float>(), 0; });
-  Cycle(0, team);
+const SweepMatrix& Multigrid::finest() const { return levels_.front()->matrix; }
+
+void Multigrid::Apply(const FloatField& r, ThreadTeam& team, FloatField& z) {
   z.resize(r.size());
-  ForNodes(team, r.size(), [&](std::size_t n) { z[n] = finest.x[n].head<3>().cast<double>(); });
+  Cycle(0, r, team, z);
 }
 
-void Multigrid::Cycle(std::size_t l, ThreadTeam& team) {
+void Multigrid::Cycle(std::size_t l, const FloatField& b, ThreadTeam& team, FloatField& x) {
+  Level& level = *levels_[l];
   if (smoothes_only_) {
-    levels_[l]->Smooth(true, team);
+    level.matrix.SweepFromZero(b, team, x);
+    level.matrix.SweepBackFromSweep(team, x);
     return;
   }
   if (l + 1 == levels_.size()) {
-    SolveCoarsest();
+    SolveCoarsest(b, x);
     return;
   }
-  Level& level = *levels_[l];
-  Level& coarse = *levels_[l + 1];
-  level.Smooth(true, team);
-  ForNodes(team, level.b.size(), [&](std::size_t n) { level.r[n] = level.b[n] - level.matrix.RowTimes(n, level.x); });
-  const TransposedPattern& restriction = level.galerkin.restriction();
-  ForNodes(team, coarse.b.size(), [&](std::size_t n) {
+  level.r.resize(b.size());
+  level.coarse_b.resize(level.prolongation->coarse);
+  level.coarse_x.resize(level.prolongation->coarse);
+  level.matrix.SweepFromZero(b, team, x);
+  level.matrix.ResidualAfterSweep(x, team, level.r);
+  const BlockPattern& restriction = level.columns.pattern;
+  ForNodes(team, level.coarse_b.size(), [&](std::size_t n) {
     Vec4f sum = Vec4f::Zero();
-    for (std::int32_t k = restriction.pattern.begin[n]; k < restriction.pattern.begin[n + 1]; ++k) {
-      sum += level.interpolation[restriction.source[k]].TransposedTimes(level.r[restriction.pattern.column[k]]);
+    for (std::int32_t k = restriction.begin[n]; k < restriction.begin[n + 1]; ++k) {
+      sum += level.interpolation[level.columns.source[k]].TransposedTimes(level.r[restriction.column[k]]);
     }
-    coarse.b[n] = sum;
+    level.coarse_b[n] = sum;
   });
-  Cycle(l + 1, team);
-  const BlockPattern& rows = level.prolongation->pattern;
-  ForNodes(team, level.x.size(), [&](std::size_t n) {
-    for (std::int32_t k = rows.begin[n]; k < rows.begin[n + 1]; ++k) {
-      level.x[n] += level.interpolation[k] * coarse.x[rows.column[k]];
+  Cycle(l + 1, level.coarse_b, team, level.coarse_x);
+  ForNodes(team, x.size(), [&](std::size_t n) {
+    for (std::int32_t k = level.rows.begin[n]; k < level.rows.begin[n + 1]; ++k) {
+      x[n] += level.interpolation[k] * level.coarse_x[level.rows.column[k]];
     }
   });
-  level.Smooth(false, team);
+  level.matrix.SweepBack(b, team, x);
 }
 
-void Multigrid::SolveCoarsest() {
-  Level& level = *levels_.back();
-  for (std::size_t n = 0; n < level.b.size(); ++n) {
-    for (int c = 0; c < 3; ++c) coarsest_side_[3 * n + c] = level.b[n][c];
+void Multigrid::SolveCoarsest(const FloatField& b, FloatField& x) {
+  const std::vector<std::int32_t>& row = levels_.back()->matrix.order().row;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    for (int c = 0; c < 3; ++c) coarsest_side_[3 * row[i] + c] = b[i][c];
   }
   coarsest_.Solve(coarsest_side_);
-  for (std::size_t n = 0; n < level.b.size(); ++n) {
-    for (int c = 0; c < 3; ++c) level.x[n][c] = static_cast<float>(coarsest_side_[3 * n + c]);
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    for (int c = 0; c < 3; ++c) x[i][c] = static_cast<float>(coarsest_side_[3 * row[i] + c]);
+    x[i][3] = 0;
   }
 }
 

@@ -8,7 +8,7 @@
 
 #include "core/linalg/aggregation.h"
 #include "core/linalg/direct_solver.h"
-#include "core/linalg/float_matrix.h"
+#include "core/linalg/sweep_matrix.h"
 
 namespace fascicle {
 
@@ -16,10 +16,11 @@ namespace fascicle {
 //
 // Coarser levels are Galerkin products P^T A P. The caller may give the first interpolation (from the corners of
 // quadratic elements to all of their nodes); all others are found by smoothed aggregation with rigid body modes
-// (aggregation.h). The coarsest level is factored. The smoothers are Chebyshev polynomials of the matrix preconditioned
-// by its 3x3 diagonal blocks [Adams, Brezina, Hu & Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188].
-// They are fixed sequences of products, so the cycle is a symmetric linear operator with the same bits for any number
-// of threads. All levels but the coarsest are in single precision. Not thread-safe.
+// (aggregation.h). The coarsest level is factored. The smoothers are Gauss-Seidel sweeps of 3x3 blocks, forward before
+// and backward after the coarser level, so that the cycle is a symmetric linear operator; it is positive where the
+// coarsest matrix is [Trottenberg, Oosterlee & Schueller 2001, Multigrid, A.2]. The sweeps visit the rows in an order
+// that threads can share (SweepOrder): the same bits for any number of threads. All levels but the coarsest are in
+// single precision. Not thread-safe.
 class Multigrid {
  public:
   // `positions` [m] are those of the finest level's nodes. The pattern must outlive the multigrid.
@@ -37,8 +38,10 @@ class Multigrid {
   // Makes the next SetUp independent of everything before it.
   void ForgetAggregation();
 
+  // The finest level's matrix, whose order the fields of Apply have.
+  const SweepMatrix& finest() const;
   // z = M r; both have the finest level's size.
-  void Apply(const NodalVector& r, ThreadTeam& team, NodalVector& z);
+  void Apply(const FloatField& r, ThreadTeam& team, FloatField& z);
 
   // Sizes of all levels, for messages: "17300 + 2673 blocks".
   std::string Description() const;
@@ -46,10 +49,10 @@ class Multigrid {
  private:
   struct Level;
   bool HasCoarser(std::size_t level) const;
-  void AddLevel(const BlockValues& values);
+  void AddLevel(const BlockValues& values, ThreadTeam& team);
   bool FactorCoarsest(const BlockValues& values);
-  void Cycle(std::size_t level, ThreadTeam& team);
-  void SolveCoarsest();
+  void Cycle(std::size_t level, const FloatField& b, ThreadTeam& team, FloatField& x);
+  void SolveCoarsest(const FloatField& b, FloatField& x);
 
   std::vector<std::unique_ptr<Level>> levels_;
   DirectSolver coarsest_;

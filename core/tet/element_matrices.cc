@@ -81,21 +81,24 @@ void AddPoint(const Mat9& H, const Eigen::Matrix<double, 3, Element::kNodes>& G,
   }
 }
 
-// As the kernels' stiffness, but element by element and with the tangent tangent_at(element, point, F).
+// As the kernels' stiffness, but element by element and with the tangent tangent_at(element, point, F). Points for
+// which it is zero are left out.
 template <class Element, class TangentAt>
-void AddStiffness(const TetModel& model, const NodalVector& x, double projection, const Chunk& chunk,
-                  const ChunkBlocks& blocks, const TangentAt& tangent_at) {
+void AddStiffness(const TetModel& model, const NodalVector& x, const Chunk& chunk, const ChunkBlocks& blocks,
+                  const TangentAt& tangent_at) {
   constexpr int kPairs = Element::kNodes * (Element::kNodes + 1) / 2;
   for (std::size_t e = chunk.tet_begin; e < chunk.tet_end; ++e) {
     const auto values = ValuesOf<Element>(model, e, x);
     std::array<Mat3, kPairs> pairs;
-    pairs.fill(Mat3::Zero());
+    bool is_zero = true;
     for (int q = 0; q < Element::kPoints; ++q) {
-      Mat9 H = tangent_at(e, q, GradientAt<Element>(model, e, values, q));
-      if (projection > 0) H += projection * (NearestPositive(H) - H);
+      const Mat9 H = tangent_at(e, q, GradientAt<Element>(model, e, values, q));
+      if (H.isZero(0)) continue;
+      if (std::exchange(is_zero, false)) pairs.fill(Mat3::Zero());
       AddPoint<Element>(H, ShapeGradients<Element>(model, e, q), model.rest_volume()[Element::kPoints * e + q],
                         pairs.data());
     }
+    if (is_zero) continue;
     const std::size_t slot = e - chunk.tet_begin;
     for (int pair = 0; pair < kPairs; ++pair) {
       const std::size_t at = kPairs * (slot / kBlock) + pair;
@@ -110,24 +113,31 @@ void AddStiffness(const TetModel& model, const NodalVector& x, double projection
 }
 
 template <class Element>
-void AddUntanglingStiffness(const TetModel& model, const NodalVector& x, double projection, const Chunk& chunk,
+void AddUntanglingStiffness(const TetModel& model, const NodalVector& x, const Chunk& chunk,
                             const ChunkBlocks& blocks) {
-  AddStiffness<Element>(model, x, projection, chunk, blocks,
+  AddStiffness<Element>(model, x, chunk, blocks,
                         [](std::size_t, int, const Mat3& F) { return UntanglingLaw::Tangent(F); });
 }
 
-// With the laws of the elements. Kernels do not project tangents, since projections are rare.
+Mat9 ChangeByProjection(const Mat9& H) { return NearestPositive(H) - H; }
+
+// Adds the change by projection. Kernels do not project tangents, since projections are rare.
 template <class Element>
-void AddProjectedStiffness(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
-                           std::span<const double> acting, double projection, const Chunk& chunk,
-                           const ChunkBlocks& blocks) {
+void AddProjection(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
+                   std::span<const double> acting, const Chunk& chunk, const ChunkBlocks& blocks) {
+  if (potential.untangling) {
+    AddStiffness<Element>(model, x, chunk, blocks, [](std::size_t, int, const Mat3& F) {
+      return ChangeByProjection(UntanglingLaw::Tangent(F));
+    });
+    return;
+  }
   const TetGroup& group = model.groups()[chunk.group];
   const TetBody& body = model.bodies()[group.body];
   const auto add = [&]<class Law>(const std::vector<Law>& laws) {
-    AddStiffness<Element>(model, x, projection, chunk, blocks, [&](std::size_t e, int q, const Mat3& F) {
+    AddStiffness<Element>(model, x, chunk, blocks, [&](std::size_t e, int q, const Mat3& F) {
       Mat9 H = PointTangent<Element, Law>(potential, model, body, laws[chunk.law], e, q).At(F);
       AddCofactorTangent(PatchPressure<Element>(model.patches(), acting, e, q), F, H);
-      return H;
+      return ChangeByProjection(H);
     });
   };
   std::visit(add, group.laws);
@@ -136,6 +146,37 @@ void AddProjectedStiffness(const TetModel& model, const IncrementalPotential& po
 void SetBoth(const StiffnessLayout::Target& target, const Mat3& block, BlockValues& values) {
   values[target.high] = block.transpose();
   values[target.low] = block;
+}
+
+// Adds up the blocks of all chunks, to which add(chunk, blocks) adds its elements.
+template <class Add>
+void AssembleBlocks(const TetModel& model, const StiffnessLayout& layout, ThreadTeam& team, ForceWorkspace& workspace,
+                    BlockValues& values, const Add& add) {
+  const std::vector<Chunk>& chunks = model.chunks().chunks;
+  BlockValues& slots = workspace.slot_blocks;
+  slots.resize(layout.slots().size());
+  team.For(chunks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> sums;
+    for (std::size_t c = begin; c < end; ++c) {
+      const Chunk& chunk = chunks[c];
+      const std::span<const StiffnessLayout::Target> targets = layout.TargetsOf(c);
+      sums.assign(9 * targets.size(), 0.0);
+      add(chunk, ChunkBlocks{layout.PlacesOf(chunk.block_begin), layout.TurnedOf(chunk.block_begin), sums.data()});
+      for (std::size_t i = 0; i < targets.size(); ++i) {
+        const Eigen::Map<const Mat3> block(&sums[9 * i]);
+        if (targets[i].low >= 0) {
+          SetBoth(targets[i], block, values);
+        } else {
+          slots[~targets[i].low] = block;
+        }
+      }
+    }
+  });
+  ForNodes(team, layout.shared().size(), [&](std::size_t i) {
+    Mat3 sum = Mat3::Zero();
+    for (std::int32_t k = layout.slot_begin()[i]; k < layout.slot_begin()[i + 1]; ++k) sum += slots[layout.slots()[k]];
+    SetBoth(layout.shared()[i], sum, values);
+  });
 }
 
 }  // namespace
@@ -171,44 +212,23 @@ ElementEvaluation EvaluateElements(const TetModel& model, const IncrementalPoten
 }
 
 void AssembleStiffness(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
-                       std::span<const double> acting, double projection, const StiffnessLayout& layout,
-                       ThreadTeam& team, ForceWorkspace& workspace, BlockValues& values) {
-  const std::vector<Chunk>& chunks = model.chunks().chunks;
-  BlockValues& slots = workspace.slot_blocks;
-  slots.resize(layout.slots().size());
-  team.For(chunks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> sums;
-    for (std::size_t c = begin; c < end; ++c) {
-      const Chunk& chunk = chunks[c];
-      const std::span<const StiffnessLayout::Target> targets = layout.TargetsOf(c);
-      sums.assign(9 * targets.size(), 0.0);
-      const ChunkBlocks blocks{layout.PlacesOf(chunk.block_begin), layout.TurnedOf(chunk.block_begin), sums.data()};
-      if (potential.untangling || projection > 0) {
-        model.VisitElement([&]<class Element>(Element) {
-          if (potential.untangling) {
-            AddUntanglingStiffness<Element>(model, x, projection, chunk, blocks);
-          } else {
-            AddProjectedStiffness<Element>(model, potential, x, acting, projection, chunk, blocks);
-          }
-        });
-      } else {
-        KernelsOf<double>(model, *workspace.kernels)
-            .stiffness(MatrixTaskOf(model, potential, x, acting, chunk), blocks);
-      }
-      for (std::size_t i = 0; i < targets.size(); ++i) {
-        const Eigen::Map<const Mat3> block(&sums[9 * i]);
-        if (targets[i].low >= 0) {
-          SetBoth(targets[i], block, values);
-        } else {
-          slots[~targets[i].low] = block;
-        }
-      }
+                       std::span<const double> acting, const StiffnessLayout& layout, ThreadTeam& team,
+                       ForceWorkspace& workspace, BlockValues& values) {
+  AssembleBlocks(model, layout, team, workspace, values, [&](const Chunk& chunk, const ChunkBlocks& blocks) {
+    if (!potential.untangling) {
+      KernelsOf<double>(model, *workspace.kernels).stiffness(MatrixTaskOf(model, potential, x, acting, chunk), blocks);
+      return;
     }
+    model.VisitElement([&]<class Element>(Element) { AddUntanglingStiffness<Element>(model, x, chunk, blocks); });
   });
-  ForNodes(team, layout.shared().size(), [&](std::size_t i) {
-    Mat3 sum = Mat3::Zero();
-    for (std::int32_t k = layout.slot_begin()[i]; k < layout.slot_begin()[i + 1]; ++k) sum += slots[layout.slots()[k]];
-    SetBoth(layout.shared()[i], sum, values);
+}
+
+void AssembleProjection(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
+                        std::span<const double> acting, const StiffnessLayout& layout, ThreadTeam& team,
+                        ForceWorkspace& workspace, BlockValues& values) {
+  AssembleBlocks(model, layout, team, workspace, values, [&](const Chunk& chunk, const ChunkBlocks& blocks) {
+    model.VisitElement(
+        [&]<class Element>(Element) { AddProjection<Element>(model, potential, x, acting, chunk, blocks); });
   });
 }
 

@@ -22,12 +22,17 @@ ElementEvaluation EvaluateElements(const TetModel& model, const IncrementalPoten
                                    std::span<const double> acting, ThreadTeam& team, ForceWorkspace& workspace,
                                    NodalVector& force);
 
-// Sets the matrix -df/dx of all nodes, on the pattern of the layout, by assembly of the element matrices. `projection`
-// in [0, 1] blends the tangent of every point with its projection to a positive semidefinite one. The untangling law
-// and projections are evaluated element by element.
+// Sets the matrix -df/dx of all nodes, on the pattern of the layout, by assembly of the element matrices. The
+// untangling law is evaluated element by element.
 void AssembleStiffness(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
-                       std::span<const double> acting, double projection, const StiffnessLayout& layout,
-                       ThreadTeam& team, ForceWorkspace& workspace, BlockValues& values);
+                       std::span<const double> acting, const StiffnessLayout& layout, ThreadTeam& team,
+                       ForceWorkspace& workspace, BlockValues& values);
+
+// Sets the change of that matrix when the tangent of every point is replaced by the nearest positive semidefinite one.
+// Elements whose tangents are so already add nothing.
+void AssembleProjection(const TetModel& model, const IncrementalPotential& potential, const NodalVector& x,
+                        std::span<const double> acting, const StiffnessLayout& layout, ThreadTeam& team,
+                        ForceWorkspace& workspace, BlockValues& values);
 
 }  // namespace fascicle
 

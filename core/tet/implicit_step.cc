@@ -12,6 +12,8 @@ namespace {
 
 // After a step with at most this many iterations the next one may be twice as long.
 constexpr int kEasyIterations = 10;
+// Static solutions are extrapolated to at most this multiple of the last step.
+constexpr double kFarthest = 4;
 // A run fails when it needs steps shorter than this part of its fixed step, or else of its duration.
 constexpr double kShortestStep = 0x1p-12;
 // A step whose loads still depend on its positions after this many expansions is too long.
@@ -178,7 +180,13 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
       if (is_alpha) held_load_[n] += scheme.kept[n];
     }
   }
-  const PositionSolve solve = {target, is_static ? nullptr : &continued, step.next, method_.newton_tolerance};
+  PositionSolve solve = {target, step.next, {}};
+  solve.options.tolerance = method_.newton_tolerance;
+  if (!is_static) solve.options.guess = &continued;
+  if (is_static && now.step > 0 && dt <= kFarthest * now.time_step) {
+    solve.options.before = &now.previous_positions;
+    solve.options.ahead = dt / now.time_step;
+  }
   const NewtonResult result =
       is_alpha ? SolveCorrected(solve, now, step, 1 - alpha.force_weight, next) : SolvePositions(solve, next);
 
@@ -229,14 +237,14 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
 // repetitions with falling tolerances suffice. `weight` is that of the forces at the end.
 NewtonResult TetSolver::SolveCorrected(PositionSolve solve, const TetState& now, const StepControls& step,
                                        double weight, TetState& next) {
-  const double tolerance = solve.tolerance;
+  const double tolerance = solve.options.tolerance;
   const NodalVector held = held_load_;
   {
     const StageTimer timer(profile_, "energy correction");
     energy_correction_->Start(now.positions, step.now.activations, step.next.activations, team_);
   }
   correction_.assign(model_.nodes(), Vec3::Zero());
-  solve.tolerance = std::max(tolerance, kFirstTolerance);
+  solve.options.tolerance = std::max(tolerance, kFirstTolerance);
   NewtonResult total;
   for (int k = 0; k < kMostCorrections; ++k) {
     const NewtonResult result = SolvePositions(solve, next);
@@ -247,10 +255,10 @@ NewtonResult TetSolver::SolveCorrected(PositionSolve solve, const TetState& now,
     const double change = std::sqrt(SumOverNodes(
         team_, model_.nodes(), [&](std::size_t n) { return (corrected_[n] - correction_[n]).squaredNorm(); }));
     const bool agrees = change <= std::max(tolerance, kAgreement) * result.force_scale;
-    if (agrees && solve.tolerance == tolerance) return total;
+    if (agrees && solve.options.tolerance == tolerance) return total;
     // What comes next is the last solution, or one with a better correction.
-    solve.tolerance = agrees ? tolerance : std::max(tolerance, kToleranceFactor * solve.tolerance);
-    solve.guess = nullptr;
+    solve.options.tolerance = agrees ? tolerance : std::max(tolerance, kToleranceFactor * solve.options.tolerance);
+    solve.options.guess = nullptr;
     std::swap(correction_, corrected_);
     ForNodes(team_, model_.nodes(), [&](std::size_t n) { held_load_[n] = held[n] + correction_[n] / weight; });
   }
@@ -263,9 +271,7 @@ NewtonResult TetSolver::SolveCorrected(PositionSolve solve, const TetState& now,
 // Newton's line search has nothing to decrease but that of its expansion.
 NewtonResult TetSolver::SolvePositions(const PositionSolve& solve, TetState& next) {
   const StageTimer timer(profile_, "Newton");
-  NewtonOptions options;
-  options.tolerance = solve.tolerance;
-  options.guess = solve.guess;
+  NewtonOptions options = solve.options;
   potential_.load = &held_load_;
   if (model_.position_loads().empty()) {
     return newton_->Solve(potential_, solve.target, options, next.positions, next.pressures);
@@ -280,7 +286,7 @@ NewtonResult TetSolver::SolvePositions(const PositionSolve& solve, TetState& nex
     const NewtonResult result = newton_->Solve(potential_, solve.target, options, next.positions, next.pressures);
     potential_.load = &held_load_;
     potential_.expansion = nullptr;
-    options.guess = nullptr;
+    options.guess = options.before = nullptr;
     AddTo(total, result);
     if (result.end != NewtonResult::End::kConverged) return total;
     const double error = ErrorOf(expansion, load, solve.controls, next.positions);

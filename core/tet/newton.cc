@@ -7,9 +7,18 @@
 namespace fascicle {
 namespace {
 
+// Bounds for the tolerance of iterative linear solves. Between them it is the gain that the next step will have if
+// Newton's method converges quadratically, or that of a step with a kept matrix [Eisenstat & Walker 1996, Choosing the
+// forcing terms in an inexact Newton method, SIAM J. Sci. Comput. 17, choice 2].
+constexpr double kMostForcing = 0.05, kLeastForcing = 0.01;
 // Sufficient decrease [Nocedal & Wright 2006, 3.1].
 constexpr double kArmijo = 1e-4;
 constexpr double kShortestPart = 1.0 / 1024;
+// The matrix is kept for the next step where a step has reduced the residual to this part. Near the solution, where
+// Newton's method converges quadratically, a step with the matrix of the last point reduces it to about twice this.
+constexpr double kGainOfChord = 0.1;
+// A step with a kept matrix must reduce the residual to this part.
+constexpr double kLeastGainOfChord = 0.5;
 // Smallest part of a projection that is worth another factorization.
 constexpr double kLeastProjection = 1.0 / 16;
 // Smallest rho of the augmented Lagrangian, relative to the patch's modulus, where the Lagrangian falls without
@@ -39,7 +48,8 @@ NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const No
   NewtonResult result;
   pressure.resize(model_.patches().size());
   is_evaluated_ = false;
-  if (options.guess != nullptr) StartNearer(potential, *options.guess, pressure, x);
+  if (options.guess != nullptr) StartNearer(potential, *options.guess, pressure, x, pressure);
+  if (options.before != nullptr) Extrapolate(potential, *options.before, options.ahead, x, pressure);
   system_.StartStep();
   const NodalVector x_start = x;
   const std::vector<double> pressure_start = pressure;
@@ -63,23 +73,45 @@ NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const No
   return result;
 }
 
+void NewtonSolver::Extrapolate(const IncrementalPotential& potential, const NodalVector& before, double ahead,
+                               NodalVector& x, std::vector<double>& pressure) {
+  NodalVector guess(x.size());
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    // Prescribed components have their own way.
+    const Vec3 free = model_.mass()[n] * model_.inverse_mass()[n];
+    guess[n] = x[n] + ahead * free.cwiseProduct(x[n] - before[n]);
+  }
+  std::vector<double> pressure_guess = pressure;
+  system_.Evaluate(potential, before, pressure, team_, force_);
+  for (std::size_t n = 0; n < pressure.size(); ++n) {
+    pressure_guess[n] += ahead * (pressure[n] - PatchEnergy{model_.patches().modulus[n]}.Pressure(system_.ratios()[n]));
+  }
+  StartNearer(potential, guess, pressure_guess, x, pressure);
+}
+
+// Replaces the start by a guess if that has a smaller force.
 void NewtonSolver::StartNearer(const IncrementalPotential& potential, const NodalVector& guess,
-                               std::span<const double> pressure, NodalVector& x) {
-  const auto force_at = [&](const NodalVector& at) {
-    now_ = system_.Evaluate(potential, at, pressure, team_, force_);
+                               const std::vector<double>& pressure_guess, NodalVector& x,
+                               std::vector<double>& pressure) {
+  const auto force_at = [&](const NodalVector& at, std::span<const double> with) {
+    now_ = system_.Evaluate(potential, at, with, team_, force_);
     NewtonResult result;
-    return now_.valid ? RelativeForce(result) * now_.force_scale : std::numeric_limits<double>::infinity();
+    return now_.valid ? RelativeForce(now_, force_, result) * now_.force_scale
+                      : std::numeric_limits<double>::infinity();
   };
-  const double here = force_at(x);
-  is_evaluated_ = force_at(guess) < here;
-  if (is_evaluated_) x = guess;
+  const double here = force_at(x, pressure);
+  is_evaluated_ = force_at(guess, pressure_guess) < here;
+  if (!is_evaluated_) return;
+  x = guess;
+  pressure = pressure_guess;
 }
 
 void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVector& target,
                            const NewtonOptions& options, NodalVector& x, std::vector<double>& pressure,
                            NewtonResult& result) {
   result.end = NewtonResult::End::kNotConverged;
-  double projection = 0, norm_before = 0;
+  double projection = 0, residual_before = 0;
+  bool keeps_matrix = false;  // whether that of the last step suits the next one
   for (int iteration = 0;; ++iteration) {
     const bool prescribed_move = FindRemaining(target, x);
     if (!is_evaluated_) now_ = system_.Evaluate(potential, x, pressure, team_, force_);
@@ -88,21 +120,28 @@ void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVec
       result.end = NewtonResult::End::kInvalid;
       return;
     }
-    const double norm = RelativeForce(result);
-    if (!prescribed_move && norm <= options.tolerance && PressuresAgree(pressure, options.tolerance)) {
+    const double residual = std::max(RelativeForce(now_, force_, result), PressureMiss(pressure, now_.force_scale));
+    if (!prescribed_move && residual <= options.tolerance) {
       result.end = NewtonResult::End::kConverged;
       return;
     }
     if (iteration == options.max_iterations) return;
-    ChooseForcing(norm, norm_before, options.tolerance);
-    norm_before = norm;
+    const double gain = residual_before > 0 ? residual / residual_before : 1;
+    const double useful = 0.1 * options.tolerance / residual;
+    residual_before = residual;
     ++result.iterations;
+    if (keeps_matrix && gain <= kGainOfChord) {
+      forcing_ = std::max(useful, std::clamp(gain, kLeastForcing, kMostForcing));
+      if (TakeChordStep(potential, residual, x, pressure)) continue;
+    }
+    forcing_ = std::max(useful, std::clamp(gain * gain, kLeastForcing, kMostForcing));
     double part = 0;
     for (bool same_point = false;; same_point = true) {
       part = TakeStep(potential, projection, same_point, prescribed_move, x, pressure);
       if (part > 0 || projection == 1) break;
       projection = std::min(1.0, std::max(kLeastProjection, 4 * projection));
     }
+    keeps_matrix = part == 1 && projection == 0 && !prescribed_move;
     projection = projection > kLeastProjection ? projection / 4 : 0;
     if (part == 1) PlacePrescribed(target, x);
     if (part == 0) {
@@ -110,6 +149,29 @@ void NewtonSolver::Iterate(const IncrementalPotential& potential, const NodalVec
       return;
     }
   }
+}
+
+// Takes a whole step with the last matrix if that reduces the residual enough; otherwise leaves everything as it was.
+bool NewtonSolver::TakeChordStep(const IncrementalPotential& potential, double residual, NodalVector& x,
+                                 std::vector<double>& pressure) {
+  if (!system_.FindChordStep(potential, pressure, forcing_, force_, team_, dx_, dp_)) return false;
+  pressure_ahead_.resize(pressure.size());
+  for (std::size_t n = 0; n < pressure.size(); ++n) pressure_ahead_[n] = pressure[n] + dp_[n];
+  Move(x, 1);
+  trial_now_ = system_.Evaluate(potential, trial_, pressure_ahead_, team_, trial_force_);
+  NewtonResult trial;
+  if (!trial_now_.valid ||
+      !(std::max(RelativeForce(trial_now_, trial_force_, trial),
+                 PressureMiss(pressure_ahead_, trial_now_.force_scale)) <= kLeastGainOfChord * residual)) {
+    now_ = system_.Evaluate(potential, x, pressure, team_, force_);
+    return false;
+  }
+  std::swap(x, trial_);
+  std::swap(pressure, pressure_ahead_);
+  std::swap(force_, trial_force_);
+  now_ = trial_now_;
+  is_evaluated_ = true;
+  return true;
 }
 
 // Moves prescribed components to their targets and gives all elements positive volume by projected Newton on
@@ -130,8 +192,9 @@ bool NewtonSolver::Untangle(const NodalVector& target, NodalVector& x, NewtonRes
   for (int i = 0; i < kMaxUntangling; ++i) {
     potential.inertia_centre = x;
     const NewtonSystem::Evaluation now = system_.Evaluate(potential, x, no_pressure, team_, force_);
-    now_ = now;
-    if (RelativeForce(result) < (now.smallest_ratio >= kUntangled ? kUntangledForce : kUntanglingTolerance)) break;
+    if (RelativeForce(now, force_, result) <
+        (now.smallest_ratio >= kUntangled ? kUntangledForce : kUntanglingTolerance))
+      break;
     ++result.iterations;
     if (!system_.FindStep(potential, x, no_pressure, {.projection = 1}, force_, remaining_, team_, dx_, dp_)) {
       return false;
@@ -213,10 +276,8 @@ double NewtonSolver::LineSearch(const IncrementalPotential& potential, const Nod
   double augmentation = 0, slope = 0;
   if (!prescribed_move) {
     // Slope of the Lagrangian, with p' in place of p in its force, and slope of the augmentation for rho = k.
-    if (!patches.empty()) system_.Evaluate(potential, x, pressure_ahead_, team_, trial_force_);
-    const NodalVector& force = patches.empty() ? force_ : trial_force_;
-    double lagrangian = 0, volume = 0;
-    for (std::size_t n = 0; n < x.size(); ++n) lagrangian -= force[n].dot(dx_[n]);
+    double lagrangian = system_.WorkOfPressures(dx_, dp_, team_) - Dot(team_, force_, dx_);
+    double volume = 0;
     for (std::size_t n = 0; n < patches.size(); ++n) {
       const double change = ratio_ahead_[n] - ratio_[n];
       volume -= patches.rest_volume[n] * patches.modulus[n] * change * change;
@@ -282,32 +343,24 @@ void NewtonSolver::PlacePrescribed(const NodalVector& target, NodalVector& x) co
 
 // Norm of the force on unknown components, as far as it exceeds its rounding error on each node, relative to that of
 // all element forces.
-double NewtonSolver::RelativeForce(NewtonResult& result) const {
+double NewtonSolver::RelativeForce(const NewtonSystem::Evaluation& at, const NodalVector& force,
+                                   NewtonResult& result) const {
   double squares = 0, largest = 0;
-  for (std::size_t n = 0; n < force_.size(); ++n) {
-    const Vec3 free = (model_.mass()[n] * model_.inverse_mass()[n]).cwiseProduct(force_[n]);
+  for (std::size_t n = 0; n < force.size(); ++n) {
+    const Vec3 free = (model_.mass()[n] * model_.inverse_mass()[n]).cwiseProduct(force[n]);
     const double excess = std::max(0.0, free.norm() - system_.force_rounding()[n]);
     squares += excess * excess;
     if (excess <= largest) continue;
     largest = excess;
     result.node = n;
   }
-  result.force_scale = now_.force_scale;
-  result.residual = std::max(0.0, std::sqrt(squares) - now_.rounding) / now_.force_scale;
+  result.force_scale = at.force_scale;
+  result.residual = std::max(0.0, std::sqrt(squares) - at.rounding) / at.force_scale;
   return result.residual;
 }
 
-// Tolerance of iterative linear solves, chosen by the progress of Newton's method [Eisenstat & Walker 1996, Choosing
-// the forcing terms in an inexact Newton method, SIAM J. Sci. Comput. 17, choice 2].
-void NewtonSolver::ChooseForcing(double residual, double residual_before, double tolerance) {
-  constexpr double kGamma = 0.1, kMost = 0.01, kLeast = 1e-6;
-  const double gain = residual_before > 0 ? residual / residual_before : 1;
-  const double useful = residual > 0 ? 0.1 * tolerance / residual : kMost;
-  forcing_ = std::min(kMost, std::max({kGamma * gain * gain, useful, kLeast}));
-}
-
-// Whether p equals U'(theta), measured by the forces that the difference causes.
-bool NewtonSolver::PressuresAgree(std::span<const double> pressure, double tolerance) const {
+// How far p differs from U'(theta) at the last evaluated positions, measured by the forces that the difference causes.
+double NewtonSolver::PressureMiss(std::span<const double> pressure, double force_scale) const {
   const VolumePatches& patches = model_.patches();
   double squares = 0;
   for (std::size_t n = 0; n < patches.size(); ++n) {
@@ -315,7 +368,7 @@ bool NewtonSolver::PressuresAgree(std::span<const double> pressure, double toler
     const double miss = area * (pressure[n] - PatchEnergy{patches.modulus[n]}.Pressure(system_.ratios()[n]));
     squares += miss * miss;
   }
-  return std::sqrt(squares) <= tolerance * now_.force_scale;
+  return std::sqrt(squares) / force_scale;
 }
 
 }  // namespace fascicle

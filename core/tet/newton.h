@@ -11,8 +11,11 @@ struct NewtonOptions {
   // For the force beyond its rounding error on each node, relative to the norm of all element forces.
   double tolerance = 1e-8;
   int max_iterations = 50;
-  // A start in place of x, taken if it is valid and has a smaller force; may be null.
+  // Starts in place of x are taken if they are valid and have a smaller force. May be null:
   const NodalVector* guess = nullptr;
+  // The solution before x. The start is extrapolated from both, pressures included, to `ahead` times their distance.
+  const NodalVector* before = nullptr;
+  double ahead = 0;
 };
 
 struct NewtonResult {
@@ -47,10 +50,14 @@ class NewtonSolver {
                      NodalVector& x, std::vector<double>& pressure);
 
  private:
-  void StartNearer(const IncrementalPotential& potential, const NodalVector& guess, std::span<const double> pressure,
-                   NodalVector& x);
+  void Extrapolate(const IncrementalPotential& potential, const NodalVector& before, double ahead, NodalVector& x,
+                   std::vector<double>& pressure);
+  void StartNearer(const IncrementalPotential& potential, const NodalVector& guess,
+                   const std::vector<double>& pressure_guess, NodalVector& x, std::vector<double>& pressure);
   double TakeStep(const IncrementalPotential& potential, double projection, bool same_point, bool prescribed_move,
                   NodalVector& x, std::vector<double>& pressure);
+  bool TakeChordStep(const IncrementalPotential& potential, double residual, NodalVector& x,
+                     std::vector<double>& pressure);
   bool Untangle(const NodalVector& target, NodalVector& x, NewtonResult& result);
   void Iterate(const IncrementalPotential& potential, const NodalVector& target, const NewtonOptions& options,
                NodalVector& x, std::vector<double>& pressure, NewtonResult& result);
@@ -61,9 +68,8 @@ class NewtonSolver {
   double PatchMerit(std::span<const double> ratio, double augmentation) const;
   double SlopeAt(double augmentation) const;
   bool FindRemaining(const NodalVector& target, const NodalVector& x);
-  double RelativeForce(NewtonResult& result) const;
-  void ChooseForcing(double residual, double residual_before, double tolerance);
-  bool PressuresAgree(std::span<const double> pressure, double tolerance) const;
+  double RelativeForce(const NewtonSystem::Evaluation& at, const NodalVector& force, NewtonResult& result) const;
+  double PressureMiss(std::span<const double> pressure, double force_scale) const;
 
   const TetModel& model_;
   ThreadTeam& team_;

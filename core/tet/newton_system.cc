@@ -186,24 +186,50 @@ bool NewtonSystem::FindStep(const IncrementalPotential& potential, const NodalVe
   return true;
 }
 
+bool NewtonSystem::FindChordStep(const IncrementalPotential& potential, std::span<const double> pressure,
+                                 double tolerance, const NodalVector& force, ThreadTeam& team, NodalVector& dx,
+                                 std::vector<double>& dp) {
+  side_.assign(model_.nodes(), Vec3::Zero());
+  volume_side_.assign(model_.patches().size(), 0.0);
+  SetSide(potential, pressure, force, team);
+  dp.resize(model_.patches().size());
+  return Solve(tolerance, team, dx, dp);
+}
+
+double NewtonSystem::WorkOfPressures(const NodalVector& dx, std::span<const double> dp, ThreadTeam& team) const {
+  const SaddleMatrix& matrix = assembly_.matrix();
+  return team.Sum(dp.size(), [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t n = begin; n < end; ++n) sum += dp[n] * matrix.VolumeOf(n, dx);
+    return sum;
+  });
+}
+
 // Assembles the matrix and the right-hand side with exact tangents.
 void NewtonSystem::Assemble(const IncrementalPotential& potential, const NodalVector& x,
                             std::span<const double> pressure, const NodalVector& force, const NodalVector& prescribed,
                             ThreadTeam& team) {
   const StageTimer timer(profile_, "assembly");
-  const VolumePatches& patches = model_.patches();
   Smooth(potential, pressure);
   assembly_.Assemble(potential, x, acting_, forces_.ratio, team, forces_);
   projection_ = 0;
-  has_projected_ = false;
+  has_projected_ = direct_is_current_ = iterative_is_current_ = false;
   SaddleMatrix& matrix = assembly_.matrix();
-  // The right-hand side after subtracting the prescribed change.
   side_.assign(model_.nodes(), Vec3::Zero());
-  volume_side_.assign(patches.size(), 0.0);
+  volume_side_.assign(matrix.patches(), 0.0);
   if (std::any_of(prescribed.begin(), prescribed.end(), [](const Vec3& d) { return d != Vec3::Zero(); })) {
-    const std::vector<double> no_pressure(patches.size(), 0.0);
+    const std::vector<double> no_pressure(matrix.patches(), 0.0);
     matrix.Multiply(prescribed, no_pressure, team, side_, volume_side_);
   }
+  SetSide(potential, pressure, force, team);
+  matrix.IsolatePrescribed(team);
+}
+
+// Sets the right-hand side, from which it subtracts what it was: the product of the matrix with the prescribed change.
+void NewtonSystem::SetSide(const IncrementalPotential& potential, std::span<const double> pressure,
+                           const NodalVector& force, ThreadTeam& team) {
+  const VolumePatches& patches = model_.patches();
+  const SaddleMatrix& matrix = assembly_.matrix();
   ForNodes(team, model_.nodes(), [&](std::size_t n) {
     for (int c = 0; c < 3; ++c) side_[n][c] = matrix.free[n][c] ? force[n][c] - side_[n][c] : 0;
   });
@@ -211,7 +237,6 @@ void NewtonSystem::Assemble(const IncrementalPotential& potential, const NodalVe
     const double law = PatchEnergy{patches.modulus[n]}.Pressure(forces_.ratio[n]);
     volume_side_[n] = potential.untangling ? 0 : matrix.C[n] * (pressure[n] - law) - volume_side_[n];
   }
-  matrix.IsolatePrescribed(team);
 }
 
 // Changes the projected part of the matrix.
@@ -225,6 +250,7 @@ void NewtonSystem::Project(const IncrementalPotential& potential, const NodalVec
     Multiply(matrix.pattern, whole, prescribed, team, projected_side_);
     has_projected_ = true;
   }
+  direct_is_current_ = iterative_is_current_ = false;
   const double change = projection - projection_;
   ForNodes(team, model_.nodes(), [&](std::size_t row) {
     for (int c = 0; c < 3; ++c) {
@@ -246,6 +272,11 @@ bool NewtonSystem::Solve(double tolerance, ThreadTeam& team, NodalVector& dx, st
   const SaddleMatrix& matrix = assembly_.matrix();
   if (is_iterative_) {
     if (!iterative_) iterative_ = std::make_unique<IterativeSaddleSolver>(model_, matrix);
+    if (!iterative_is_current_) {
+      const StageTimer timer(profile_, "preconditioner");
+      iterative_->SetUp(matrix, team);
+      iterative_is_current_ = true;
+    }
     const StageTimer timer(profile_, "iterative solve");
     const auto result = iterative_->Solve(matrix, side_, volume_side_, tolerance, team, dx, dp);
     ++solves_.iterative;
@@ -258,7 +289,8 @@ bool NewtonSystem::Solve(double tolerance, ThreadTeam& team, NodalVector& dx, st
   const StageTimer timer(profile_, "direct solve");
   ++solves_.direct;
   if (!direct_) direct_ = std::make_unique<DirectSaddleSolver>(matrix);
-  if (!direct_->Factor(matrix)) return false;
+  if (!direct_is_current_ && !direct_->Factor(matrix)) return false;
+  direct_is_current_ = true;
   direct_->Solve(side_, volume_side_, dx, dp);
   return true;
 }

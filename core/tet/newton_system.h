@@ -56,6 +56,14 @@ class NewtonSystem {
                 const StepOptions& options, const NodalVector& force, const NodalVector& prescribed, ThreadTeam& team,
                 NodalVector& dx, std::vector<double>& dp);
 
+  // A step with the matrix of the last FindStep, which was successful and for another x: a chord step, without assembly
+  // and set-up. Prescribed components stay. False if an iterative solve fails.
+  bool FindChordStep(const IncrementalPotential& potential, std::span<const double> pressure, double tolerance,
+                     const NodalVector& force, ThreadTeam& team, NodalVector& dx, std::vector<double>& dp);
+
+  // dp . B dx: the work of the change of pressures, by the matrix of the last FindStep [J].
+  double WorkOfPressures(const NodalVector& dx, std::span<const double> dp, ThreadTeam& team) const;
+
   // Call before the first FindStep of a time step. Discards everything from earlier steps, so that a run resumed from a
   // checkpoint has the same bits.
   void StartStep();
@@ -86,12 +94,15 @@ class NewtonSystem {
   NodalVector expansion_force_;  // of LoadExpansion [N]
   void Assemble(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
                 const NodalVector& force, const NodalVector& prescribed, ThreadTeam& team);
+  void SetSide(const IncrementalPotential& potential, std::span<const double> pressure, const NodalVector& force,
+               ThreadTeam& team);
   void Project(const IncrementalPotential& potential, const NodalVector& x, double projection,
                const NodalVector& prescribed, ThreadTeam& team);
   bool Solve(double tolerance, ThreadTeam& team, NodalVector& dx, std::vector<double>& dp);
 
-  double projection_ = 0;              // degree of projection of the current matrix
-  bool has_projected_ = false;         // whether the projection at this point is assembled
+  bool direct_is_current_ = false, iterative_is_current_ = false;  // whether the solvers have taken the matrix
+  double projection_ = 0;                                          // degree of projection of the current matrix
+  bool has_projected_ = false;                                     // whether the projection at this point is assembled
   NodalVector side_, projected_side_;  // right-hand side, and the change by complete projection [N]
   std::vector<double> volume_side_;    // [m^3]
   LinearSolves solves_;

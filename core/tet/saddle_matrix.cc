@@ -17,13 +17,7 @@ void SaddleMatrix::Multiply(const NodalVector& dx, std::span<const double> dp, T
   fascicle::Multiply(pattern, A, dx, team, force);
   AddPressureForce(dp, 1, team, force);
   team.For(patches(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      double sum = 0;
-      for (std::int32_t k = volume_pattern.begin[n]; k < volume_pattern.begin[n + 1]; ++k) {
-        sum += B[k].dot(dx[volume_pattern.column[k]]);
-      }
-      volume[n] = sum - C[n] * dp[n];
-    }
+    for (std::size_t n = begin; n < end; ++n) volume[n] = VolumeOf(n, dx) - C[n] * dp[n];
   });
 }
 
@@ -145,7 +139,7 @@ void SaddleAssembly::FindSmoothedPattern() {
 void SaddleAssembly::Assemble(const IncrementalPotential& potential, const NodalVector& x,
                               std::span<const double> acting, std::span<const double> ratio, ThreadTeam& team,
                               ForceWorkspace& workspace) {
-  AssembleStiffness(model_, potential, x, acting, 0, *layout_, team, workspace, matrix_.A);
+  AssembleStiffness(model_, potential, x, acting, *layout_, team, workspace, matrix_.A);
   model_.VisitElement([&]<class Element>(Element) { AssembleVolumes<Element>(x, team); });
   SmoothVolumes(team);
   const auto diagonal = [&](std::size_t n) -> Mat3& {
@@ -177,14 +171,8 @@ void SaddleAssembly::Assemble(const IncrementalPotential& potential, const Nodal
 
 void SaddleAssembly::AssembleProjection(const IncrementalPotential& potential, const NodalVector& x,
                                         std::span<const double> acting, ThreadTeam& team, ForceWorkspace& workspace) {
-  BlockValues exact(matrix_.pattern.blocks());
   projection_.resize(matrix_.pattern.blocks());
-  AssembleStiffness(model_, potential, x, acting, 0, *layout_, team, workspace, exact);
-  AssembleStiffness(model_, potential, x, acting, 1, *layout_, team, workspace, projection_);
-  ForNodes(team, matrix_.nodes(), [&](std::size_t row) {
-    for (std::int32_t k = matrix_.pattern.begin[row]; k < matrix_.pattern.begin[row + 1]; ++k)
-      projection_[k] -= exact[k];
-  });
+  fascicle::AssembleProjection(model_, potential, x, acting, *layout_, team, workspace, projection_);
 }
 
 // B before smoothing, row by row.

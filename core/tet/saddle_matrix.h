@@ -34,6 +34,14 @@ struct SaddleMatrix {
   // force = A dx + B^T dp, volume = B dx - C dp.
   void Multiply(const NodalVector& dx, std::span<const double> dp, ThreadTeam& team, NodalVector& force,
                 std::span<double> volume) const;
+  // B dx of patch p.
+  double VolumeOf(std::size_t p, const NodalVector& dx) const {
+    double sum = 0;
+    for (std::int32_t k = volume_pattern.begin[p]; k < volume_pattern.begin[p + 1]; ++k) {
+      sum += B[k].dot(dx[volume_pattern.column[k]]);
+    }
+    return sum;
+  }
   // force += scale B^T dp.
   void AddPressureForce(std::span<const double> dp, double scale, ThreadTeam& team, NodalVector& force) const;
   void IsolatePrescribed(ThreadTeam& team);

@@ -8,12 +8,18 @@ namespace fascicle {
 namespace {
 
 constexpr std::int32_t kNone = -1;
-constexpr double kSchurScale = 4;
 constexpr int kMaxIterations = 100;
 // Where inertia keeps the eigenvalues above this fraction of the largest (about 3), coarse levels cost more than they
 // save.
 constexpr double kLeastForCg = 1e-3;
 constexpr int kMaxSaddleIterations = 1000;
+// Reduction of the residual for which one solve in single precision aims.
+constexpr double kGain = 1e-4;
+// How far the residual in double precision may exceed the tolerance. A refinement that reduces it by less than
+// kLeastGain has failed.
+constexpr double kSlack = 1.1, kLeastGain = 0.5;
+// The least reduction that is worth a refinement.
+constexpr double kLeastPass = 0.1;
 
 // Interpolation from the corners of quadratic elements to all of their nodes, along straight edges; nothing for other
 // elements.
@@ -27,6 +33,7 @@ std::optional<Prolongation> FromCorners(const TetModel& model, const FreeCompone
   }
   std::vector<std::int32_t> coarse_of(model.nodes(), kNone);
   Prolongation result;
+  result.is_diagonal = true;
   for (std::size_t n = 0; n < model.nodes(); ++n) {
     if (ends[n][1] == kNone) coarse_of[n] = static_cast<std::int32_t>(result.coarse++);
   }
@@ -127,41 +134,66 @@ void DirectSaddleSolver::Solve(const NodalVector& force, std::span<const double>
 }
 
 IterativeSaddleSolver::IterativeSaddleSolver(const TetModel& model, const SaddleMatrix& matrix)
-    : multigrid_(matrix.pattern, model.rest_positions(), matrix.free, FromCorners(model, matrix.free)) {}
+    : multigrid_(matrix.pattern, model.rest_positions(), matrix.free, FromCorners(model, matrix.free)),
+      saddle_(matrix, multigrid_.finest().order()) {}
+
+bool IterativeSaddleSolver::SuitsCg(const SaddleMatrix& matrix) {
+  return matrix.patches() == 0 && matrix.least_eigenvalue >= kLeastForCg;
+}
+
+void IterativeSaddleSolver::SetUp(const SaddleMatrix& matrix, ThreadTeam& team) {
+  if (SuitsCg(matrix)) {
+    cg_.SetUp(matrix.pattern, matrix.A, team);
+    return;
+  }
+  // Coarse levels pay even where inertia bounds the spectrum: smoothing alone takes eight times as many iterations.
+  is_set_up_ = multigrid_.SetUp(matrix.A, team);
+  saddle_.SetValues(matrix, team);
+}
 
 IterativeSaddleSolver::Result IterativeSaddleSolver::Solve(const SaddleMatrix& matrix, const NodalVector& force,
                                                            std::span<const double> volume, double tolerance,
                                                            ThreadTeam& team, NodalVector& dx, std::span<double> dp) {
   dx.assign(force.size(), Vec3::Zero());
   std::fill(dp.begin(), dp.end(), 0.0);
-  if (matrix.patches() == 0 && matrix.least_eigenvalue >= kLeastForCg) {
-    return SolveByCg(matrix, force, tolerance, team, dx);
+  if (SuitsCg(matrix)) return SolveByCg(matrix, force, tolerance, team, dx);
+  if (!is_set_up_) return {};
+  Result result;
+  result.is_minimum = true;
+  const double start = saddle_.NormOf(force, volume, team);
+  if (!std::isfinite(start)) return {};
+  residual_ = force;
+  volume_residual_.assign(volume.begin(), volume.end());
+  for (double norm = start; norm > kSlack * tolerance * start;) {
+    saddle_.FromDouble(residual_, volume_residual_, 1 / norm, team, side_);
+    const double goal = std::clamp(tolerance * start / norm, kGain, kLeastPass);
+    const GmresResult pass = Iterate(goal, kMaxIterations - result.iterations, team);
+    result.iterations += pass.iterations;
+    result.is_minimum &= pass.least_eigenvalue >= 0;
+    if (!pass.converged || !result.is_minimum) return result;
+    saddle_.AddTo(dx, dp, norm, team, solution_);
+    matrix.Multiply(dx, dp, team, residual_, volume_residual_);
+    ForNodes(team, dx.size(), [&](std::size_t n) { residual_[n] = force[n] - residual_[n]; });
+    for (std::size_t n = 0; n < dp.size(); ++n) volume_residual_[n] = volume[n] - volume_residual_[n];
+    const double left = saddle_.NormOf(residual_, volume_residual_, team);
+    if (!(left < kLeastGain * norm)) return result;
+    norm = left;
   }
-  // Coarse levels pay even where inertia bounds the spectrum: smoothing alone takes eight times as many iterations.
-  if (!multigrid_.SetUp(matrix.A, team)) return {};
-  SetScales(matrix);
-  x_.resize(matrix.nodes());
-  p_.resize(matrix.patches());
-  volume_.resize(matrix.patches());
-  Join(force, volume, true, team, joint_side_);
-  const auto apply = [&](const Eigen::VectorXd& v, Eigen::VectorXd& product) {
-    Split(v, true, team);
-    matrix.Multiply(x_, p_, team, product_, volume_);
-    Join(product_, volume_, true, team, product);
+  result.ok = true;
+  return result;
+}
+
+// Solves for side_ in single precision.
+GmresResult IterativeSaddleSolver::Iterate(double tolerance, int max_iterations, ThreadTeam& team) {
+  const SaddleSpace space{team, side_.x.size(), side_.p.size()};
+  const auto apply = [&](const SaddleField& z, SaddleField& product) {
+    saddle_.Multiply(multigrid_.finest(), z, team, product);
   };
-  const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-    Split(r, false, team);
-    for (std::size_t n = 0; n < p_.size(); ++n) p_[n] /= -schur_[n];
-    matrix.AddPressureForce(p_, -1, team, x_);
-    multigrid_.Apply(x_, team, product_);
-    Join(product_, p_, false, team, z);
+  const auto precondition = [&](const SaddleField& r, SaddleField& z) {
+    saddle_.EliminatePressure(r, team, z.p, force_);
+    multigrid_.Apply(force_, team, z.x);
   };
-  const GmresResult result =
-      FlexibleGmres(team, apply, precondition, joint_side_, tolerance, kMaxIterations, joint_solution_, gmres_);
-  Split(joint_solution_, true, team);
-  dx = x_;
-  std::copy(p_.begin(), p_.end(), dp.begin());
-  return {result.converged, result.least_eigenvalue >= 0, result.iterations};
+  return FlexibleGmres(space, apply, precondition, side_, tolerance, max_iterations, solution_, gmres_);
 }
 
 IterativeSaddleSolver::Result IterativeSaddleSolver::SolveByCg(const SaddleMatrix& matrix, const NodalVector& force,
@@ -169,46 +201,6 @@ IterativeSaddleSolver::Result IterativeSaddleSolver::SolveByCg(const SaddleMatri
   const MixedPrecisionCg::Result result =
       cg_.Solve(matrix.pattern, matrix.A, force, tolerance, kMaxSaddleIterations, team, dx);
   return {result.converged, result.is_positive, result.iterations};
-}
-
-void IterativeSaddleSolver::SetScales(const SaddleMatrix& matrix) {
-  const std::size_t nodes = matrix.nodes();
-  scale_.resize(static_cast<Eigen::Index>(3 * nodes + matrix.patches()));
-  for (std::size_t n = 0; n < nodes; ++n) {
-    const auto i = static_cast<std::int32_t>(n);
-    const Mat3& diagonal = matrix.A[matrix.pattern.PlaceOf(i, i)];
-    const double least = 1e-6 * diagonal.norm();
-    for (int c = 0; c < 3; ++c) scale_[3 * n + c] = 1 / std::sqrt(std::max(std::abs(diagonal(c, c)), least));
-  }
-  schur_.resize(matrix.patches());
-  for (std::size_t p = 0; p < schur_.size(); ++p) {
-    double sum = 0;
-    for (std::int32_t k = matrix.volume_pattern.begin[p]; k < matrix.volume_pattern.begin[p + 1]; ++k) {
-      const std::size_t n = matrix.volume_pattern.column[k];
-      for (int c = 0; c < 3; ++c) sum += std::pow(matrix.B[k][c] * scale_[3 * n + c], 2);
-    }
-    schur_[p] = matrix.C[p] + kSchurScale * sum;
-    scale_[3 * nodes + p] = 1 / std::sqrt(schur_[p]);
-  }
-}
-
-// Splits a joint vector into x_ and p_, multiplied or divided by its scales.
-void IterativeSaddleSolver::Split(const Eigen::VectorXd& joint, bool times_scale, ThreadTeam& team) {
-  const auto part = [&](std::size_t i) { return times_scale ? joint[i] * scale_[i] : joint[i] / scale_[i]; };
-  ForNodes(team, x_.size(), [&](std::size_t n) {
-    for (int c = 0; c < 3; ++c) x_[n][c] = part(3 * n + c);
-  });
-  for (std::size_t n = 0; n < p_.size(); ++n) p_[n] = part(3 * x_.size() + n);
-}
-
-void IterativeSaddleSolver::Join(const NodalVector& x, std::span<const double> p, bool times_scale, ThreadTeam& team,
-                                 Eigen::VectorXd& joint) const {
-  joint.resize(scale_.size());
-  const auto part = [&](std::size_t i, double v) { return times_scale ? v * scale_[i] : v / scale_[i]; };
-  ForNodes(team, x.size(), [&](std::size_t n) {
-    for (int c = 0; c < 3; ++c) joint[3 * n + c] = part(3 * n + c, x[n][c]);
-  });
-  for (std::size_t n = 0; n < p.size(); ++n) joint[3 * x.size() + n] = part(3 * x.size() + n, p[n]);
 }
 
 }  // namespace fascicle

@@ -7,7 +7,7 @@
 #include "core/linalg/flexible_gmres.h"
 #include "core/linalg/mixed_precision_cg.h"
 #include "core/linalg/multigrid.h"
-#include "core/tet/saddle_matrix.h"
+#include "core/tet/float_saddle.h"
 
 // Two solvers for a SaddleMatrix whose prescribed components are isolated:
 //   K [dx; dp] = [force; volume],   force [N], volume [m^3]; force must be zero on prescribed components, and so is dx.
@@ -38,12 +38,16 @@ class DirectSaddleSolver {
 
 // Flexible GMRES: memory and time of an iteration grow linearly with the size. The preconditioner is block triangular
 // [Elman, Silvester & Wathen 2014, 4.2 and 9.2]: a multigrid cycle approximates A^-1, and a diagonal approximates the
-// Schur complement, S = C + B A^-1 B^T ~ C + kSchurScale diag(B diag(A)^-1 B^T). The number of iterations stays small
-// because A contains a volume modulus of its own (see Volumes in README.md), so that both are well-conditioned for any
-// K/mu.
+// Schur complement, S = C + B A^-1 B^T ~ C + 4 diag(B diag(A)^-1 B^T). The number of iterations stays small because A
+// contains a volume modulus of its own (see Volumes in README.md), so that both are well-conditioned for any K/mu.
+// Iterations are in single precision, with refinement: the residual is computed in double precision and, if it is not
+// small enough, solved for again [Higham 2002, Accuracy and Stability of Numerical Algorithms, 12].
 class IterativeSaddleSolver {
  public:
   IterativeSaddleSolver(const TetModel& model, const SaddleMatrix& matrix);
+
+  // Takes the values of a matrix.
+  void SetUp(const SaddleMatrix& matrix, ThreadTeam& team);
 
   struct Result {
     bool ok = false;  // whether the residual, scaled by the diagonal, fell to `tolerance` times its start
@@ -52,6 +56,7 @@ class IterativeSaddleSolver {
     bool is_minimum = false;
     int iterations = 0;
   };
+  // Solves with the matrix of the last SetUp.
   Result Solve(const SaddleMatrix& matrix, const NodalVector& force, std::span<const double> volume, double tolerance,
                ThreadTeam& team, NodalVector& dx, std::span<double> dp);
 
@@ -60,21 +65,20 @@ class IterativeSaddleSolver {
   std::string Description() const { return multigrid_.Description(); }
 
  private:
-  void SetScales(const SaddleMatrix& matrix);
-  void Split(const Eigen::VectorXd& joint, bool times_scale, ThreadTeam& team);
-  void Join(const NodalVector& x, std::span<const double> p, bool times_scale, ThreadTeam& team,
-            Eigen::VectorXd& joint) const;
-
+  static bool SuitsCg(const SaddleMatrix& matrix);
   Result SolveByCg(const SaddleMatrix& matrix, const NodalVector& force, double tolerance, ThreadTeam& team,
                    NodalVector& dx);
+  GmresResult Iterate(double tolerance, int max_iterations, ThreadTeam& team);
 
+  bool is_set_up_ = false;  // whether multigrid_ is
   Multigrid multigrid_;
+  FloatSaddle saddle_;
   MixedPrecisionCg cg_;
-  GmresWorkspace gmres_;
-  Eigen::VectorXd scale_, joint_side_, joint_solution_;  // inverse square root of the diagonal
-  std::vector<double> schur_;
-  NodalVector x_, product_;
-  std::vector<double> p_, volume_;
+  GmresWorkspace<SaddleField> gmres_;
+  SaddleField side_, solution_;
+  FloatField force_;
+  NodalVector residual_;
+  std::vector<double> volume_residual_;
 };
 
 }  // namespace fascicle

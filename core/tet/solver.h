@@ -83,13 +83,11 @@ class TetSolver {
 
   // Steppings that solve for the end of the step: implicit_step.cc.
   StepReport StepImplicit(const TetState& now, const StepControls& step, TetState& next);
-  // What a step solves for: the positions of prescribed components, a start (may be null), the controls at the end, and
-  // the tolerance of Newton's method.
+  // What a step solves for: the positions of prescribed components, the controls at its end, and how.
   struct PositionSolve {
     const NodalVector& target;
-    const NodalVector* guess;
     const Controls& controls;
-    double tolerance;
+    NewtonOptions options;
   };
   NewtonResult SolvePositions(const PositionSolve& solve, TetState& next);
   NewtonResult SolveCorrected(PositionSolve solve, const TetState& now, const StepControls& step, double weight,

@@ -76,14 +76,13 @@ StepReport TetSolver::SolveEquilibrium(const Controls& start, TetState& state) {
 StepReport TetSolver::SolveStatic(const Controls& controls, TetState& state) {
   potential_ = {};
   potential_.drive = FibreDrive{controls.activations};
-  potential_.load = &external_next_;
   potential_.previous = &state.positions;
-  ExternalForce(model_, controls, team_, external_next_);
+  ExternalForce(model_, controls, team_, held_load_);
   NodalVector target = state.positions;
   PrescribePositions(model_, controls, target);
   next_.positions = state.positions;
   next_.pressures = state.pressures;
-  const NewtonResult result = SolvePositions(target, nullptr, controls, next_);
+  const NewtonResult result = SolvePositions({target, controls, {}}, next_);
   StepReport report;
   report.iterations = result.iterations;
   report.problem = ProblemOfStart(result);

@@ -1,8 +1,10 @@
 // A quasi-static muscle (reference problem d, activation 0 to 0.3) of increasing size: one table of time, iterations,
-// memory and their growth beside FEBio 4.11's figures for the same grids. Each size runs in a process of its own. A
-// tool for development; tet_static_bench measures the row tet_quasistatic_vs_newton_cholmod.
+// memory and their growth beside FEBio 4.11's figures for the same grids; or another problem of about the same sizes.
+// Each size runs in a process of its own. A tool for development; tet_solve_bench measures the rows
+// tet_quasistatic_vs_newton_cholmod and tet_quasistatic_threads_2.
 #include <getopt.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -31,7 +33,21 @@ struct ReferenceRun {
 };
 constexpr ReferenceRun kReferenceRuns[] = {{9477, 12, 2.4, 0.1}, {47685, 12, 35, 0.6}, {99225, 12, 106, 1.4}};
 
+struct Problem {
+  const char* name;
+  const char* what;
+  Scene (*scene)(const MuscleGrid& grid);
+  double end;  // its loads rise until then [s]
+};
+constexpr Problem kProblems[] = {
+    {"d", "isometric muscle, activation 0 to 0.3, curved edges", IsometricMuscle, kActivation},
+    {"bent", "bent isometric muscle, activation 0 to 0.3, curved edges", BentMuscle, kActivation},
+    {"ring", "ring of muscle, activation 0 to 0.3, curved edges", MuscleRing, kActivation},
+    {"block", "block of rubber stretched by half", StretchedBlock, 1},
+};
+
 struct Options {
+  const Problem* problem = &kProblems[0];
   std::vector<double> sizes = {10e3, 50e3, 100e3};
   int steps = 1;
   int threads = 1;
@@ -40,8 +56,10 @@ struct Options {
 };
 
 struct Report {
+  double scene = 0;  // mesh, fibres and regions [s]
   double setup = 0;  // model and solver [s]
-  double wall = 0;   // of all, mesh included [s]
+  int components = 0, elements = 0;
+  double wall = 0;  // of all, mesh included [s]
   long long iterations = 0;
   int steps = 0;
   double force = 0;  // [N]
@@ -51,16 +69,18 @@ struct Report {
 void RunMuscle(const MuscleGrid& grid, const Options& options, Report& report) {
   const auto start = std::chrono::steady_clock::now();
   const auto passed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  Scene scene = IsometricMuscle(grid);
+  Scene scene = options.problem->scene(grid);
   if (options.tolerance > 0) scene.tet.newton_tolerance = options.tolerance;
-  const double before_model = passed();
+  const double before_model = report.scene = passed();
   const TetModel model(scene);
   ThreadTeam team(options.threads);
   TetStepper solver(model, team);
   TetState state = solver.InitialState();
   report.setup = passed() - before_model;
+  report.elements = static_cast<int>(model.elements());
+  for (const Vec3& m : model.inverse_mass()) report.components += static_cast<int>((m.array() != 0).count());
   for (int step = 1; step <= options.steps && !report.failed; ++step) {
-    const double end = kActivation * step / options.steps;
+    const double end = options.problem->end * step / options.steps;
     while (state.time < end && !report.failed) {
       report.failed = solver.Advance(state, end).problem != StepProblem::kNone;
       report.iterations = state.iterations;
@@ -68,7 +88,7 @@ void RunMuscle(const MuscleGrid& grid, const Options& options, Report& report) {
       ++report.steps;
     }
   }
-  report.force = solver.Reactions(state).at(1)[2];
+  report.force = solver.Reactions(state).at(1).norm();
   report.wall = passed();
 }
 
@@ -82,8 +102,8 @@ const ReferenceRun* ReferenceOf(const MuscleGrid& grid) {
 void PrintReference(const MuscleGrid& grid, const ChildRun<Report>& run) {
   const ReferenceRun* const reference = ReferenceOf(grid);
   if (reference == nullptr) return;
-  std::printf("%10s %8s %5d %6d %8s %8s %8.1f %8.0f", "reference", "", 3, reference->iterations, "", "", reference->cpu,
-              1e3 * reference->peak);
+  std::printf("%10s %8s %5d %6d %8s %8s %8s %8.1f %8.0f", "reference", "", 3, reference->iterations, "", "", "",
+              reference->cpu, 1e3 * reference->peak);
   if (run.end == ChildRun<Report>::End::kFinished && !run.report.failed) {
     std::printf("   %.1f times the time, %.1f times the memory", reference->cpu / run.cpu,
                 1e9 * reference->peak / run.peak_rss);
@@ -91,54 +111,60 @@ void PrintReference(const MuscleGrid& grid, const ChildRun<Report>& run) {
   std::printf("\n");
 }
 
-// Prints a row; 0 if there is no time to compare with.
-double MeasureRow(const MuscleGrid& grid, const Options& options, double components_before, double cpu_before) {
+// A measured size; no components if it has no time to compare with.
+struct Row {
+  int components = 0;
+  double cpu = 0;  // [s]
+};
+
+double GrowthFrom(const Row& before, const Row& now) {
+  return std::log(now.cpu / before.cpu) / std::log(static_cast<double>(now.components) / before.components);
+}
+
+Row MeasureRow(const MuscleGrid& grid, const Options& options, const Row& before) {
   const auto run = RunInChild<Report>(options.limit, [&](Report& report) { RunMuscle(grid, options, report); });
   const Report& report = run.report;
-  std::printf("%10d %8d %5d %6lld %8.2f %8.2f %8.2f %8.0f", grid.FreeComponents(), grid.Tetrahedra(), report.steps,
-              report.iterations, report.setup, report.wall, run.cpu, 1e-6 * run.peak_rss);
+  std::printf("%10d %8d %5d %6lld %8.2f %8.2f %8.2f %8.2f %8.0f", report.components, report.elements, report.steps,
+              report.iterations, report.scene, report.setup, report.wall, run.cpu, 1e-6 * run.peak_rss);
   const bool good = run.end == ChildRun<Report>::End::kFinished && !report.failed;
+  const Row row{report.components, run.cpu};
   if (good) {
-    if (cpu_before > 0) {
-      std::printf(" %7.2f", std::log(run.cpu / cpu_before) / std::log(grid.FreeComponents() / components_before));
+    if (before.components > 0) {
+      std::printf(" %7.2f", GrowthFrom(before, row));
     } else {
       std::printf(" %7s", "");
     }
-    std::printf(" %9.4f (%+.2f %%)\n", report.force, 100 * (report.force / kReferenceForce - 1));
+    std::printf(" %9.4f", report.force);
+    if (options.problem == &kProblems[0]) std::printf(" (%+.2f %%)", 100 * (report.force / kReferenceForce - 1));
+    std::printf("\n");
   } else if (run.end == ChildRun<Report>::End::kOutOfTime) {
     std::printf(" not done after %u s\n", options.limit);
   } else {
     std::printf(run.end == ChildRun<Report>::End::kCrashed ? " crashed\n" : " did not converge\n");
   }
-  PrintReference(grid, run);
+  if (options.problem == &kProblems[0]) PrintReference(grid, run);
   std::fflush(stdout);
-  return good ? run.cpu : 0;
+  return good ? row : Row{};
 }
 
 void MeasureAll(const Options& options) {
-  std::printf("isometric muscle, activation 0 to %.1f, ten-node elements with curved edges, %d thread(s)\n",
-              kActivation, options.threads);
-  std::printf("%10s %8s %5s %6s %8s %8s %8s %8s %7s %9s\n", "free", "tets", "steps", "Newton", "set-up s", "wall s",
-              "CPU s", "peak MB", "growth", "force N");
+  std::printf("%s, ten-node elements, %d thread(s)\n", options.problem->what, options.threads);
+  std::printf("%10s %8s %5s %6s %8s %8s %8s %8s %8s %7s %9s\n", "free", "elements", "steps", "Newton", "scene s",
+              "set-up s", "wall s", "CPU s", "peak MB", "growth", "force N");
   const CpuTime before = CpuTime::Now();
-  double first_size = 0, first_cpu = 0, last_size = 0, last_cpu = 0;
+  Row first, last;
   const double wall = SecondsOf([&] {
     for (const double size : options.sizes) {
-      const MuscleGrid grid = NearestMuscleGrid(size);
-      const double cpu = MeasureRow(grid, options, last_size, last_cpu);
-      if (cpu == 0) continue;
-      last_size = grid.FreeComponents();
-      last_cpu = cpu;
-      if (first_cpu == 0) {
-        first_size = last_size;
-        first_cpu = cpu;
-      }
+      const Row row = MeasureRow(NearestMuscleGrid(size), options, last);
+      if (row.components == 0) continue;
+      last = row;
+      if (first.components == 0) first = row;
     }
   });
   const CpuTime after = CpuTime::Now();
-  if (last_size > first_size) {
-    std::printf("growth of CPU time with free components, %.0f to %.0f: n^%.2f\n", first_size, last_size,
-                std::log(last_cpu / first_cpu) / std::log(last_size / first_size));
+  if (last.components > first.components) {
+    std::printf("growth of CPU time with free components, %d to %d: n^%.2f\n", first.components, last.components,
+                GrowthFrom(first, last));
   }
   const double others = (after.machine - before.machine) - (after.own - before.own);
   const double share = others / (wall * static_cast<double>(sysconf(_SC_NPROCESSORS_ONLN)));
@@ -148,8 +174,8 @@ void MeasureAll(const Options& options) {
 [[noreturn]] void Usage() {
   std::fprintf(
       stderr,
-      "quasistatic_bench [--sizes 10000,50000,100000] [--steps 1] [--threads 1] [--tolerance 1e-8]\n"
-      "                  [--limit SECONDS]\n"
+      "quasistatic_bench [--problem d|bent|ring|block] [--sizes 10000,50000,100000] [--steps 1] [--threads 1]\n"
+      "                  [--tolerance 1e-8] [--limit SECONDS]\n"
       "  sizes in free components of the displacement; the nearest grid is run. limit: wall time of one size.\n");
   std::exit(2);
 }
@@ -171,13 +197,21 @@ std::vector<double> NumbersOf(std::string text) {
 }
 
 Options Parse(int argc, char** argv) {
-  constexpr option kOptions[] = {
-      {"sizes", required_argument, nullptr, 's'},   {"steps", required_argument, nullptr, 'n'},
-      {"threads", required_argument, nullptr, 't'}, {"tolerance", required_argument, nullptr, 'e'},
-      {"limit", required_argument, nullptr, 'l'},   {nullptr, 0, nullptr, 0}};
+  constexpr option kOptions[] = {{"problem", required_argument, nullptr, 'p'},
+                                 {"sizes", required_argument, nullptr, 's'},
+                                 {"steps", required_argument, nullptr, 'n'},
+                                 {"threads", required_argument, nullptr, 't'},
+                                 {"tolerance", required_argument, nullptr, 'e'},
+                                 {"limit", required_argument, nullptr, 'l'},
+                                 {nullptr, 0, nullptr, 0}};
   Options options;
   for (int key = 0; (key = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
     switch (key) {
+      case 'p':
+        options.problem = std::find_if(std::begin(kProblems), std::end(kProblems),
+                                       [](const Problem& problem) { return std::string(problem.name) == optarg; });
+        if (options.problem == std::end(kProblems)) Usage();
+        break;
       case 's':
         options.sizes = NumbersOf(optarg);
         break;

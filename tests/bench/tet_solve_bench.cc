@@ -1,5 +1,5 @@
-// Implicit and quasi-static steps compared with CHOLMOD, one thread. Each comparison first checks that both sides have
-// the same result, then prints both figures and `ratio NAME VALUE`.
+// Implicit and quasi-static steps compared with CHOLMOD, one thread, and two threads with one. Each comparison first
+// checks that both sides have the same result, then prints both figures and `ratio NAME VALUE`.
 //   tet_solve_bench [PART] [ROUNDS]    only the rows whose name contains PART; ROUNDS of each muscle
 #include <cstdlib>
 #include <string>
@@ -76,8 +76,8 @@ struct MuscleRun {
   long long iterations = 0;
 };
 
-MuscleRun RunCore(const Scene& scene) {
-  testing::SteppedRun run(scene);
+MuscleRun RunCore(const Scene& scene, int threads = 1) {
+  testing::SteppedRun run(scene, threads);
   if (!run.To(kMuscleActivation)) std::abort();
   return {run.state.positions, run.state.iterations};
 }
@@ -106,6 +106,15 @@ void CompareMuscle(const std::string& row, const MuscleGrid& grid, int rounds) {
   CheckAgreement(row, "displacements", Difference(ours.positions, theirs, TetModel(scene).rest_positions()), 1e-5);
 }
 
+// The whole solution with two threads and with one: A is the former.
+void CompareThreads(const std::string& row, const MuscleGrid& grid, int rounds) {
+  const Scene scene = IsometricMuscle(grid);
+  MuscleRun of_two, of_one;
+  MedianRatio(
+      row, rounds, [&] { of_two = RunCore(scene, 2); }, [&] { of_one = RunCore(scene, 1); });
+  CheckAgreement(row, "positions", of_two.positions == of_one.positions ? 0 : 1, 0);
+}
+
 void MeasureGrowth() {
   const MuscleGrid small = NearestMuscleGrid(10e3), large = NearestMuscleGrid(100e3);
   const Scene small_scene = IsometricMuscle(small), large_scene = IsometricMuscle(large);
@@ -125,6 +134,8 @@ void CompareAll(const std::string& wanted, int rounds) {
   run("tet_implicit_vs_cholmod", CompareImplicit);
   run("tet_quasistatic_vs_newton_cholmod_10k",
       [&](const std::string& row) { CompareMuscle(row, NearestMuscleGrid(10e3), rounds > 0 ? rounds : kRounds); });
+  run("tet_quasistatic_threads_2",
+      [&](const std::string& row) { CompareThreads(row, NearestMuscleGrid(100e3), rounds > 0 ? rounds : 3); });
   run("tet_quasistatic_growth", [](const std::string&) { MeasureGrowth(); });
   run("tet_quasistatic_vs_newton_cholmod",
       [&](const std::string& row) { CompareMuscle(row, NearestMuscleGrid(100e3), rounds > 0 ? rounds : 3); });

@@ -6,9 +6,10 @@
 
 namespace fascicle::testing {
 
-// Steps a scene directly, with one thread.
+// Steps a scene directly.
 struct SteppedRun {
-  explicit SteppedRun(Scene s) : scene(std::move(s)), model(scene), solver(model, team), state(solver.InitialState()) {}
+  explicit SteppedRun(Scene s, int threads = 1)
+      : scene(std::move(s)), model(scene), team(threads), solver(model, team), state(solver.InitialState()) {}
 
   // Steps to `end` [s]; false on a problem.
   bool To(double end) {
@@ -38,7 +39,7 @@ struct SteppedRun {
 
   const Scene scene;
   const TetModel model;
-  ThreadTeam team{1};
+  ThreadTeam team;
   TetStepper solver;
   TetState state;
 };

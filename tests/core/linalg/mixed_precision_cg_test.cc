@@ -25,6 +25,7 @@ struct HeavyGrid : SpringGrid {
 
   MixedPrecisionCg::Result Solve(double tolerance, int max_iterations = 1000, int threads = 1) {
     ThreadTeam team(threads);
+    cg.SetUp(pattern, values, team);
     return cg.Solve(pattern, values, b, tolerance, max_iterations, team, x);
   }
   // |b - A x| over |b| in the norm of D^-1.

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "mixed_scene.h"
+#include "plain_stiffness.h"
 
 namespace fascicle {
 namespace {
@@ -26,11 +27,16 @@ struct LoadedMatrix : Setting {
   ElementEvaluation Evaluate(const NodalVector& at, NodalVector& force) {
     return EvaluateElements(model, potential, at, acting, team, workspace, force);
   }
-  const BlockValues& Stiffness(double projection, ThreadTeam& threads) {
-    AssembleStiffness(model, potential, x, acting, projection, layout, threads, workspace, values);
+  const BlockValues& Stiffness(ThreadTeam& threads) {
+    AssembleStiffness(model, potential, x, acting, layout, threads, workspace, values);
     return values;
   }
-  const BlockValues& Stiffness(double projection) { return Stiffness(projection, team); }
+  const BlockValues& Stiffness() { return Stiffness(team); }
+  const BlockValues& Projection() {
+    AssembleProjection(model, potential, x, acting, layout, team, workspace, values);
+    return values;
+  }
+  BlockValues Plain(bool is_change) { return PlainStiffness(model, potential, x, acting, pattern, is_change); }
 
   IncrementalPotential potential;
   std::vector<double> acting;
@@ -125,20 +131,23 @@ TEST_P(ElementMatricesTest, EvaluationIsThatOfThePotentialAtEveryPoint) {
   EXPECT_LT(LargestDifference(force, expected), 1e-12 * LargestNorm(expected));
 }
 
-// Element by element (with a projected fraction of 1e-300) and vectorized: the same matrix.
-TEST_P(ElementMatricesTest, SideBySideAsElementByElement) {
-  const BlockValues plain = s_.Stiffness(1e-300);
+TEST_P(ElementMatricesTest, SideBySideAsPointByPoint) {
+  const BlockValues plain = s_.Plain(false);
   const double largest = LargestOf(plain);
   BlockValues first;
   for (const InstructionSet set : kInstructionSets) {
     if (!IsAvailable(set)) continue;
     s_.workspace.kernels = &KernelsFor(set);
-    const BlockValues lanes = s_.Stiffness(0);
+    const BlockValues lanes = s_.Stiffness();
     for (std::size_t i = 0; i < plain.size(); ++i) {
       ASSERT_LT((lanes[i] - plain[i]).cwiseAbs().maxCoeff(), 1e-13 * largest) << i;
     }
     if (first.empty()) first = lanes;
     EXPECT_EQ(first, lanes);
+  }
+  const BlockValues change = s_.Plain(true), projection = s_.Projection();
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    ASSERT_LT((projection[i] - change[i]).cwiseAbs().maxCoeff(), 1e-12 * largest) << i;
   }
 }
 
@@ -150,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, ElementMatricesTest,
 
 NodalVector Product(LoadedMatrix& s, const NodalVector& p) {
   NodalVector product;
-  Multiply(s.pattern, s.Stiffness(0), p, s.team, product);
+  Multiply(s.pattern, s.Stiffness(), p, s.team, product);
   return product;
 }
 
@@ -193,10 +202,10 @@ TEST_P(AssembleStiffnessTest, AddsEveryBlockInItsPlace) {
   std::vector<BlockValues> results;
   for (const int threads : {1, 2, 3}) {
     ThreadTeam team(threads);
-    results.push_back(s.Stiffness(0, team));
+    results.push_back(s.Stiffness(team));
     EXPECT_EQ(results.front(), results.back()) << threads;
   }
-  const BlockValues plain = s.Stiffness(1e-300);
+  const BlockValues plain = s.Plain(false);
   const double largest = LargestOf(plain);
   for (std::size_t row = 0; row < s.pattern.rows(); ++row) {
     for (std::int32_t k = s.pattern.begin[row]; k < s.pattern.begin[row + 1]; ++k) {
