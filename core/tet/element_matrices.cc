@@ -100,7 +100,9 @@ void AddStiffness(const TetModel& model, const NodalVector& x, double projection
     for (int pair = 0; pair < kPairs; ++pair) {
       const std::size_t at = kPairs * (slot / kBlock) + pair;
       Eigen::Map<Mat3> sum(blocks.sums + 9 * std::size_t{blocks.place[kBlock * at + slot % kBlock]});
-      if ((blocks.turned[at] >> slot % kBlock & 1) != 0) {
+      if (blocks.doubled != nullptr && (blocks.doubled[at] >> slot % kBlock & 1) != 0) {
+        sum += pairs[pair] + pairs[pair].transpose();
+      } else if ((blocks.turned[at] >> slot % kBlock & 1) != 0) {
         sum += pairs[pair].transpose();
       } else {
         sum += pairs[pair];
@@ -182,7 +184,8 @@ void AssembleStiffness(const TetModel& model, const IncrementalPotential& potent
       const Chunk& chunk = chunks[c];
       const std::span<const StiffnessLayout::Target> targets = layout.TargetsOf(c);
       sums.assign(9 * targets.size(), 0.0);
-      const ChunkBlocks blocks{layout.PlacesOf(chunk.block_begin), layout.TurnedOf(chunk.block_begin), sums.data()};
+      const ChunkBlocks blocks{layout.PlacesOf(chunk.block_begin), layout.TurnedOf(chunk.block_begin),
+                               layout.DoubledOf(chunk.block_begin), sums.data()};
       if (potential.untangling || projection > 0) {
         model.VisitElement([&]<class Element>(Element) {
           if (potential.untangling) {

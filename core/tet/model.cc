@@ -53,6 +53,7 @@ NodalVector TetModel::InitialPositions() const {
     const std::vector<Vec3>& displacement = body.source->tet().initial_displacement;
     if (displacement.empty()) continue;
     for (std::size_t n = 0; n < displacement.size(); ++n) x[body.node_begin + n] += displacement[n];
+    if (order() == ElementOrder::kHexahedralQuadratic) PlaceInTheMiddle(body, x);
     if (order() != ElementOrder::kQuadratic) continue;
     for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
       for (int k = 0; k < 6; ++k) {
@@ -62,6 +63,15 @@ NodalVector TetModel::InitialPositions() const {
     }
   }
   return x;
+}
+
+// Moves the higher nodes of a body to the middle of the corners between which they lie.
+void TetModel::PlaceInTheMiddle(const TetBody& body, NodalVector& x) const {
+  ForHigherNodes(body, [&](std::int32_t node, std::span<const std::int32_t> corners) {
+    Vec3 sum = Vec3::Zero();
+    for (const std::int32_t corner : corners) sum += x[corner];
+    x[node] = sum / static_cast<double>(corners.size());
+  });
 }
 
 double TetModel::PrestretchOf(std::size_t tet) const {

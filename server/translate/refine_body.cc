@@ -1,10 +1,12 @@
 #include "server/translate/refine_body.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/geometry/refinement.h"
+#include "core/geometry/solid_cells.h"
 
 namespace fascicle::server {
 namespace {
@@ -70,6 +72,15 @@ void RefineShape(VoxelShape& shape, const std::stop_token& stop) {
 std::int64_t ElementsOf(const TetShape& shape) { return static_cast<std::int64_t>(ElementCount(shape.mesh)); }
 std::int64_t ElementsOf(const VoxelShape& shape) { return static_cast<std::int64_t>(shape.mesh.bricks.size()); }
 
+// Wedges and pyramids have no parts of their own kinds that match their neighbours'.
+bool HasParts(const TetShape& shape) {
+  return std::all_of(shape.mesh.hexahedra.begin(), shape.mesh.hexahedra.end(), [](const Hexahedron& hexahedron) {
+    const auto solid = SolidOf(hexahedron);
+    return solid && solid->shape == SolidShape::kHexahedron;
+  });
+}
+bool HasParts(const VoxelShape&) { return true; }
+
 // Whether the budget allows the parts, which it then pays.
 bool PayForParts(const BodySource& source, std::int64_t elements, Problems& problems) {
   std::int64_t parts = elements;
@@ -87,6 +98,10 @@ bool PayForParts(const BodySource& source, std::int64_t elements, Problems& prob
 
 template <class Shape>
 void Refine(const BodySource& source, const RegionSelectors& selectors, Shape& shape, Body& body, Problems& problems) {
+  if (!HasParts(shape)) {
+    problems.Add("refinements", source.path + " has wedges or pyramids, which are not refined", "mesh the body finer");
+    return;
+  }
   if (!PayForParts(source, ElementsOf(shape), problems)) return;
   for (int k = 0; k < source.refinements; ++k) RefineShape(shape, source.tools.stop);
   body.regions = SelectRegions(selectors, shape.mesh, source.tools.stop);
