@@ -1,12 +1,12 @@
 #include "server/translate/refine_body.h"
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/geometry/refinement.h"
-#include "core/geometry/solid_cells.h"
 
 namespace fascicle::server {
 namespace {
@@ -75,8 +75,7 @@ std::int64_t ElementsOf(const VoxelShape& shape) { return static_cast<std::int64
 // Wedges and pyramids have no parts of their own kinds that match their neighbours'.
 bool HasParts(const TetShape& shape) {
   return std::all_of(shape.mesh.hexahedra.begin(), shape.mesh.hexahedra.end(), [](const Hexahedron& hexahedron) {
-    const auto solid = SolidOf(hexahedron);
-    return solid && solid->shape == SolidShape::kHexahedron;
+    return std::set<std::int32_t>(hexahedron.begin(), hexahedron.end()).size() == hexahedron.size();
   });
 }
 bool HasParts(const VoxelShape&) { return true; }

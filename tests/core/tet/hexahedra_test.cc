@@ -199,7 +199,9 @@ TEST_P(EveryHexahedronTest, AFreeBarKeepsItsMomenta) {
 // Every stepping arrives at the same equilibrium.
 TEST_P(EveryHexahedronTest, EverySteppingFindsTheSameEquilibrium) {
   const auto scene_of = [element = GetParam()](Stepping stepping) {
-    Body body = BoxBody(kBarSize, {3, 2, 2}, Rubber(), Cells::kHexahedra);
+    // With the same nodes, explicit steps of quadratic elements would be shorter.
+    const std::array<int, 3> divisions = element == kHexahedral ? std::array{3, 2, 2} : std::array{2, 1, 1};
+    Body body = BoxBody(kBarSize, divisions, Rubber(), Cells::kHexahedra);
     body.constraints = {Fix(kX0)};
     body.loads.push_back(
         {kX1, Traction{Vec3(300, 0, -60)}, Curve{{0, 0.2}, {0, 1}, Curve::Interpolation::kSmooth}, {}});
