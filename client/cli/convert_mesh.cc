@@ -17,6 +17,7 @@
 #include "client/exodus/exodus_reader.h"
 #include "client/import/febio_mesh.h"
 #include "client/lib/replace_file.h"
+#include "core/geometry/hexahedron.h"
 #include "core/geometry/mesh_checks.h"
 #include "core/geometry/mesh_io.h"
 #include "core/geometry/mesh_writer.h"
@@ -106,9 +107,10 @@ TaggedParts PartsOf(const TetMesh& mesh) {
     part.count += counts ? 1 : 0;
     part.measure += measure;
   };
-  // Six tetrahedra make a hexahedron.
+  // The first tetrahedron of each hexahedron counts for it.
+  const std::vector<std::int32_t> hexahedra = HexahedraOfTetrahedra(mesh);
   const auto add_tetrahedron = [&](std::size_t t, std::int32_t tag) {
-    add(3, tag, SignedVolume(mesh, t), mesh.hexahedra.empty() || t % 6 == 0);
+    add(3, tag, SignedVolume(mesh, t), hexahedra.empty() || t == 0 || hexahedra[t] != hexahedra[t - 1]);
   };
   for (std::size_t t = 0; t < mesh.tetrahedron_tags.size(); ++t) add_tetrahedron(t, mesh.tetrahedron_tags[t]);
   for (const auto& [t, tag] : mesh.further_tags) add_tetrahedron(static_cast<std::size_t>(t), tag);

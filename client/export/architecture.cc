@@ -80,16 +80,19 @@ double AreaOfCut(const std::vector<FlatTriangle>& surface, const Vec3& normal, d
   return 0.5 * normal.dot(twice_area);
 }
 
-// A body of hexahedra as one of tetrahedra, six for each with its fibre and its values.
+// A body of hexahedra as one of tetrahedra, with the fibre and the values of their hexahedron.
 BodySnapshot AsTetrahedra(const BodySnapshot& body) {
   BodySnapshot split = body;
   split.shape.bricks.clear();
   split.shape.fibres.clear();
+  std::vector<std::size_t> brick_of;  // of each tetrahedron
   for (std::size_t e = 0; e < body.shape.bricks.size(); ++e) {
     std::array<std::uint32_t, 8> nodes;
     for (std::size_t c = 0; c < 8; ++c) nodes[static_cast<std::size_t>(kBrickOrder[c])] = body.shape.bricks[e][c];
-    SplitSolid(SolidShape::kHexahedron, std::span<const std::uint32_t>(nodes), split.shape.tetrahedra);
+    const auto solid = SolidOf(nodes).value_or(Solid<std::uint32_t>{SolidShape::kHexahedron, nodes});
+    SplitSolid(solid.shape, solid.corners(), split.shape.tetrahedra);
     split.shape.fibres.resize(split.shape.tetrahedra.size(), body.shape.fibres[e]);
+    brick_of.resize(split.shape.tetrahedra.size(), e);
   }
   for (BodyField& field : split.fields) {
     if (field.at_nodes) continue;
@@ -97,7 +100,7 @@ BodySnapshot AsTetrahedra(const BodySnapshot& body) {
     const std::size_t components = field.components.size();
     field.values.clear();
     for (std::size_t t = 0; t < split.shape.tetrahedra.size(); ++t) {
-      const auto first = of_hexahedra.begin() + static_cast<std::ptrdiff_t>(t / 6 * components);
+      const auto first = of_hexahedra.begin() + static_cast<std::ptrdiff_t>(brick_of[t] * components);
       field.values.insert(field.values.end(), first, first + static_cast<std::ptrdiff_t>(components));
     }
   }

@@ -18,6 +18,7 @@
 
 #include "client/vtk/body_grid.h"
 #include "core/base/component_names.h"
+#include "core/geometry/solid_cells.h"
 
 namespace fascicle::client {
 namespace {
@@ -73,6 +74,13 @@ void AddArrays(vtkFieldData& data, bool at_nodes, BodySnapshot& body) {
   }
 }
 
+// A wedge or pyramid as a brick with repeated nodes.
+void AddSolid(SolidShape kind, const std::array<std::uint32_t, 8>& nodes, BodyShape& shape) {
+  const std::array<std::uint32_t, 8> hexahedron = AsHexahedron(kind, nodes);
+  std::array<std::uint32_t, 8>& brick = shape.bricks.emplace_back();
+  for (std::size_t c = 0; c < 8; ++c) brick[kHexahedronCorners[c]] = hexahedron[c];
+}
+
 void AddCells(vtkUnstructuredGrid& grid, const fs::path& file, BodyShape& shape) {
   for (vtkIdType e = 0; e < grid.GetNumberOfCells(); ++e) {
     vtkIdType count = 0;
@@ -93,6 +101,12 @@ void AddCells(vtkUnstructuredGrid& grid, const fs::path& file, BodyShape& shape)
         shape.bricks.push_back(brick);
         break;
       }
+      case 13:  // a wedge, with its base seen from outside
+        AddSolid(SolidShape::kWedge, {node(0), node(2), node(1), node(3), node(5), node(4)}, shape);
+        break;
+      case 14:
+        AddSolid(SolidShape::kPyramid, {node(0), node(1), node(2), node(3), node(4)}, shape);
+        break;
       case 5:
         shape.triangles.push_back({node(0), node(1), node(2)});
         break;

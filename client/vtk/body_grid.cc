@@ -2,6 +2,9 @@
 
 #include <vtkCellType.h>
 #include <vtkNew.h>
+#include <vtkUnsignedCharArray.h>
+
+#include "core/geometry/solid_cells.h"
 
 namespace fascicle::client {
 namespace {
@@ -37,6 +40,33 @@ vtkSmartPointer<vtkCellArray> MakeQuadraticCells(const BodyShape& shape) {
   return cells;
 }
 
+// Bricks with repeated nodes are wedges and pyramids. VTK sees the base of a wedge from outside.
+void SetBricks(const std::vector<std::array<std::uint32_t, 8>>& bricks, vtkUnstructuredGrid& grid) {
+  constexpr std::array<std::size_t, 6> kWedge = {0, 2, 1, 3, 5, 4};
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkUnsignedCharArray> types;
+  cells->AllocateEstimate(static_cast<vtkIdType>(bricks.size()), 8);
+  types->Allocate(static_cast<vtkIdType>(bricks.size()));
+  for (const std::array<std::uint32_t, 8>& brick : bricks) {
+    std::array<std::uint32_t, 8> hexahedron;
+    for (std::size_t c = 0; c < 8; ++c) hexahedron[c] = brick[kHexahedronCorners[c]];
+    const auto solid = SolidOf(hexahedron);
+    std::vector<vtkIdType> nodes(hexahedron.begin(), hexahedron.end());
+    int type = VTK_HEXAHEDRON;
+    if (solid && solid->shape == SolidShape::kWedge) {
+      type = VTK_WEDGE;
+      nodes.resize(6);
+      for (std::size_t c = 0; c < 6; ++c) nodes[c] = solid->nodes[kWedge[c]];
+    } else if (solid && solid->shape == SolidShape::kPyramid) {
+      type = VTK_PYRAMID;
+      nodes.resize(5);
+    }
+    cells->InsertNextCell(static_cast<vtkIdType>(nodes.size()), nodes.data());
+    types->InsertNextValue(static_cast<unsigned char>(type));
+  }
+  grid.SetCells(types, cells);
+}
+
 }  // namespace
 
 vtkSmartPointer<vtkPoints> MakePoints(const std::vector<Vec3>& positions) {
@@ -55,7 +85,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeGrid(const BodyShape& shape, const std:
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   grid->SetPoints(MakePoints(positions));
   if (!shape.bricks.empty()) {
-    grid->SetCells(VTK_HEXAHEDRON, MakeCells(shape.bricks, kHexahedronCorners));
+    SetBricks(shape.bricks, *grid);
   } else if (!shape.triangles.empty()) {
     grid->SetCells(VTK_TRIANGLE, MakeTriangles(shape.triangles));
   } else if (shape.quadratic()) {

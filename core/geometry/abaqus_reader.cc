@@ -313,6 +313,10 @@ class AbaqusReader {
       case AbaqusKind::kSolid:
         element.index = raw_.solids.size();
         raw_.solids.push_back({type_.shape, c});
+        if (type_.shape == SolidShape::kHexahedron && type_.nodes >= 20) {
+          std::copy_n(numbers.begin() + 9, 12, raw_.solids.back().middles.emplace().begin());
+          raw_.inner_nodes += type_.nodes - 20;
+        }
         raw_.solid_tags.push_back(0);
         if (type_.nodes > static_cast<std::size_t>(CornersOf(type_.shape))) ++raw_.curved_solids;
         return;

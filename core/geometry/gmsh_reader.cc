@@ -94,7 +94,15 @@ void AddSolid(TextScanner& in, const GmshSolid& type, const PhysicalTags& tags, 
   RawSolid solid{type.shape, {}};
   const int corners = CornersOf(type.shape);
   for (int n = 0; n < corners; ++n) solid.nodes[n] = in.Int("a node number");
-  for (int n = corners; n < type.nodes; ++n) in.Int("a node number");
+  std::vector<std::int64_t> higher;
+  for (int n = corners; n < type.nodes; ++n) higher.push_back(in.Int("a node number"));
+  if (type.shape == SolidShape::kHexahedron && higher.size() >= 12) {
+    // Gmsh has the edges of each corner one after the other.
+    constexpr std::array<std::size_t, 12> kOrder = {0, 3, 5, 1, 8, 10, 11, 9, 2, 4, 6, 7};
+    solid.middles.emplace();
+    for (std::size_t k = 0; k < 12; ++k) (*solid.middles)[k] = higher[kOrder[k]];
+    raw.inner_nodes += higher.size() - 12;
+  }
   if (type.nodes > corners) ++raw.curved_solids;
   raw.solids.push_back(solid);
   raw.solid_tags.push_back(FirstOf(tags));

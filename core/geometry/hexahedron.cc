@@ -16,18 +16,28 @@ double Factor(int a, int d, const Vec3& x) { return IsFarNode(a, d) ? x[d] : 1 -
 
 // A side in a form that compares equal to the neighbour's copy of the same side.
 struct HexahedronSide {
-  Quad nodes;             // ascending
+  Quad nodes;             // ascending, after -1 if it is a triangle
   std::int64_t side = 0;  // 6 * hexahedron + local side
   bool operator<(const HexahedronSide& other) const {
     return nodes != other.nodes ? nodes < other.nodes : side < other.side;
   }
 };
 
-Quad QuadOf(const Hexahedron& hexahedron, std::size_t local_side) {
-  const SolidSide& side = SidesOf(SolidShape::kHexahedron)[local_side];
+// Nodes that are repeated in no known way are those of a hexahedron: mesh checks report them.
+Solid<std::int32_t> KnownSolid(const Hexahedron& hexahedron) {
+  return SolidOf(hexahedron).value_or(Solid<std::int32_t>{SolidShape::kHexahedron, hexahedron});
+}
+
+// A side of a solid; `in_place_of_fourth` is the last node of triangles.
+Quad SideOf(const Solid<std::int32_t>& solid, std::size_t local_side, const auto& in_place_of_fourth) {
+  const SolidSide& side = SidesOf(solid.shape)[local_side];
   Quad quad;
-  for (std::size_t c = 0; c < 4; ++c) quad[c] = hexahedron[static_cast<std::size_t>(side[c])];
+  for (std::size_t c = 0; c < 3; ++c) quad[c] = solid.nodes[static_cast<std::size_t>(side[c])];
+  quad[3] = side[3] >= 0 ? solid.nodes[static_cast<std::size_t>(side[3])] : in_place_of_fourth(quad);
   return quad;
+}
+Quad QuadOf(const Hexahedron& hexahedron, std::size_t local_side) {
+  return SideOf(KnownSolid(hexahedron), local_side, [](const Quad& quad) { return quad[2]; });
 }
 
 // The sides that belong to one hexahedron only, ascending.
@@ -35,8 +45,9 @@ std::vector<std::int64_t> BoundarySides(const TetMesh& mesh, const std::stop_tok
   std::vector<HexahedronSide> sides;
   sides.reserve(6 * mesh.hexahedra.size());
   for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h) {
-    for (std::size_t s = 0; s < 6; ++s) {
-      Quad nodes = QuadOf(mesh.hexahedra[h], s);
+    const Solid<std::int32_t> solid = KnownSolid(mesh.hexahedra[h]);
+    for (std::size_t s = 0; s < SidesOf(solid.shape).size(); ++s) {
+      Quad nodes = SideOf(solid, s, [](const Quad&) { return -1; });
       std::sort(nodes.begin(), nodes.end());
       sides.push_back({nodes, static_cast<std::int64_t>(6 * h + s)});
     }
@@ -53,17 +64,18 @@ std::vector<std::int64_t> BoundarySides(const TetMesh& mesh, const std::stop_tok
   return boundary;
 }
 
-// The two triangles of a side among the faces of the hexahedron's own tetrahedra: those with all nodes on the side.
-std::array<Triangle, 2> TrianglesOn(const TetMesh& mesh, std::size_t hexahedron, const Quad& quad) {
-  std::array<Triangle, 2> triangles = {};
-  std::size_t found = 0;
-  for (std::size_t t = 6 * hexahedron; t < 6 * hexahedron + 6; ++t) {
-    for (int side = 0; side < 4 && found < 2; ++side) {
+// The triangles of a side among the faces of the hexahedron's own tetrahedra, from `first` to before `last`: those with
+// all nodes on the side.
+HexahedralBoundary::Triangles TrianglesOn(const TetMesh& mesh, std::size_t first, std::size_t last, const Quad& quad) {
+  HexahedralBoundary::Triangles triangles;
+  const std::size_t wanted = quad[2] == quad[3] ? 1 : 2;
+  for (std::size_t t = first; t < last; ++t) {
+    for (int side = 0; side < 4 && triangles.count < wanted; ++side) {
       const Triangle triangle = OutwardTriangle(mesh.tetrahedra[t], side);
       const bool on_side = std::all_of(triangle.begin(), triangle.end(), [&](std::int32_t n) {
         return std::find(quad.begin(), quad.end(), n) != quad.end();
       });
-      if (on_side) triangles[found++] = triangle;
+      if (on_side) triangles.of_side[triangles.count++] = triangle;
     }
   }
   return triangles;
@@ -130,10 +142,11 @@ HexahedronNodes NodesOfHexahedron(const TetMesh& mesh, std::size_t hexahedron) {
 
 HexahedralBoundary BoundaryOfHexahedra(const TetMesh& mesh, const std::stop_token& stop) {
   HexahedralBoundary boundary;
+  const std::vector<std::size_t> first = FirstTetrahedra(mesh);
   for (const std::int64_t side : BoundarySides(mesh, stop)) {
     const auto h = static_cast<std::size_t>(side / 6);
     boundary.quads.push_back(QuadOf(mesh.hexahedra[h], static_cast<std::size_t>(side % 6)));
-    boundary.triangles.push_back(TrianglesOn(mesh, h, boundary.quads.back()));
+    boundary.triangles.push_back(TrianglesOn(mesh, first[h], first[h + 1], boundary.quads.back()));
   }
   return boundary;
 }
@@ -142,8 +155,36 @@ void SplitHexahedra(TetMesh& mesh) {
   mesh.tetrahedra.clear();
   mesh.tetrahedra.reserve(6 * mesh.hexahedra.size());
   for (const Hexahedron& hexahedron : mesh.hexahedra) {
-    SplitSolid(SolidShape::kHexahedron, std::span<const std::int32_t>(hexahedron), mesh.tetrahedra);
+    const Solid<std::int32_t> solid = KnownSolid(hexahedron);
+    SplitSolid(solid.shape, solid.corners(), mesh.tetrahedra);
   }
+}
+
+void TurnOver(Hexahedron& hexahedron) {
+  if (KnownSolid(hexahedron).shape == SolidShape::kPyramid) {
+    std::swap(hexahedron[1], hexahedron[3]);
+  } else {
+    std::rotate(hexahedron.begin(), hexahedron.begin() + 4, hexahedron.end());
+  }
+}
+
+std::vector<std::size_t> FirstTetrahedra(const TetMesh& mesh) {
+  std::vector<std::size_t> first = {0};
+  first.reserve(mesh.hexahedra.size() + 1);
+  for (const Hexahedron& hexahedron : mesh.hexahedra) {
+    first.push_back(first.back() + static_cast<std::size_t>(TetrahedraOf(KnownSolid(hexahedron).shape)));
+  }
+  return first;
+}
+
+std::vector<std::int32_t> HexahedraOfTetrahedra(const TetMesh& mesh) {
+  std::vector<std::int32_t> hexahedra;
+  hexahedra.reserve(mesh.tetrahedra.size());
+  for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h) {
+    const auto count = static_cast<std::size_t>(TetrahedraOf(KnownSolid(mesh.hexahedra[h]).shape));
+    hexahedra.insert(hexahedra.end(), count, static_cast<std::int32_t>(h));
+  }
+  return hexahedra;
 }
 
 }  // namespace fascicle

@@ -39,17 +39,32 @@ std::array<double, 8> NodeVolumes(const HexahedronNodes& nodes);
 // Positions of the nodes of a hexahedron of a mesh.
 HexahedronNodes NodesOfHexahedron(const TetMesh& mesh, std::size_t hexahedron);
 
-// The boundary of a mesh of hexahedra: sides that belong to one hexahedron only, each with the two boundary triangles
-// of its tetrahedra. Outward, in the order of the hexahedra.
+// The boundary of a mesh of hexahedra: sides that belong to one hexahedron only, each with the boundary triangles of
+// its tetrahedra: two, or one of a triangular side, whose last node is given twice. Outward, in the order of the
+// hexahedra.
 struct HexahedralBoundary {
+  struct Triangles {
+    std::array<Triangle, 2> of_side = {};
+    std::size_t count = 0;
+    const Triangle* begin() const { return of_side.data(); }
+    const Triangle* end() const { return of_side.data() + count; }
+  };
   std::vector<Quad> quads;
-  std::vector<std::array<Triangle, 2>> triangles;
+  std::vector<Triangles> triangles;
 };
 // Throws Stopped after a stop request.
 HexahedralBoundary BoundaryOfHexahedra(const TetMesh& mesh, const std::stop_token& stop = {});
 
-// Sets the tetrahedra of a mesh of hexahedra, six for each (SplitSolid). Tags are left alone.
+// Sets the tetrahedra of a mesh of hexahedra (SplitSolid). Tags are left alone.
 void SplitHexahedra(TetMesh& mesh);
+
+// Reverses the orientation of a hexahedron, a wedge or a pyramid.
+void TurnOver(Hexahedron& hexahedron);
+
+// The tetrahedra of hexahedron h are first[h] to first[h + 1] - 1; the first hexahedra + 1 numbers.
+std::vector<std::size_t> FirstTetrahedra(const TetMesh& mesh);
+// The hexahedron of each tetrahedron.
+std::vector<std::int32_t> HexahedraOfTetrahedra(const TetMesh& mesh);
 
 }  // namespace fascicle
 

@@ -18,7 +18,9 @@
 #include "core/base/stop.h"
 #include "core/geometry/faces.h"
 #include "core/geometry/hexahedron.h"
+#include "core/geometry/quadratic_hexahedron.h"
 #include "core/geometry/quadratic_tetrahedron.h"
+#include "core/geometry/solid_cells.h"
 
 namespace fascicle {
 namespace {
@@ -305,7 +307,16 @@ void CheckCurvedEdges(const TetMesh& mesh, const std::stop_token& stop, Problems
     if (!edge.middle.allFinite() || !middles.try_emplace({i, j}, edge.middle).second) wrong.Add(k);
   }
   std::set<std::array<std::int32_t, 2>> met;
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+  // Whether a hexahedron is folded depends on its element, which a scene's check knows.
+  for (const Hexahedron& hexahedron : mesh.hexahedra) {
+    ThrowIfStopped(stop);
+    if (!InRange(hexahedron, mesh.nodes.size())) continue;  // reported by CheckHexahedra
+    for (const auto& [a, b] : kHexEdges) {
+      const auto [i, j] = std::minmax(hexahedron[a], hexahedron[b]);
+      met.insert({i, j});
+    }
+  }
+  for (std::size_t t = 0; t < mesh.tetrahedra.size() && mesh.hexahedra.empty(); ++t) {
     ThrowIfStopped(stop);
     std::array<Vec3, 10> x;
     bool is_curved = false;
@@ -335,12 +346,17 @@ void CheckCurvedEdges(const TetMesh& mesh, const std::stop_token& stop, Problems
 void CheckHexahedra(const TetMesh& mesh, const std::stop_token& stop, Problems& problems) {
   if (mesh.hexahedra.empty()) return;
   constexpr double kNear = 0.21132486540518711775;  // (1 - 1/sqrt(3)) / 2
-  Findings wrong, folded;
+  Findings wrong, folded, collapsed;
+  const std::vector<std::size_t> first = FirstTetrahedra(mesh);
   for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h) {
     ThrowIfStopped(stop);
     const Hexahedron& nodes = mesh.hexahedra[h];
-    bool fits = InRange(nodes, mesh.nodes.size()) && 6 * h + 6 <= mesh.tetrahedra.size();
-    for (std::size_t t = 6 * h; fits && t < 6 * h + 6; ++t) {
+    if (!SolidOf(nodes)) {
+      collapsed.Add(h);
+      continue;
+    }
+    bool fits = InRange(nodes, mesh.nodes.size()) && first[h + 1] <= mesh.tetrahedra.size();
+    for (std::size_t t = first[h]; fits && t < first[h + 1]; ++t) {
       fits = std::all_of(mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end(),
                          [&](std::int32_t n) { return std::find(nodes.begin(), nodes.end(), n) != nodes.end(); });
     }
@@ -358,10 +374,13 @@ void CheckHexahedra(const TetMesh& mesh, const std::stop_token& stop, Problems& 
       break;
     }
   }
-  if (mesh.tetrahedra.size() != 6 * mesh.hexahedra.size()) {
+  if (mesh.tetrahedra.size() != first.back()) {
     problems.Add("", std::to_string(mesh.tetrahedra.size()) + " tetrahedra for " +
-                         std::to_string(mesh.hexahedra.size()) + " hexahedra, not six for each");
+                         std::to_string(mesh.hexahedra.size()) + " hexahedra, not " + std::to_string(first.back()));
   }
+  collapsed.Report("hexahedron has repeated nodes, but is neither a wedge nor a pyramid",
+                   "hexahedra have repeated nodes, but are neither wedges nor pyramids",
+                   "a wedge is 0 1 2 2 3 4 5 5, a pyramid 0 1 2 3 4 4 4 4", problems);
   wrong.Report("hexahedron has other nodes than its tetrahedra", "hexahedra have other nodes than their tetrahedra",
                "split them again", problems);
   folded.Report("hexahedron is inverted or folded", "hexahedra are inverted or folded",
@@ -397,8 +416,7 @@ bool OrientConsistently(TetMesh& mesh) {
     if (!InRange(mesh.tetrahedra[t], mesh.nodes.size()) || !(SignedVolume(mesh, t) < 0)) return false;
   }
   for (Tetrahedron& tetrahedron : mesh.tetrahedra) std::swap(tetrahedron[2], tetrahedron[3]);
-  for (Hexahedron& hexahedron : mesh.hexahedra)
-    std::rotate(hexahedron.begin(), hexahedron.begin() + 4, hexahedron.end());
+  for (Hexahedron& hexahedron : mesh.hexahedra) TurnOver(hexahedron);
   return true;
 }
 

@@ -10,6 +10,7 @@
 #include "core/base/letters.h"
 #include "core/base/stop.h"
 #include "core/geometry/mesh_readers.h"
+#include "core/geometry/quadratic_hexahedron.h"
 #include "core/geometry/text_scanner.h"
 
 namespace fascicle {
@@ -125,21 +126,21 @@ std::string CountSolids(const std::vector<RawSolid>& solids) {
   return text;
 }
 
-bool IsOfHexahedra(const RawMesh& raw) {
-  return raw.tetrahedra.empty() && std::all_of(raw.solids.begin(), raw.solids.end(), [](const RawSolid& solid) {
-           return solid.shape == SolidShape::kHexahedron;
-         });
+// Whether the mesh consists of hexahedra with mid-edge nodes. Beside wedges and pyramids, these are left out.
+bool HasMiddles(const RawMesh& raw) {
+  const auto is_hexahedron = [](const RawSolid& solid) { return solid.shape == SolidShape::kHexahedron; };
+  const auto has_middles = [](const RawSolid& solid) { return solid.middles.has_value(); };
+  return std::all_of(raw.solids.begin(), raw.solids.end(), is_hexahedron) &&
+         std::any_of(raw.solids.begin(), raw.solids.end(), has_middles);
 }
 
 // Reports volume elements whose omission would leave holes in the body.
 bool CheckSolids(const RawMesh& raw, Solids wanted, Problems& problems) {
   const std::size_t before = problems.count();
-  if (!raw.solids.empty() && wanted == Solids::kKeep && !IsOfHexahedra(raw)) {
-    const std::string tetrahedra =
-        raw.tetrahedra.empty() ? "" : " and " + std::to_string(raw.tetrahedra.size()) + " tetrahedra";
+  if (!raw.solids.empty() && wanted == Solids::kKeep && !raw.tetrahedra.empty()) {
     problems.Add("",
-                 "the file has " + CountSolids(raw.solids) + tetrahedra +
-                     "; a mesh must have either tetrahedra or hexahedra only",
+                 "the file has " + CountSolids(raw.solids) + " and " + std::to_string(raw.tetrahedra.size()) +
+                     " tetrahedra; a mesh must have tetrahedra only, or none",
                  "`fascicle mesh FILE --convert --split-hexahedra --out FILE.msh` splits them into tetrahedra");
   }
   const std::size_t lost = raw.higher_order + raw.other_solids;
@@ -174,7 +175,12 @@ std::vector<std::size_t> SplitSolids(RawMesh& raw, Solids wanted, const std::sto
   }
   if (!raw.solids.empty() && wanted == Solids::kSplit)
     raw.notes.push_back(CountSolids(raw.solids) + " were split into tetrahedra");
-  if (raw.curved_solids > 0) {
+  const bool keeps_middles = wanted == Solids::kKeep && HasMiddles(raw);
+  if (keeps_middles && raw.inner_nodes > 0) {
+    raw.notes.push_back("the " + std::to_string(raw.inner_nodes) +
+                        " nodes in the middle of sides and inside of hexahedra are placed between their edges");
+  }
+  if (raw.curved_solids > 0 && !keeps_middles) {
     raw.notes.push_back("the mid-edge nodes of " + std::to_string(raw.curved_solids) +
                         (wanted == Solids::kSplit ? " of them" : " hexahedra") +
                         " were left out: their edges are straight");
@@ -183,7 +189,8 @@ std::vector<std::size_t> SplitSolids(RawMesh& raw, Solids wanted, const std::sto
 }
 
 // Programs differ in whether the base of a wedge is seen from inside or from outside.
-void OrientSolids(const std::vector<std::size_t>& first, TetMesh& mesh) {
+void OrientSolids(const std::vector<std::size_t>& first, std::vector<std::array<std::int32_t, 12>>& middles,
+                  TetMesh& mesh) {
   for (std::size_t s = 0; s + 1 < first.size(); ++s) {
     double volume = 0;
     for (std::size_t t = first[s]; t < first[s + 1]; ++t) volume += SignedVolume(mesh, t);
@@ -191,13 +198,14 @@ void OrientSolids(const std::vector<std::size_t>& first, TetMesh& mesh) {
       std::swap(mesh.tetrahedra[t][2], mesh.tetrahedra[t][3]);
     }
     if (volume >= 0 || mesh.hexahedra.empty()) continue;
-    Hexahedron& hexahedron = mesh.hexahedra[s];
-    std::rotate(hexahedron.begin(), hexahedron.begin() + 4, hexahedron.end());
+    TurnOver(mesh.hexahedra[s]);
+    if (!middles.empty()) std::swap_ranges(middles[s].begin(), middles[s].begin() + 4, middles[s].begin() + 4);
   }
 }
 
 // Leaves out nodes without a tetrahedron, and triangles and single nodes on them.
-void DropUnused(RawMesh& raw, std::vector<std::array<std::int32_t, 6>>& middles, TetMesh& mesh) {
+void DropUnused(RawMesh& raw, std::vector<std::array<std::int32_t, 6>>& middles,
+                std::vector<std::array<std::int32_t, 12>>& of_hexahedra, TetMesh& mesh) {
   constexpr std::size_t kMostNamed = 5;
   std::vector<std::int32_t> number(mesh.nodes.size(), -1);
   const auto use = [&](const auto& cells) {
@@ -207,6 +215,7 @@ void DropUnused(RawMesh& raw, std::vector<std::array<std::int32_t, 6>>& middles,
   };
   use(mesh.tetrahedra);
   use(middles);
+  use(of_hexahedra);
   const auto unused = static_cast<std::size_t>(std::count(number.begin(), number.end(), -1));
   if (unused == 0) return;
   std::string examples;
@@ -231,6 +240,7 @@ void DropUnused(RawMesh& raw, std::vector<std::array<std::int32_t, 6>>& middles,
   renumber(mesh.tetrahedra);
   renumber(mesh.hexahedra);
   renumber(middles);
+  renumber(of_hexahedra);
   renumber(mesh.tagged_triangles);
   const auto is_gone = [](const Triangle& t) { return *std::min_element(t.begin(), t.end()) < 0; };
   std::size_t kept = 0;
@@ -258,31 +268,36 @@ void DropUnused(RawMesh& raw, std::vector<std::array<std::int32_t, 6>>& middles,
 
 // Turns mid-edge nodes into curved edges, or drops them where the edge is straight up to round-off, and renumbers the
 // remaining nodes.
-void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, const std::stop_token& stop, TetMesh& mesh,
-                 std::vector<std::array<std::int32_t, 2>>& node_places, Problems& problems) {
+// `cells`: the elements of the mesh, with their nodes in `middles`, one for each of `edges`.
+template <class Cell, std::size_t kEdges, class Edges>
+void TakeMiddles(const std::vector<Cell>& cells, const Edges& edges_of_cell,
+                 const std::vector<std::array<std::int32_t, kEdges>>& middles, const std::string& kind,
+                 const std::stop_token& stop, TetMesh& mesh, std::vector<std::array<std::int32_t, 2>>& node_places,
+                 Problems& problems) {
   constexpr double kStraight = 1e-9;
   std::vector<char> is_middle(mesh.nodes.size());
   std::map<std::array<std::int32_t, 2>, std::int32_t> edges;
   std::size_t torn = 0;
   for (std::size_t t = 0; t < middles.size(); ++t) {
     ThrowIfStopped(stop);
-    for (int k = 0; k < 6; ++k) {
-      const auto [i, j] = std::minmax(mesh.tetrahedra[t][kTetEdges[k][0]], mesh.tetrahedra[t][kTetEdges[k][1]]);
+    for (std::size_t k = 0; k < kEdges; ++k) {
+      const auto [i, j] = std::minmax(cells[t][static_cast<std::size_t>(edges_of_cell[k][0])],
+                                      cells[t][static_cast<std::size_t>(edges_of_cell[k][1])]);
       is_middle[middles[t][k]] = 1;
       if (edges.try_emplace({i, j}, middles[t][k]).first->second != middles[t][k]) ++torn;
     }
   }
   if (torn > 0) {
-    problems.Add("", std::to_string(torn) + " edges have different mid-edge nodes in neighbouring tetrahedra",
+    problems.Add("", std::to_string(torn) + " edges have different mid-edge nodes in neighbouring " + kind,
                  "the body would be disconnected there: mesh it again");
     return;
   }
   for (std::size_t t = 0; t < middles.size(); ++t) {
-    for (const std::int32_t corner : mesh.tetrahedra[t]) {
+    for (const std::int32_t corner : cells[t]) {
       if (!is_middle[corner]) continue;
       problems.Add("",
                    "node " + std::to_string(corner) +
-                       " (counted from 0) is a corner of one tetrahedron and a mid-edge node of another",
+                       " (counted from 0) is a corner of one and a mid-edge node of another of the " + kind,
                    "mesh the body again, with one element order");
       return;
     }
@@ -301,20 +316,20 @@ void TakeMiddles(const std::vector<std::array<std::int32_t, 6>>& middles, const 
   mesh.nodes.resize(count);
   for (const std::int32_t n : number) node_places.push_back({n, n});
   for (const auto& [ends, middle] : edges) node_places[middle] = {number[ends[0]], number[ends[1]]};
-  const auto renumber = [&](auto& cells) {
-    for (auto& cell : cells) {
+  const auto renumber = [&](auto& renumbered) {
+    for (auto& cell : renumbered) {
       for (std::int32_t& n : cell) n = number[n];
     }
   };
   renumber(mesh.tetrahedra);
+  renumber(mesh.hexahedra);
   for (CurvedEdge& edge : mesh.curved_edges) {
     for (std::int32_t& n : edge.ends) n = number[n];
   }
   // A triangle on mid-edge nodes is not a face of a tetrahedron.
   for (const Triangle& triangle : mesh.tagged_triangles) {
     if (std::none_of(triangle.begin(), triangle.end(), [&](std::int32_t n) { return number[n] < 0; })) continue;
-    problems.Add("", "a triangle has a node in the middle of a tetrahedron's edge",
-                 "write both with one element order");
+    problems.Add("", "a triangle has a node in the middle of an element's edge", "write both with one element order");
     return;
   }
   renumber(mesh.tagged_triangles);
@@ -346,10 +361,22 @@ std::optional<TetMesh> MakeMesh(RawMesh& raw, Solids wanted, const std::stop_tok
   if (!SortNodes(raw, stop, problems)) return std::nullopt;
   const NodeFinder finder(raw);
   FindNodes(finder, raw.tetrahedra, mesh.tetrahedra, "tetrahedra", stop, problems);
+  std::vector<std::array<std::int32_t, 12>> middles_of_hexahedra;
   if (wanted == Solids::kKeep && !raw.solids.empty()) {
     std::vector<std::array<std::int64_t, 8>> hexahedra;
-    for (const RawSolid& solid : raw.solids) hexahedra.push_back(solid.nodes);
+    std::vector<std::array<std::int64_t, 12>> higher;
+    const bool has_middles = HasMiddles(raw);
+    for (const RawSolid& solid : raw.solids) {
+      hexahedra.push_back(AsHexahedron(solid.shape, solid.nodes));
+      if (solid.middles && has_middles) higher.push_back(*solid.middles);
+    }
     FindNodes(finder, hexahedra, mesh.hexahedra, "hexahedra", stop, problems);
+    if (!higher.empty() && higher.size() != hexahedra.size()) {
+      problems.Add("", "the file mixes hexahedra with and without mid-edge nodes",
+                   "write the mesh with one element order");
+    } else {
+      FindNodes(finder, higher, middles_of_hexahedra, "hexahedra", stop, problems);
+    }
   }
   FindNodes(finder, raw.triangles, mesh.tagged_triangles, "triangles", stop, problems);
   mesh.tetrahedron_tags = NarrowTags(raw.tetrahedron_tags, problems);
@@ -375,9 +402,14 @@ std::optional<TetMesh> MakeMesh(RawMesh& raw, Solids wanted, const std::stop_tok
   }
   if (problems.count() > before) return std::nullopt;
   mesh.nodes = std::move(raw.nodes);
-  OrientSolids(split, mesh);
-  DropUnused(raw, middles, mesh);
-  if (!middles.empty()) TakeMiddles(middles, stop, mesh, raw.node_places, problems);
+  OrientSolids(split, middles_of_hexahedra, mesh);
+  DropUnused(raw, middles, middles_of_hexahedra, mesh);
+  if (!middles.empty()) {
+    TakeMiddles(mesh.tetrahedra, kTetEdges, middles, "tetrahedra", stop, mesh, raw.node_places, problems);
+  }
+  if (!middles_of_hexahedra.empty()) {
+    TakeMiddles(mesh.hexahedra, kHexEdges, middles_of_hexahedra, "hexahedra", stop, mesh, raw.node_places, problems);
+  }
   if (problems.count() > before) return std::nullopt;
   return mesh;
 }

@@ -20,7 +20,9 @@ namespace fascicle {
 // A hexahedron, wedge or pyramid.
 struct RawSolid {
   SolidShape shape = SolidShape::kHexahedron;
-  std::array<std::int64_t, 8> nodes = {};  // the first CornersOf(shape); without mid-edge nodes
+  std::array<std::int64_t, 8> nodes = {};  // the first CornersOf(shape)
+  // Of hexahedra of 20 nodes and more: the mid-edge nodes in the order of kHexEdges.
+  std::optional<std::array<std::int64_t, 12>> middles = {};
 };
 
 // A mesh as stored in its file, before node numbers are looked up. Filled by the readers.
@@ -43,7 +45,8 @@ struct RawMesh {
   std::vector<std::int64_t> quad_tags;  // one for each quadrilateral
   // Index and tag of tetrahedra and solids with several tags, for all but the first.
   std::vector<std::array<std::int64_t, 2>> further_tags, further_solid_tags;
-  std::size_t curved_solids = 0;  // solids with mid-edge nodes, which are left out
+  std::size_t curved_solids = 0;  // solids with mid-edge nodes
+  std::size_t inner_nodes = 0;    // nodes in the middle of the sides of hexahedra and inside, which are left out
   std::size_t higher_order = 0;   // tetrahedra of more than ten nodes, skipped
   std::size_t other_solids = 0;   // solids of other shapes, such as polyhedra, skipped
   std::size_t others = 0;         // cells of other kinds, skipped

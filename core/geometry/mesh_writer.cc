@@ -9,6 +9,9 @@
 
 #include "core/base/stop.h"
 #include "core/geometry/gmsh_types.h"
+#include "core/geometry/hexahedron.h"
+#include "core/geometry/quadratic_hexahedron.h"
+#include "core/geometry/solid_cells.h"
 
 namespace fascicle {
 namespace {
@@ -34,15 +37,20 @@ class MidEdgeNodes {
     if (mesh.curved_edges.empty()) return;
     std::map<Ends, Vec3> curved;
     for (const CurvedEdge& edge : mesh.curved_edges) curved[EndsOf(edge.ends[0], edge.ends[1])] = edge.middle;
+    const auto add = [&](std::int32_t i, std::int32_t j) {
+      const Ends ends = EndsOf(i, j);
+      const auto next = first_ + static_cast<std::int32_t>(positions_.size());
+      if (!numbers_.try_emplace(ends, next).second) return;
+      const auto found = curved.find(ends);
+      positions_.push_back(found != curved.end() ? found->second
+                                                 : Vec3(0.5 * (mesh.nodes[ends[0]] + mesh.nodes[ends[1]])));
+    };
+    for (const Hexahedron& h : mesh.hexahedra) {
+      for (const auto& [i, j] : kHexEdges) add(h[i], h[j]);
+    }
+    if (!mesh.hexahedra.empty()) return;
     for (const Tetrahedron& t : mesh.tetrahedra) {
-      for (const auto& [i, j] : kTetEdges) {
-        const Ends ends = EndsOf(t[i], t[j]);
-        const auto next = first_ + static_cast<std::int32_t>(positions_.size());
-        if (!numbers_.try_emplace(ends, next).second) continue;
-        const auto found = curved.find(ends);
-        positions_.push_back(found != curved.end() ? found->second
-                                                   : Vec3(0.5 * (mesh.nodes[ends[0]] + mesh.nodes[ends[1]])));
-      }
+      for (const auto& [i, j] : kTetEdges) add(t[i], t[j]);
     }
   }
 
@@ -79,13 +87,25 @@ void AppendTetrahedron(std::size_t number, const Tetrahedron& t, std::int32_t ta
              middle(a, c), middle(a, d), middle(c, d), middle(b, d));
 }
 
-void AppendHexahedron(std::size_t number, const Hexahedron& hexahedron, std::int32_t tag, std::string& text) {
-  for (const auto head : {static_cast<std::int64_t>(number), std::int64_t{gmsh::kHexahedron8}, std::int64_t{2},
-                          std::int64_t{tag}, std::int64_t{tag}}) {
+// A hexahedron, a wedge or a pyramid; with mid-edge nodes if there are any.
+void AppendHexahedron(std::size_t number, const Hexahedron& hexahedron, std::int32_t tag, const MidEdgeNodes& middles,
+                      std::string& text) {
+  const Solid<std::int32_t> solid =
+      SolidOf(hexahedron).value_or(Solid<std::int32_t>{SolidShape::kHexahedron, hexahedron});
+  std::vector<std::int32_t> nodes(solid.corners().begin(), solid.corners().end());
+  std::int64_t type = solid.shape == SolidShape::kHexahedron ? gmsh::kHexahedron8
+                      : solid.shape == SolidShape::kWedge    ? gmsh::kWedge6
+                                                             : gmsh::kPyramid5;
+  if (!middles.positions().empty()) {
+    type = gmsh::kHexahedron20;
+    for (const auto& [i, j] : gmsh::kHexahedronEdges) nodes.push_back(middles.Between(hexahedron[i], hexahedron[j]));
+  }
+  for (const auto head :
+       {static_cast<std::int64_t>(number), type, std::int64_t{2}, std::int64_t{tag}, std::int64_t{tag}}) {
     Append(head, text);
     text += ' ';
   }
-  for (const std::int32_t n : hexahedron) {
+  for (const std::int32_t n : nodes) {
     Append(n + 1, text);
     text += ' ';
   }
@@ -111,10 +131,21 @@ std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names, con
     AppendNode(++number, node, text);
   }
   for (const Vec3& node : middles.positions()) AppendNode(++number, node, text);
-  text += "$EndNodes\n$Elements\n" +
-          std::to_string(mesh.tagged_nodes.size() + mesh.tagged_triangles.size() + ElementCount(mesh) +
-                         mesh.further_tags.size() / (mesh.hexahedra.empty() ? 1 : 6)) +
-          "\n";
+  // Tags are those of tetrahedra, also of hexahedra: of the first of each.
+  const std::vector<std::size_t> first = FirstTetrahedra(mesh);
+  std::vector<std::array<std::int32_t, 2>> further = mesh.further_tags;
+  if (!mesh.hexahedra.empty()) {
+    const std::vector<std::int32_t> hexahedra = HexahedraOfTetrahedra(mesh);
+    std::erase_if(further, [&](const auto& tag) {
+      const auto t = static_cast<std::size_t>(tag[0]);
+      return first[static_cast<std::size_t>(hexahedra[t])] != t;
+    });
+    for (auto& [t, tag] : further) t = hexahedra[static_cast<std::size_t>(t)];
+  }
+  text +=
+      "$EndNodes\n$Elements\n" +
+      std::to_string(mesh.tagged_nodes.size() + mesh.tagged_triangles.size() + ElementCount(mesh) + further.size()) +
+      "\n";
   // Number, type, number of tags, the tags (physical, elementary), nodes.
   number = 0;
   for (std::size_t i = 0; i < mesh.tagged_nodes.size(); ++i) {
@@ -125,22 +156,18 @@ std::string GmshText(const TetMesh& mesh, const std::vector<TagName>& names, con
     const auto& [a, b, c] = mesh.tagged_triangles[i];
     AppendLine(text, ++number, gmsh::kTriangle3, 2, tag, tag, a + 1, b + 1, c + 1);
   }
-  // Tags are those of tetrahedra, also of hexahedra.
-  const std::size_t per_element = mesh.hexahedra.empty() ? 1 : 6;
   const auto append = [&](std::size_t e, std::int32_t tag) {
     if (mesh.hexahedra.empty()) {
       AppendTetrahedron(++number, mesh.tetrahedra[e], tag, middles, text);
     } else {
-      AppendHexahedron(++number, mesh.hexahedra[e], tag, text);
+      AppendHexahedron(++number, mesh.hexahedra[e], tag, middles, text);
     }
   };
   for (std::size_t e = 0; e < ElementCount(mesh); ++e) {
     ThrowIfStopped(stop);
-    append(e, mesh.tetrahedron_tags.empty() ? 0 : mesh.tetrahedron_tags[per_element * e]);
+    append(e, mesh.tetrahedron_tags.empty() ? 0 : mesh.tetrahedron_tags[mesh.hexahedra.empty() ? e : first[e]]);
   }
-  for (const auto& [t, tag] : mesh.further_tags) {
-    if (static_cast<std::size_t>(t) % per_element == 0) append(static_cast<std::size_t>(t) / per_element, tag);
-  }
+  for (const auto& [e, tag] : further) append(static_cast<std::size_t>(e), tag);
   return text + "$EndElements\n";
 }
 

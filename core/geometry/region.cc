@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/geometry/faces.h"
+#include "core/geometry/solid_cells.h"
 #include "core/geometry/triangle_distance.h"
 #include "core/geometry/triangle_mesh.h"
 
@@ -18,7 +19,10 @@ constexpr double kRegionRoundOff = 1e-9;  // relative to the diagonal; for angle
 
 std::vector<Triangle> TrianglesOf(const std::vector<Quad>& quads) {
   std::vector<Triangle> triangles;
-  for (const Quad& q : quads) triangles.insert(triangles.end(), {{q[0], q[1], q[2]}, {q[0], q[2], q[3]}});
+  for (const Quad& q : quads) {
+    triangles.push_back({q[0], q[1], q[2]});
+    if (q[3] != q[2]) triangles.push_back({q[0], q[2], q[3]});
+  }
   return triangles;
 }
 
@@ -82,6 +86,13 @@ struct Bricks {
   }
 };
 
+Vec3 CentroidOf(const std::vector<Vec3>& nodes, const Hexahedron& cell) {
+  const auto solid = SolidOf(cell);
+  const auto corners = solid ? solid->corners() : std::span<const std::int32_t>(cell);
+  Vec3 sum = Vec3::Zero();
+  for (const std::int32_t node : corners) sum += nodes[static_cast<std::size_t>(node)];
+  return sum / static_cast<double>(corners.size());
+}
 template <class Cell>
 Vec3 CentroidOf(const std::vector<Vec3>& nodes, const Cell& cell) {
   Vec3 sum = Vec3::Zero();
@@ -262,7 +273,8 @@ void SelectTagged(const TetMesh& mesh, const HexahedralBoundary& boundary, const
       region.sides.push_back(boundary.quads[i]);
     }
   }
-  for (std::int32_t& element : region.elements) element /= 6;
+  const std::vector<std::int32_t> hexahedra = HexahedraOfTetrahedra(mesh);
+  for (std::int32_t& element : region.elements) element = hexahedra[static_cast<std::size_t>(element)];
   region.elements.erase(std::unique(region.elements.begin(), region.elements.end()), region.elements.end());
 }
 

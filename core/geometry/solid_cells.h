@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -49,6 +50,49 @@ constexpr std::span<const SolidSide> SidesOf(SolidShape shape) {
       return internal::kPyramidSides;
   }
   return {};
+}
+
+// The local nodes of a wedge and a pyramid in the hexahedron that it is with one side collapsed to an edge, or the top
+// to a point. Shape functions of the hexahedron then add up to those of the shape.
+inline constexpr std::array<int, 8> kWedgeAsHexahedron = {0, 1, 2, 2, 3, 4, 5, 5};
+inline constexpr std::array<int, 8> kPyramidAsHexahedron = {0, 1, 2, 3, 4, 4, 4, 4};
+
+template <class Index>
+std::array<Index, 8> AsHexahedron(SolidShape shape, const std::array<Index, 8>& nodes) {
+  if (shape == SolidShape::kHexahedron) return nodes;
+  const auto& order = shape == SolidShape::kWedge ? kWedgeAsHexahedron : kPyramidAsHexahedron;
+  std::array<Index, 8> hexahedron = {};
+  for (std::size_t a = 0; a < 8; ++a) hexahedron[a] = nodes[static_cast<std::size_t>(order[a])];
+  return hexahedron;
+}
+
+// A solid by its distinct nodes, in the order of its shape.
+template <class Index>
+struct Solid {
+  SolidShape shape = SolidShape::kHexahedron;
+  std::array<Index, 8> nodes = {};  // the first CornersOf(shape)
+
+  std::span<const Index> corners() const { return {nodes.data(), static_cast<std::size_t>(CornersOf(shape))}; }
+};
+
+// A hexahedron that may be a wedge or a pyramid with repeated nodes; nothing if its nodes are repeated otherwise.
+template <class Index>
+std::optional<Solid<Index>> SolidOf(const std::array<Index, 8>& hexahedron) {
+  for (const SolidShape shape : {SolidShape::kHexahedron, SolidShape::kWedge, SolidShape::kPyramid}) {
+    Solid<Index> solid{shape, hexahedron};
+    if (shape == SolidShape::kWedge) std::copy_n(hexahedron.begin() + 4, 3, solid.nodes.begin() + 3);
+    if (AsHexahedron(shape, solid.nodes) != hexahedron) continue;
+    std::array<Index, 8> sorted = solid.nodes;
+    const auto end = sorted.begin() + CornersOf(shape);
+    std::sort(sorted.begin(), end);
+    if (std::adjacent_find(sorted.begin(), end) == end) return solid;
+  }
+  return std::nullopt;
+}
+
+// Number of tetrahedra of a solid (SplitSolid).
+constexpr int TetrahedraOf(SolidShape shape) {
+  return shape == SolidShape::kHexahedron ? 6 : shape == SolidShape::kWedge ? 3 : 2;
 }
 
 // A quadrilateral as two triangles, along the diagonal from its lowest node.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/geometry/faces.h"
+#include "core/geometry/solid_cells.h"
 
 namespace fascicle {
 
@@ -21,9 +22,12 @@ Vec3 Centroid(const TetMesh& mesh, std::size_t tetrahedron) {
 
 Vec3 ElementCentroid(const TetMesh& mesh, std::size_t element) {
   if (mesh.hexahedra.empty()) return Centroid(mesh, element);
+  const Hexahedron& hexahedron = mesh.hexahedra[element];
+  const auto solid = SolidOf(hexahedron);
+  const auto corners = solid ? solid->corners() : std::span<const std::int32_t>(hexahedron);
   Vec3 sum = Vec3::Zero();
-  for (const std::int32_t n : mesh.hexahedra[element]) sum += mesh.nodes[n];
-  return sum / 8;
+  for (const std::int32_t n : corners) sum += mesh.nodes[n];
+  return sum / static_cast<double>(corners.size());
 }
 
 double TotalVolume(const TetMesh& mesh) {

@@ -13,7 +13,7 @@ namespace fascicle {
 
 using Tetrahedron = std::array<std::int32_t, 4>;  // node indices; det[X1-X0, X2-X0, X3-X0] > 0
 // Node indices in the order of VTK: counter-clockwise around the lower side seen from the upper one, then around the
-// upper one.
+// upper one. A wedge or a pyramid is one with repeated nodes (solid_cells.h).
 using Hexahedron = std::array<std::int32_t, 8>;
 using Triangle = std::array<std::int32_t, 3>;  // node indices; counter-clockwise seen from outside
 
@@ -26,12 +26,13 @@ struct CurvedEdge {
   Vec3 middle;                       // position of the mid-edge node, in the unit of the nodes
 };
 
-// Tetrahedra, or hexahedra with the six tetrahedra of each, and the tags of their file. Plain data; mesh_checks.h
+// Tetrahedra, or hexahedra with the six tetrahedra of each (three of a wedge, two of a pyramid), and the tags of their
+// file. Plain data; mesh_checks.h
 // decides whether a mesh is fit for simulation.
 //
 // The elements of a mesh are its hexahedra if it has any, else its tetrahedra: values of elements, such as fibres and
-// materials, have one entry for each of them. The tetrahedra 6 h to 6 h + 5 of hexahedron h serve whatever is
-// geometric: the boundary, cross-sections, volumes.
+// materials, have one entry for each of them. The tetrahedra of each hexahedron, one after the other (FirstTetrahedra),
+// serve whatever is geometric: the boundary, cross-sections, volumes.
 struct TetMesh {
   std::vector<Vec3> nodes;  // [m] (readers: the file's own unit)
   std::vector<Tetrahedron> tetrahedra;

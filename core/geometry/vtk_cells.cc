@@ -59,6 +59,11 @@ void AddSolid(const VtkSolid& type, const std::int64_t* nodes, std::int64_t firs
     std::swap(solid.nodes[6], solid.nodes[7]);
   }
   if (type.nodes > corners) ++raw.curved_solids;
+  if (type.shape == SolidShape::kHexahedron && type.nodes >= 20) {
+    solid.middles.emplace();
+    for (std::size_t k = 0; k < 12; ++k) (*solid.middles)[k] = nodes[8 + k] + first_node;
+    raw.inner_nodes += static_cast<std::size_t>(type.nodes) - 20;
+  }
   raw.solids.push_back(solid);
   raw.solid_tags.push_back(tag);
 }

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/base/text_lines.h"
+#include "core/geometry/hexahedron.h"
 
 namespace fascicle {
 FibreField ConstantFibres(const TetMesh& mesh, const Vec3& direction) {
@@ -43,10 +44,11 @@ FibreField OfElements(const TetMesh& mesh, FibreField of_tetrahedra) {
   if (mesh.hexahedra.empty() || of_tetrahedra.empty()) return of_tetrahedra;
   FibreField fibres;
   fibres.reserve(mesh.hexahedra.size());
+  const std::vector<std::size_t> first = FirstTetrahedra(mesh);
   for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h) {
     Vec3 sum = Vec3::Zero();
-    for (std::size_t t = 6 * h; t < 6 * h + 6; ++t) sum += SignedVolume(mesh, t) * of_tetrahedra[t];
-    fibres.push_back(sum.isZero(0) ? of_tetrahedra[6 * h] : Vec3(sum.stableNormalized()));
+    for (std::size_t t = first[h]; t < first[h + 1]; ++t) sum += SignedVolume(mesh, t) * of_tetrahedra[t];
+    fibres.push_back(sum.isZero(0) ? of_tetrahedra[first[h]] : Vec3(sum.stableNormalized()));
   }
   return fibres;
 }

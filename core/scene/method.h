@@ -16,8 +16,11 @@ inline constexpr std::array<const char*, 3> kMethodNames = {"tet", "voxel", "eul
 
 enum class Stepping { kExplicit, kMixed, kBackwardEuler, kNewmark, kBdf2, kQuasiStatic };
 
-// Shape functions of an element: tetrahedra of 4 or 10 nodes, hexahedra of 8 nodes.
-enum class ElementOrder { kLinear, kQuadratic, kHexahedral };
+// Shape functions of an element: tetrahedra of 4 or 10 nodes, hexahedra of 8 or 27 nodes.
+enum class ElementOrder { kLinear, kQuadratic, kHexahedral, kHexahedralQuadratic };
+constexpr bool IsHexahedral(ElementOrder element) {
+  return element == ElementOrder::kHexahedral || element == ElementOrder::kHexahedralQuadratic;
+}
 
 // Where the volume energy of nearly incompressible laws acts: on averages (of tetrahedra: around nodes, of hexahedra:
 // over the element), or at each point separately, which locks.

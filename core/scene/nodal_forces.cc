@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+
 namespace fascicle {
 namespace {
 
@@ -83,15 +85,18 @@ std::map<std::int32_t, double> VolumesOfHexahedra(const Region& region, const Te
   return volumes;
 }
 
-LoadedRegion::Face::Face(const Vec3& a, int n, const std::array<std::int32_t, 4>& of) : area(a), count(n), nodes(of) {
-  for (int c = 0; c < n; ++c) share[c] = a.norm() / n;
+LoadedRegion::Face::Face(const Vec3& a, int n, const std::array<std::int32_t, 4>& of) : area(a), count(n) {
+  for (int c = 0; c < n; ++c) {
+    nodes[c] = of[c];
+    share[c] = a.norm() / n;
+  }
 }
 
 LoadedRegion::Face LoadedSide(const Quad& side, const std::vector<Vec3>& X) {
   constexpr double kNear = 0.21132486540518711775;  // (1 - 1/sqrt(3)) / 2
   LoadedRegion::Face face;
   face.count = 4;
-  face.nodes = side;
+  std::copy(side.begin(), side.end(), face.nodes.begin());
   face.area = 0.5 * (X[side[2]] - X[side[0]]).cross(X[side[3]] - X[side[1]]);
   for (const double u : {kNear, 1 - kNear}) {
     for (const double v : {kNear, 1 - kNear}) {

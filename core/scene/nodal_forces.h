@@ -16,14 +16,15 @@ namespace fascicle {
 struct LoadedRegion {
   // A face of the rest surface and its nodes, which share a force on it: consistently with the shape functions. Linear
   // triangles and rectangles, whose nodes are the corners, and quadratic triangles, whose nodes are the mid-edge nodes,
-  // have equal shares.
+  // have equal shares. Triquadratic hexahedra have nine nodes on a side.
   struct Face {
+    static constexpr std::size_t kMostNodes = 9;
     Face() = default;
     Face(const Vec3& a, int n, const std::array<std::int32_t, 4>& of);  // equal shares
     Vec3 area = Vec3::Zero();                                           // outward normal times area [m^2]
     int count = 0;                                                      // number of nodes
-    std::array<std::int32_t, 4> nodes = {};
-    std::array<double, 4> share = {};  // of the area, for each node [m^2]
+    std::array<std::int32_t, kMostNodes> nodes = {};
+    std::array<double, kMostNodes> share = {};  // of the area, for each node [m^2]
   };
   std::vector<std::int32_t> nodes;
   std::vector<Face> faces;

@@ -74,6 +74,7 @@ std::optional<ProbePlace> HexahedronAt(const TetMesh& mesh, const std::vector<st
 std::optional<ProbePlace> ElementAt(const TetShape& shape, const Vec3& point) {
   const std::vector<Vec3>& X = shape.mesh.nodes;
   std::vector<std::int32_t> hexahedra;
+  const std::vector<std::int32_t> hexahedron_of = HexahedraOfTetrahedra(shape.mesh);
   for (std::size_t e = 0; e < shape.mesh.tetrahedra.size(); ++e) {
     const Tetrahedron& t = shape.mesh.tetrahedra[e];
     Mat3 edges;
@@ -81,7 +82,7 @@ std::optional<ProbePlace> ElementAt(const TetShape& shape, const Vec3& point) {
     const Vec3 L = edges.inverse() * (point - X[t[0]]);
     if (!(L.minCoeff() >= -kClose && L.sum() <= 1 + kClose)) continue;
     if (shape.mesh.hexahedra.empty()) return ProbePlace{static_cast<std::int32_t>(e), L};
-    hexahedra.push_back(static_cast<std::int32_t>(e / 6));
+    hexahedra.push_back(hexahedron_of[e]);
   }
   return HexahedronAt(shape.mesh, hexahedra, point);
 }
@@ -116,15 +117,20 @@ std::optional<ProbePlace> ElementAt(const SurfaceShape& shape, const Vec3& point
   return place;
 }
 
-// The first hexahedron of a node.
+// The first hexahedron of a node, preferably one that does not repeat it: a hexahedron has no inverse at a repeated
+// node. If all do, beside the node.
 ProbePlace HexahedronWith(const TetMesh& mesh, std::int32_t node) {
+  constexpr double kBeside = 1e-6;
+  std::optional<ProbePlace> collapsed;
   for (std::size_t h = 0; h < mesh.hexahedra.size(); ++h) {
-    for (int a = 0; a < 8; ++a) {
-      if (mesh.hexahedra[h][static_cast<std::size_t>(a)] != node) continue;
-      return {static_cast<std::int32_t>(h), NodeCoordinates(a)};
-    }
+    const Hexahedron& nodes = mesh.hexahedra[h];
+    const auto found = std::find(nodes.begin(), nodes.end(), node);
+    if (found == nodes.end()) continue;
+    const Vec3 at = NodeCoordinates(static_cast<int>(found - nodes.begin()));
+    if (std::count(nodes.begin(), nodes.end(), node) == 1) return {static_cast<std::int32_t>(h), at};
+    if (!collapsed) collapsed = {static_cast<std::int32_t>(h), at + kBeside * (Vec3::Constant(0.5) - at)};
   }
-  return {};
+  return collapsed.value_or(ProbePlace{});
 }
 
 std::int32_t NearestNode(const std::vector<Vec3>& nodes, const Vec3& point) {

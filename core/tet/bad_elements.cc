@@ -68,7 +68,7 @@ BadElements FindThinnestElement(const TetModel& model, const NodalVector& x) {
     const TetBody& body = model.bodies()[b];
     for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
       const double height = model.VisitElement([&]<class Element>(Element) {
-        return SmallestHeight(MeanEdges(ValuesOf<Element>(model, e, x)), Element::kNodes != 8);
+        return SmallestHeight(MeanEdges(ValuesOf<Element>(model, e, x)), !Element::kIsHexahedron);
       });
       if (!(height < least)) continue;
       least = height;

@@ -27,9 +27,11 @@ const ElementKernels<S>& KernelsOf(const TetModel& model, const Kernels& kernels
     case ElementOrder::kQuadratic:
       return choose(kernels.quadratic, kernels.quadratic_float);
     case ElementOrder::kHexahedral:
+      return choose(kernels.hexahedral, kernels.hexahedral_float);
+    case ElementOrder::kHexahedralQuadratic:
       break;
   }
-  return choose(kernels.hexahedral, kernels.hexahedral_float);
+  return choose(kernels.hexahedral_quadratic, kernels.hexahedral_quadratic_float);
 }
 
 // Calls visitor(kernels for the model's element and number type).

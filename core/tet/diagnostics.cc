@@ -64,7 +64,7 @@ VolumeRatios VolumeRatiosOf(const TetModel& model, std::size_t body_index, const
     for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
       const auto values = ValuesOf<Element>(model, e, x);
       for (int q = 0; q < Element::kPoints; ++q) {
-        const double volume = Element::kPointWeight * Determinant(EdgeMatrix(Element::Corners(values, q))) / 6;
+        const double volume = Element::PointWeight(q) * Determinant(EdgeMatrix(Element::Corners(values, q))) / 6;
         const double J = volume / model.rest_volume()[Element::kPoints * e + q];
         rest += model.rest_volume()[Element::kPoints * e + q];
         present += volume;

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "core/geometry/hexahedron.h"
+#include "core/geometry/quadratic_hexahedron.h"
 #include "core/geometry/tet_mesh.h"
 #include "core/linalg/nodal_vector.h"
 #include "core/tet/shape_functions.h"
@@ -46,21 +47,48 @@ struct QuadraticElement : QuadraticShape {
   }
 };
 
-struct HexahedralElement : HexahedralShape {
-  static CornerValues Corners(const std::array<Vec3, 8>& nodes, int q) {
+template <class Shape>
+struct CubeElement : Shape {
+  static CornerValues Corners(const std::array<Vec3, Shape::kNodes>& nodes, int q) {
     CornerValues corners;
     corners.fill(Vec3::Zero());
-    for (int a = 0; a < 8; ++a) {
-      for (int d = 0; d < 3; ++d) corners[1 + d] += Slope(q, a, d) * nodes[a];
+    for (int a = 0; a < Shape::kNodes; ++a) {
+      for (int d = 0; d < 3; ++d) corners[1 + d] += Shape::Slope(q, a, d) * nodes[a];
     }
     return corners;
   }
-  static void AddCorners(const CornerValues& corners, int q, std::array<Vec3, 8>& nodes) {
-    for (int a = 0; a < 8; ++a) {
-      for (int d = 0; d < 3; ++d) nodes[a] += Slope(q, a, d) * corners[1 + d];
+  static void AddCorners(const CornerValues& corners, int q, std::array<Vec3, Shape::kNodes>& nodes) {
+    for (int a = 0; a < Shape::kNodes; ++a) {
+      for (int d = 0; d < 3; ++d) nodes[a] += Shape::Slope(q, a, d) * corners[1 + d];
     }
   }
 };
+using HexahedralElement = CubeElement<HexahedralShape>;
+using HexahedralQuadraticElement = CubeElement<HexahedralQuadraticShape>;
+
+// The corners between which a higher node of an element lies: the two of its edge, the four of its side, or all of a
+// hexahedron. Straight at rest, it is in their middle.
+struct Parents {
+  int count = 0;
+  std::array<int, 8> corners = {};
+};
+template <class Element>
+constexpr Parents ParentsOf(int a) {
+  Parents parents;
+  const auto add = [&](int corner) { parents.corners[parents.count++] = corner; };
+  if constexpr (Element::kNodes == 10) {
+    for (const int corner : kTetEdges[a - 4]) add(corner);
+  } else if constexpr (Element::kNodes == 27) {
+    if (a < 20) {
+      for (const int corner : kHexEdges[a - 8]) add(corner);
+    } else if (a < 26) {
+      for (const int corner : kHexSides[a - 20]) add(corner);
+    } else {
+      for (int corner = 0; corner < 8; ++corner) add(corner);
+    }
+  }
+  return parents;
+}
 
 // [a1 - a0, a2 - a0, a3 - a0] of values a at the corners: Dm for rest positions, Ds for positions, the rate of Ds for
 // velocities.
@@ -85,6 +113,8 @@ template <std::size_t kNodes>
 Mat3 MeanEdges(const std::array<Vec3, kNodes>& nodes) {
   if constexpr (kNodes == 8) {
     return TrilinearSlopes(nodes, Vec3::Constant(0.5));
+  } else if constexpr (kNodes == 27) {
+    return TriquadraticSlopes(nodes, Vec3::Constant(0.5));
   } else {
     return EdgeMatrix(CornerValues{nodes[0], nodes[1], nodes[2], nodes[3]});
   }

@@ -76,7 +76,8 @@ struct ElementChunks {
   std::vector<std::int32_t> slot;   // for each element: kBlock * block + lane
   std::vector<std::int32_t> patch;  // for each entry of `nodes`; Sharing::kNone without a patch
   Sharing node_sums, patch_sums;
-  // The patch of each hexahedron, by slot; Sharing::kNone without a patch. It receives a sum from no other element.
+  // The first patch of each hexahedron, by slot; Sharing::kNone without a patch. Its others follow. They receive sums
+  // from no other element.
   std::vector<std::int32_t> element_patch;
 };
 

@@ -103,7 +103,9 @@ void AddStiffness(const TetModel& model, const NodalVector& x, const Chunk& chun
     for (int pair = 0; pair < kPairs; ++pair) {
       const std::size_t at = kPairs * (slot / kBlock) + pair;
       Eigen::Map<Mat3> sum(blocks.sums + 9 * std::size_t{blocks.place[kBlock * at + slot % kBlock]});
-      if ((blocks.turned[at] >> slot % kBlock & 1) != 0) {
+      if (blocks.doubled != nullptr && (blocks.doubled[at] >> slot % kBlock & 1) != 0) {
+        sum += pairs[pair] + pairs[pair].transpose();
+      } else if ((blocks.turned[at] >> slot % kBlock & 1) != 0) {
         sum += pairs[pair].transpose();
       } else {
         sum += pairs[pair];
@@ -161,7 +163,8 @@ void AssembleBlocks(const TetModel& model, const StiffnessLayout& layout, Thread
       const Chunk& chunk = chunks[c];
       const std::span<const StiffnessLayout::Target> targets = layout.TargetsOf(c);
       sums.assign(9 * targets.size(), 0.0);
-      add(chunk, ChunkBlocks{layout.PlacesOf(chunk.block_begin), layout.TurnedOf(chunk.block_begin), sums.data()});
+      add(chunk, ChunkBlocks{layout.PlacesOf(chunk.block_begin), layout.TurnedOf(chunk.block_begin),
+                             layout.DoubledOf(chunk.block_begin), sums.data()});
       for (std::size_t i = 0; i < targets.size(); ++i) {
         const Eigen::Map<const Mat3> block(&sums[9 * i]);
         if (targets[i].low >= 0) {

@@ -108,7 +108,7 @@ decltype(auto) WithSource(FieldSource from, const Call& call) {
 // The part of a point in the average over its element: in hexahedra, whose points have different volumes, by volume.
 template <class Element>
 double PartOfPoint(const TetModel& model, std::size_t e, int q) {
-  if constexpr (Element::kNodes != 8) return Element::kPointWeight;
+  if constexpr (!Element::kIsHexahedron) return Element::PointWeight(q);
   double whole = 0;
   for (int p = 0; p < Element::kPoints; ++p) whole += model.rest_volume()[Element::kPoints * e + p];
   return model.rest_volume()[Element::kPoints * e + q] / whole;
@@ -153,20 +153,14 @@ std::vector<double> FromMeans(OutputField field, const std::vector<double>& mean
   return values;
 }
 
-// Forces on the mesh's nodes, indexed as the model's; those of mid-edge nodes are halved between the ends of the edge.
+// Forces on the mesh's nodes, indexed as the model's; those of higher nodes are shared equally by the corners between
+// which they lie.
 NodalVector OnMeshNodes(const TetModel& model, const TetBody& body, const NodalVector& forces) {
   NodalVector lumped = forces;
-  if (model.order() != ElementOrder::kQuadratic) return lumped;
-  std::vector<bool> done(model.nodes(), false);
-  for (std::size_t e = body.tet_begin; e < body.tet_end; ++e) {
-    const auto nodes = model.NodesOf<QuadraticElement>(e);
-    for (std::size_t k = 0; k < kTetEdges.size(); ++k) {
-      const auto middle = static_cast<std::size_t>(nodes[4 + k]);
-      if (done[middle]) continue;
-      done[middle] = true;
-      for (const int end : kTetEdges[k]) lumped[nodes[static_cast<std::size_t>(end)]] += 0.5 * forces[middle];
-    }
-  }
+  model.ForHigherNodes(body, [&](std::int32_t node, std::span<const std::int32_t> corners) {
+    const double part = 1.0 / static_cast<double>(corners.size());
+    for (const std::int32_t corner : corners) lumped[corner] += part * forces[node];
+  });
   return lumped;
 }
 
@@ -215,14 +209,26 @@ TetPlace PlaceIn(const TetModel& model, const Probe& probe) {
 template <class Element>
 Vec3 ValueAt(const TetModel& model, const TetPlace& place, const NodalVector& values) {
   const auto at = ValuesOf<Element>(model, place.element, values);
-  if constexpr (Element::kNodes == 8) return TrilinearValue(at, place.within);
-  const auto& L = place.L;
-  Vec3 sum = Vec3::Zero();
-  for (int c = 0; c < 4; ++c) sum += (Element::kNodes == 4 ? L[c] : L[c] * (2 * L[c] - 1)) * at[c];
-  if constexpr (Element::kNodes == 10) {
-    for (std::size_t k = 0; k < kTetEdges.size(); ++k) sum += 4 * L[kTetEdges[k][0]] * L[kTetEdges[k][1]] * at[4 + k];
+  if constexpr (Element::kNodes == 8) {
+    return TrilinearValue(at, place.within);
+  } else if constexpr (Element::kNodes == 27) {
+    return TriquadraticValue(at, place.within);
+  } else {
+    const auto& L = place.L;
+    Vec3 sum = Vec3::Zero();
+    for (int c = 0; c < 4; ++c) sum += (Element::kNodes == 4 ? L[c] : L[c] * (2 * L[c] - 1)) * at[c];
+    if constexpr (Element::kNodes == 10) {
+      for (std::size_t k = 0; k < kTetEdges.size(); ++k) sum += 4 * L[kTetEdges[k][0]] * L[kTetEdges[k][1]] * at[4 + k];
+    }
+    return sum;
   }
-  return sum;
+}
+
+// The same at a probe, which may be a node.
+Vec3 ValueAt(const TetModel& model, const Probe& probe, const NodalVector& values) {
+  if (!probe.inside) return values[model.bodies()[probe.body].node_begin + static_cast<std::size_t>(probe.node)];
+  const TetPlace place = PlaceIn(model, probe);
+  return model.VisitElement([&]<class Element>(Element) { return ValueAt<Element>(model, place, values); });
 }
 
 template <class Element>
@@ -232,6 +238,8 @@ Mat3 EdgesAt(const TetModel& model, const TetPlace& place, const NodalVector& va
     return EdgeMatrix(at);
   } else if constexpr (Element::kNodes == 8) {
     return TrilinearSlopes(at, place.within);
+  } else if constexpr (Element::kNodes == 27) {
+    return TriquadraticSlopes(at, place.within);
   } else {
     return EdgeMatrix(CornersAt(at, place.L));
   }
@@ -239,7 +247,13 @@ Mat3 EdgesAt(const TetModel& model, const TetPlace& place, const NodalVector& va
 
 template <class Element>
 PatchWeights PatchWeightsAt(const TetPlace& place) {
-  return Element::kPatches == 4 ? place.L : PatchWeights{1};
+  if constexpr (!Element::kIsHexahedron) return place.L;
+  if constexpr (Element::kPatches == 1) return {1};
+  PatchWeights weights;
+  for (int c = 0; c < 4; ++c) {
+    weights[static_cast<std::size_t>(c)] = LinearPart(c, place.within[0], place.within[1], place.within[2]);
+  }
+  return weights;
 }
 
 template <FieldSource kFrom>
@@ -294,21 +308,17 @@ NodeFieldValues NodeFieldOf(const TetModel& model, std::size_t body_index, Outpu
 std::vector<double> FieldValuesAt(const TetModel& model, const Probe& probe, OutputField field, const TetState& state,
                                   const Controls& now, ThreadTeam& team) {
   const FieldSource from = InfoOf(field).from;
-  const TetPlace place = PlaceIn(model, probe);
   if (from == FieldSource::kMotion) {
-    const Vec3 v =
-        model.VisitElement([&]<class Element>(Element) { return ValueAt<Element>(model, place, state.velocities); });
+    const Vec3 v = ValueAt(model, probe, state.velocities);
     return {v.begin(), v.end()};
   }
+  const TetPlace place = PlaceIn(model, probe);
   const FieldInputs inputs(model, from, state, now, team);
   return WithSource(from, [&]<FieldSource kFrom>() { return AtPlace<kFrom>(inputs, place, field); });
 }
 
 Vec3 DisplacementAt(const TetModel& model, const Probe& probe, const TetState& state) {
-  const TetPlace place = PlaceIn(model, probe);
-  return model.VisitElement([&]<class Element>(Element) -> Vec3 {
-    return ValueAt<Element>(model, place, state.positions) - ValueAt<Element>(model, place, model.rest_positions());
-  });
+  return ValueAt(model, probe, state.positions) - ValueAt(model, probe, model.rest_positions());
 }
 
 }  // namespace fascicle

@@ -18,7 +18,7 @@ struct ChunkTask {
   const std::int32_t* nodes = nullptr;
   std::size_t node_count = 0;
   const std::int32_t* patch = nullptr;          // for each node of the chunk; null without patches
-  const std::int32_t* element_patch = nullptr;  // of hexahedra: for each slot of the chunk
+  const std::int32_t* element_patch = nullptr;  // of hexahedra: the first, for each slot of the chunk
   const std::int32_t* target = nullptr;         // target of each sum, see Sharing
 
   const void* law = nullptr;           // null: no law
@@ -59,10 +59,12 @@ struct ChunkReport {
 
 // Where a chunk adds up the 3x3 blocks d(-f_a)/dx_b of its elements, nine numbers each in column-major order: the block
 // of nodes (a, b), a >= b, of lane k of block i goes to sums[9 * place[j * kBlock + k]] with j = pairs of an element *
-// i + a (a + 1) / 2 + b, transposed if bit k of turned[j] is set.
+// i + a (a + 1) / 2 + b, transposed if bit k of turned[j] is set. With its transpose if bit k of doubled[j] is set: if
+// a and b are the same node of a collapsed element, both (a, b) and (b, a) belong to its own block.
 struct ChunkBlocks {
   const std::uint16_t* place = nullptr;
   const std::uint16_t* turned = nullptr;
+  const std::uint16_t* doubled = nullptr;  // null if no element is collapsed
   double* sums = nullptr;
 };
 
@@ -87,8 +89,8 @@ struct ElementKernels {
 using PatchPressureKernel = void (*)(std::size_t count, const double* modulus, const double* theta, double* pressure);
 
 struct Kernels {
-  ElementKernels<double> linear, quadratic, hexahedral;
-  ElementKernels<float> linear_float, quadratic_float, hexahedral_float;
+  ElementKernels<double> linear, quadratic, hexahedral, hexahedral_quadratic;
+  ElementKernels<float> linear_float, quadratic_float, hexahedral_float, hexahedral_quadratic_float;
   PatchPressureKernel patch_pressure;
 };
 // The set must be available on this machine.

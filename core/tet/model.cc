@@ -47,34 +47,27 @@ Vec3 TetModel::Fibres::operator[](std::size_t tet) const {
   });
 }
 
-namespace {
-
-// Adds the initial values of a body's nodes: of all, or of those of its mesh only.
-void AddInitial(const std::vector<Vec3>& values, const TetBody& body, const MeshEdges& edges, NodalVector& sum) {
-  if (values.empty()) return;
+// Adds the initial values of a body's nodes: of all, or of those of its mesh; higher nodes then take the mean of their
+// corners.
+void TetModel::AddInitial(const std::vector<Vec3>& values, const TetBody& body, NodalVector& sum) const {
   for (std::size_t n = 0; n < values.size(); ++n) sum[body.node_begin + n] += values[n];
-  if (values.size() == body.node_end - body.node_begin) return;
-  for (std::size_t edge = 0; edge < edges.ends.size(); ++edge) {
-    const auto& [i, j] = edges.ends[edge];
-    sum[body.mesh_node_end + edge] += 0.5 * (values[i] + values[j]);
-  }
+  if (values.empty() || values.size() == body.node_end - body.node_begin) return;
+  ForHigherNodes(body, [&](std::int32_t node, std::span<const std::int32_t> corners) {
+    Vec3 mean = Vec3::Zero();
+    for (const std::int32_t corner : corners) mean += values[static_cast<std::size_t>(corner) - body.node_begin];
+    sum[node] += mean / static_cast<double>(corners.size());
+  });
 }
-
-}  // namespace
 
 NodalVector TetModel::InitialPositions() const {
   NodalVector x = rest_positions_;
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    AddInitial(bodies_[b].source->tet().initial_displacement, bodies_[b], edges_[b], x);
-  }
+  for (const TetBody& body : bodies_) AddInitial(body.source->tet().initial_displacement, body, x);
   return x;
 }
 
 NodalVector TetModel::InitialVelocities() const {
   NodalVector v(nodes(), Vec3::Zero());
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    AddInitial(bodies_[b].source->tet().initial_velocity, bodies_[b], edges_[b], v);
-  }
+  for (const TetBody& body : bodies_) AddInitial(body.source->tet().initial_velocity, body, v);
   return v;
 }
 

@@ -30,7 +30,7 @@ std::variant<std::vector<Laws>...> LawTableOf(const std::variant<Laws...>&);
 using LawTable = decltype(LawTableOf(std::declval<Material>()));
 
 // A body's ranges in the model's arrays. Elements, tetrahedra or hexahedra, are counted by tet_begin and tet_end.
-// Nodes: those of its mesh in their order, then mid-edge nodes.
+// Nodes: those of its mesh in their order, then the higher nodes of its elements.
 struct TetBody {
   const Body* source = nullptr;
   std::size_t node_begin = 0, node_end = 0;
@@ -96,25 +96,56 @@ class TetModel {
   NodalVector InitialVelocities() const;
   const std::vector<Tetrahedron>& corners() const { return tetrahedra_; }  // of tetrahedra; empty for hexahedra
   ElementOrder order() const { return scene_->tet.element; }
-  // Calls visitor(LinearElement{}), visitor(QuadraticElement{}) or visitor(HexahedralElement{}).
+  // Calls visitor(an element of the model's type): LinearElement, QuadraticElement, HexahedralElement or
+  // HexahedralQuadraticElement.
   template <class Visitor>
   decltype(auto) VisitElement(const Visitor& visitor) const {
-    if (order() == ElementOrder::kHexahedral) return visitor(HexahedralElement{});
-    return order() == ElementOrder::kLinear ? visitor(LinearElement{}) : visitor(QuadraticElement{});
-  }
-  // The nodes of an element: its corners, then its mid-edge nodes; of a hexahedron, in the order of Hexahedron.
-  template <class Element>
-  std::array<std::int32_t, Element::kNodes> NodesOf(std::size_t tet) const {
-    if constexpr (Element::kNodes == 4) {
-      return tetrahedra_[tet];
-    } else if constexpr (Element::kNodes == 8) {
-      return hexahedra_[tet];
-    } else {
-      std::array<std::int32_t, Element::kNodes> nodes;
-      std::copy(tetrahedra_[tet].begin(), tetrahedra_[tet].end(), nodes.begin());
-      std::copy(edge_nodes_[tet].begin(), edge_nodes_[tet].end(), nodes.begin() + 4);
-      return nodes;
+    switch (order()) {
+      case ElementOrder::kLinear:
+        return visitor(LinearElement{});
+      case ElementOrder::kQuadratic:
+        return visitor(QuadraticElement{});
+      case ElementOrder::kHexahedral:
+        return visitor(HexahedralElement{});
+      case ElementOrder::kHexahedralQuadratic:
+        break;
     }
+    return visitor(HexahedralQuadraticElement{});
+  }
+  // The nodes of an element: its corners in the order of Tetrahedron or Hexahedron, then the higher nodes.
+  template <class Element>
+  std::array<std::int32_t, Element::kNodes> NodesOf(std::size_t e) const {
+    std::array<std::int32_t, Element::kNodes> nodes;
+    [[maybe_unused]] const auto higher = [&] {
+      if constexpr (Element::kIsHexahedron) {
+        return std::copy(hexahedra_[e].begin(), hexahedra_[e].end(), nodes.begin());
+      } else {
+        return std::copy(tetrahedra_[e].begin(), tetrahedra_[e].end(), nodes.begin());
+      }
+    }();
+    if constexpr (Element::kNodes == 10) std::copy(edge_nodes_[e].begin(), edge_nodes_[e].end(), higher);
+    if constexpr (Element::kNodes == 27) std::copy(inner_nodes_[e].begin(), inner_nodes_[e].end(), higher);
+    return nodes;
+  }
+  // Calls visit(node, corners) for each higher node of a body: a mid-edge node, or one of a side or the inside of a
+  // hexahedron. `corners`: the nodes between which it lies, as a span.
+  template <class Visit>
+  void ForHigherNodes(const TetBody& body, const Visit& visit) const {
+    VisitElement([&]<class Element>(Element) {
+      std::vector<bool> seen(body.node_end - body.mesh_node_end, false);
+      for (std::size_t e = body.tet_begin; e < body.tet_end && !seen.empty(); ++e) {
+        const auto nodes = NodesOf<Element>(e);
+        for (int a = Element::kCorners; a < Element::kNodes; ++a) {
+          const std::size_t n = static_cast<std::size_t>(nodes[a]) - body.mesh_node_end;
+          if (seen[n]) continue;
+          seen[n] = true;
+          const Parents parents = ParentsOf<Element>(a);
+          std::array<std::int32_t, 8> corners;
+          for (int i = 0; i < parents.count; ++i) corners[i] = nodes[parents.corners[i]];
+          visit(nodes[a], std::span<const std::int32_t>(corners.data(), parents.count));
+        }
+      }
+    });
   }
   // The edges of a body's mesh: its mid-edge nodes are mesh_node_end + their numbers. Empty unless elements are
   // quadratic.
@@ -169,9 +200,9 @@ class TetModel {
     }
     return volume;
   }
-  const std::vector<double>& mass() const {
-    return mass_;
-  }  // lumped: see Element::kMassShare; of hexahedra, row sums [kg]
+  // Lumped: see Element::kMassShare; of hexahedra, row sums or the scaled diagonal, which are the same if their sides
+  // are flat and parallel [kg].
+  const std::vector<double>& mass() const { return mass_; }
   // 1/m [1/kg]; zero for prescribed components.
   const NodalVector& inverse_mass() const { return inverse_mass_; }
   // Rayleigh damping of each node: mass_damping of its body [1/s].
@@ -205,15 +236,18 @@ class TetModel {
  private:
   friend class TetModelBuilder;
 
+  void AddInitial(const std::vector<Vec3>& values, const TetBody& body, NodalVector& sum) const;
+
   const Scene* scene_;
   std::vector<TetBody> bodies_;
   std::vector<TetGroup> groups_;
   NodalVector rest_positions_;
   int nodes_per_element_ = 0, points_per_element_ = 0;
-  std::vector<Tetrahedron> tetrahedra_;                  // for both kinds of tetrahedra
-  std::vector<Hexahedron> hexahedra_;                    // for hexahedra
-  std::vector<std::array<std::int32_t, 6>> edge_nodes_;  // for quadratic elements
-  std::vector<MeshEdges> edges_;                         // of each body
+  std::vector<Tetrahedron> tetrahedra_;                    // for both kinds of tetrahedra
+  std::vector<Hexahedron> hexahedra_;                      // for both kinds of hexahedra
+  std::vector<std::array<std::int32_t, 6>> edge_nodes_;    // for quadratic elements
+  std::vector<std::array<std::int32_t, 19>> inner_nodes_;  // for quadratic hexahedra: of edges, sides and centre
+  std::vector<MeshEdges> edges_;                           // of each body
   std::vector<std::int32_t> source_element_;
   std::vector<std::int32_t> law_of_;
   VolumePatches patches_;

@@ -46,7 +46,8 @@ const PronySeries& SeriesOf(const Body& body, std::int32_t part) {
 // of 0.3, which does not lock, all of it. Beyond, a multiple of the stresses that may crush a single element: its shear
 // modulus, with Maxwell branches the instantaneous one, and the active stress of its fibres at rest, which may be a
 // hundred times larger. Quadratic elements tolerate a ten times larger multiple before they stiffen, and need it,
-// because each of their points may be crushed separately. Hexahedra keep nothing: mean dilatation.
+// because each of their points may be crushed separately. Hexahedra keep nothing: with as much as quadratic tetrahedra,
+// those of 27 nodes would lose up to half of their accuracy, and their points would be crushed nearly as much.
 template <class Law>
 double ElementVolumeModulus(const Law& law, const PronySeries& series, ElementOrder order) {
   constexpr double kDoesNotLock = 1.5;
@@ -54,7 +55,7 @@ double ElementVolumeModulus(const Law& law, const PronySeries& series, ElementOr
   const double modulus = law.VolumeModulus();
   double shear = law.ShearModulus();
   if (modulus <= kDoesNotLock * (1 + 1e-12) * shear) return modulus;
-  if (order == ElementOrder::kHexahedral) return 0;
+  if (IsHexahedral(order)) return 0;
   double instantaneous = 1;
   for (const PronyTerm& term : series.terms) instantaneous += term.strength;
   shear *= instantaneous;
@@ -135,6 +136,7 @@ void TetModelBuilder::AddNodes(const Body& body, TetBody& entry) {
     }
     entry.node_end = model_.nodes();
   }
+  if (model_.order() == ElementOrder::kHexahedralQuadratic) AddNodesOfHexahedra(mesh, entry);
   model_.mass_.resize(entry.node_end, 0.0);
   model_.mass_damping_.resize(entry.node_end, entry.mass_damping);
 }
@@ -150,13 +152,15 @@ void TetModelBuilder::AddElements(const Body& body, TetBody& entry) {
   for (std::size_t t = 0; t < count; ++t) sorted[t] = static_cast<std::int32_t>(t);
   std::stable_sort(sorted.begin(), sorted.end(), [&](std::int32_t a, std::int32_t b) { return laws[a] < laws[b]; });
   SortIntoChunks(shape.mesh, entry, laws, sorted);
-  // AddNodes left the edges in the mesh's order.
-  std::vector<std::array<std::int32_t, 6>>& edge_nodes = model_.edge_nodes_;
-  if (!edge_nodes.empty()) {
-    const std::vector<std::array<std::int32_t, 6>> edges(
-        edge_nodes.begin() + static_cast<std::ptrdiff_t>(entry.tet_begin), edge_nodes.end());
-    for (std::size_t i = 0; i < count; ++i) edge_nodes[entry.tet_begin + i] = edges[sorted[i]];
-  }
+  // AddNodes left the higher nodes in the mesh's order.
+  const auto sort = [&](auto& higher_nodes) {
+    if (higher_nodes.empty()) return;
+    const auto first = higher_nodes.begin() + static_cast<std::ptrdiff_t>(entry.tet_begin);
+    const std::vector unsorted(first, higher_nodes.end());
+    for (std::size_t i = 0; i < count; ++i) higher_nodes[entry.tet_begin + i] = unsorted[sorted[i]];
+  };
+  sort(model_.edge_nodes_);
+  sort(model_.inner_nodes_);
   for (const std::int32_t t : sorted) {
     HeedStop();
     AddElement(body, entry, t);
@@ -172,7 +176,7 @@ void TetModelBuilder::AddElement(const Body& body, const TetBody& entry, std::in
     return nodes;
   };
   const std::size_t e = model_.elements();
-  if (model_.order() == ElementOrder::kHexahedral) {
+  if (IsHexahedral(model_.order())) {
     model_.hexahedra_.push_back(shifted(shape.mesh.hexahedra[tet]));
   } else {
     model_.tetrahedra_.push_back(shifted(shape.mesh.tetrahedra[tet]));
@@ -183,19 +187,37 @@ void TetModelBuilder::AddElement(const Body& body, const TetBody& entry, std::in
   activation_of_.push_back(static_cast<std::int32_t>(entry.activation) + PartOf(shape.activations, tet));
   activation_scale_.push_back(shape.activation_scale.empty() ? 1 : shape.activation_scale[tet]);
   model_.VisitElement([&]<class Element>(Element) {
-    const auto element_nodes = model_.NodesOf<Element>(e);
     const double volume = AddPoints<Element>(e);
+    const std::array<double, Element::kNodes> shares = MassShares<Element>(e, volume);
+    const auto element_nodes = model_.NodesOf<Element>(e);
+    for (int a = 0; a < Element::kNodes; ++a) model_.mass_[element_nodes[a]] += body.density * shares[a];
+  });
+}
+
+// The volume of an element that belongs to each of its nodes. `volume`: that of the element.
+template <class Element>
+std::array<double, Element::kNodes> TetModelBuilder::MassShares(std::size_t e, double volume) const {
+  std::array<double, Element::kNodes> shares = {};
+  if constexpr (Element::kNodes == 27) {
+    // The diagonal, scaled: row sums may be negative at the corners of distorted elements.
+    double sum = 0;
     for (int a = 0; a < Element::kNodes; ++a) {
-      if constexpr (Element::kNodes == 8) {
-        for (int q = 0; q < Element::kPoints; ++q) {
-          model_.mass_[element_nodes[a]] +=
-              body.density * rest_volume_[Element::kPoints * e + q] * Element::Value(q, a);
-        }
-      } else {
-        model_.mass_[element_nodes[a]] += body.density * volume * Element::kMassShare[a];
+      for (int q = 0; q < Element::kPoints; ++q) {
+        shares[a] += rest_volume_[Element::kPoints * e + q] * Element::Value(q, a) * Element::Value(q, a);
+      }
+      sum += shares[a];
+    }
+    for (double& share : shares) share *= volume / sum;
+  } else if constexpr (Element::kIsHexahedron) {
+    for (int a = 0; a < Element::kNodes; ++a) {
+      for (int q = 0; q < Element::kPoints; ++q) {
+        shares[a] += rest_volume_[Element::kPoints * e + q] * Element::Value(q, a);
       }
     }
-  });
+  } else {
+    for (int a = 0; a < Element::kNodes; ++a) shares[a] = volume * Element::kMassShare[a];
+  }
+  return shares;
 }
 
 // Groups the body's elements, which are sorted, by the kind of their law.
@@ -260,7 +282,7 @@ double TetModelBuilder::AddPoints(std::size_t tet) {
   double sum = 0;
   for (int q = 0; q < Element::kPoints; ++q) {
     const Mat3 Dm = EdgeMatrix(Element::Corners(X, q));
-    const double volume = Element::kPointWeight * Dm.determinant() / 6;
+    const double volume = Element::PointWeight(q) * Dm.determinant() / 6;
     FASCICLE_CHECK(volume > 0, "an element of a checked mesh has positive volume");
     Dm_inverse_.push_back(Dm.inverse());
     rest_volume_.push_back(volume);
@@ -272,15 +294,16 @@ double TetModelBuilder::AddPoints(std::size_t tet) {
 void TetModelBuilder::AddPatches(const TetGroup& group, std::span<const double> given) {
   model_.patches_.of_element.resize(
       group.tet_end, {VolumePatches::kNone, VolumePatches::kNone, VolumePatches::kNone, VolumePatches::kNone});
-  std::map<std::int32_t, std::int32_t> patch_of_owner;  // by node, or by hexahedron
+  const bool has_own = IsHexahedral(model_.order());
+  const int patches_of_each = model_.VisitElement([]<class Element>(Element) { return Element::kPatches; });
+  std::map<std::int32_t, std::int32_t> patch_of_owner;  // by node, or by hexahedron and number
   const std::size_t first = model_.patches_.size();
   for (std::size_t e = group.tet_begin; e < group.tet_end; ++e) {
     HeedStop();
     const double modulus = given[e - group.tet_begin];
     if (modulus == 0) continue;
-    const bool has_own = model_.order() == ElementOrder::kHexahedral;
-    for (int c = 0; c < (has_own ? 1 : 4); ++c) {
-      const std::int32_t owner = has_own ? static_cast<std::int32_t>(e) : model_.tetrahedra_[e][c];
+    for (int c = 0; c < patches_of_each; ++c) {
+      const std::int32_t owner = has_own ? static_cast<std::int32_t>(4 * e + c) : model_.tetrahedra_[e][c];
       const auto [place, is_new] = patch_of_owner.try_emplace(owner, static_cast<std::int32_t>(model_.patches_.size()));
       if (is_new) {
         model_.patches_.rest_volume.push_back(0);
@@ -346,8 +369,8 @@ void TetModelBuilder::SetNodeUses() {
 // Vectors that grew element by element have excess capacity.
 void TetModelBuilder::DropExcessCapacity() {
   const auto shrink = [](auto&... vectors) { (vectors.shrink_to_fit(), ...); };
-  shrink(model_.rest_positions_, model_.tetrahedra_, model_.hexahedra_, model_.edge_nodes_, model_.source_element_,
-         model_.law_of_, model_.mass_, model_.mass_damping_);
+  shrink(model_.rest_positions_, model_.tetrahedra_, model_.hexahedra_, model_.edge_nodes_, model_.inner_nodes_,
+         model_.source_element_, model_.law_of_, model_.mass_, model_.mass_damping_);
   VolumePatches& patches = model_.patches_;
   shrink(patches.of_element, patches.rest_volume, patches.modulus, patches.row, patches.neighbour, patches.weight);
   ElementChunks& chunks = model_.chunks_;

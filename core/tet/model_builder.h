@@ -16,7 +16,8 @@ namespace fascicle {
 // Fills in a TetModel from a scene, body by body. Used once, by TetModel's constructor.
 //
 // Bodies, nodes, elements, laws and patches are in model_builder.cc, the chunks and blocks of the elements in
-// model_chunks.cc, what acts on regions (loads, supports, contact with floors) in model_regions.cc.
+// model_chunks.cc, what acts on regions (loads, supports, contact with floors) in model_regions.cc, the nodes and faces
+// of quadratic hexahedra in model_hexahedra.cc.
 class TetModelBuilder {
  public:
   TetModelBuilder(const Scene& scene, TetModel& model, std::stop_token stop)
@@ -31,8 +32,13 @@ class TetModelBuilder {
 
   void AddBody(const Body& body);
   void AddNodes(const Body& body, TetBody& entry);
+  void AddNodesOfHexahedra(const TetMesh& mesh, TetBody& entry);
+  std::int32_t AddMiddle(const Parents& parents, const Hexahedron& hexahedron, std::int32_t first);
+  void CurveHexahedra(const TetMesh& mesh, const TetBody& entry);
   void AddElements(const Body& body, TetBody& entry);
   void AddElement(const Body& body, const TetBody& entry, std::int32_t tet);
+  template <class Element>
+  std::array<double, Element::kNodes> MassShares(std::size_t e, double volume) const;
   void AddGroups(const Body& body, const TetBody& entry, std::span<const LawKey> laws);
   void FillGroup(const Body& body, TetGroup& group);
   template <class Element>
@@ -54,10 +60,14 @@ class TetModelBuilder {
   void SetBlocks();
 
   std::vector<std::int32_t> NodesOfRegion(const Region& region, const TetBody& body) const;
+  void AddNodesOfHexahedra(const Region& region, const TetBody& body, std::vector<std::int32_t>& nodes) const;
   LoadedRegion LoadedRegionIn(const Region& region, const TetBody& body) const;
   void AddVolumes(const Region& region, const TetBody& body, LoadedRegion& loaded) const;
+  void AddPointVolumes(const Region& region, const TetBody& body, LoadedRegion& loaded) const;
   void AddLoads(const TetBody& body);
+  PressureFace FaceOf(const Quad& side) const;
   std::vector<PressureFace> FacesOf(const Region& region, const TetBody& body) const;
+  LoadedRegion::Face LoadedFace(const PressureFace& side) const;
   MeanPosition MeanOf(const Region& region, const TetBody& body) const;
   void AddPositionLoad(const Load& load, const TetBody& body);
   void AddSupports(std::int32_t body_index);
@@ -66,12 +76,18 @@ class TetModelBuilder {
 
   // The mid-edge node between nodes i and j of a quadratic element.
   std::int32_t MiddleOf(std::int32_t i, std::int32_t j) const;
+  // The node of a side of a quadratic hexahedron, or of an edge, of which `corners` has each end twice.
+  std::int32_t MiddleOf(Quad corners) const {
+    std::sort(corners.begin(), corners.end());
+    return middles_of_hexahedra_.at(corners);
+  }
   void HeedStop() const { ThrowIfStopped(stop_); }
 
   const Scene& scene_;
   TetModel& model_;
   std::stop_token stop_;
   std::size_t activations_ = 0;  // of the bodies so far, with those of their parts
+  std::map<Quad, std::int32_t> middles_of_hexahedra_;  // of edges and sides: ascending corners
   // For each point and each element, in double precision.
   std::vector<Mat3> Dm_inverse_;
   std::vector<double> rest_volume_;

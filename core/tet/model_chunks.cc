@@ -20,13 +20,17 @@ void TetModelBuilder::SortIntoChunks(const TetMesh& mesh, const TetBody& entry, 
       last_count[n] = counts;
     };
     for (const std::int32_t t : elements) {
-      if (!mesh.hexahedra.empty()) {
+      if (mesh.hexahedra.empty()) {
+        for (const std::int32_t n : mesh.tetrahedra[t]) see(n);
+      } else {
         for (const std::int32_t n : mesh.hexahedra[t]) see(n);
-        continue;
       }
-      for (const std::int32_t n : mesh.tetrahedra[t]) see(n);
-      if (model_.edge_nodes_.empty()) continue;
-      for (const std::int32_t n : model_.edge_nodes_[entry.tet_begin + t]) see(n - entry.node_begin);
+      if (!model_.edge_nodes_.empty()) {
+        for (const std::int32_t n : model_.edge_nodes_[entry.tet_begin + t]) see(n - entry.node_begin);
+      }
+      if (!model_.inner_nodes_.empty()) {
+        for (const std::int32_t n : model_.inner_nodes_[entry.tet_begin + t]) see(n - entry.node_begin);
+      }
     }
     return nodes;
   };
@@ -51,14 +55,14 @@ void TetModelBuilder::AddLocalNumbers(const Chunk& chunk, std::span<const std::i
     if (e == model_.chunks_.slot.size()) model_.chunks_.slot.push_back(static_cast<std::int32_t>(slot));
     const auto element_nodes = model_.NodesOf<Element>(e);
     const bool has_patch = !model_.patches_.empty() && model_.patches_.of_element[e][0] != VolumePatches::kNone;
-    if constexpr (Element::kPatches == 1) {
+    if constexpr (Element::kIsHexahedron) {
       model_.chunks_.element_patch.push_back(has_patch ? model_.patches_.of_element[e][0] : Sharing::kNone);
     }
     for (int a = 0; a < Element::kNodes; ++a) {
       const std::int32_t local = local_of[element_nodes[a]];
       model_.chunks_.local[(Element::kNodes * (slot / kBlock) + a) * kBlock + slot % kBlock] =
           static_cast<std::uint16_t>(local);
-      if (has_patch && Element::kPatches == 4 && a < 4)
+      if (has_patch && !Element::kIsHexahedron && a < 4)
         model_.chunks_.patch[chunk.node_begin + local] = model_.patches_.of_element[e][a];
     }
   }

@@ -22,6 +22,7 @@ std::vector<std::int32_t> TetModelBuilder::NodesOfRegion(const Region& region, c
   const auto first = static_cast<std::int32_t>(body.node_begin);
   std::vector<std::int32_t> nodes;
   for (const std::int32_t n : region.nodes) nodes.push_back(first + n);
+  if (model_.order() == ElementOrder::kHexahedralQuadratic) AddNodesOfHexahedra(region, body, nodes);
   if (model_.order() != ElementOrder::kQuadratic) return nodes;
   const TetMesh& mesh = body.source->tet().mesh;
   const auto b = static_cast<std::size_t>(&body - model_.bodies_.data());
@@ -45,6 +46,11 @@ LoadedRegion TetModelBuilder::LoadedRegionIn(const Region& region, const TetBody
     for (const auto& [node, volume] : VolumesOfHexahedra(region, body.source->tet().mesh)) {
       loaded.volumes[first + node] = volume;
     }
+    return loaded;
+  }
+  if (model_.order() == ElementOrder::kHexahedralQuadratic) {
+    for (const PressureFace& face : FacesOf(region, body)) loaded.faces.push_back(LoadedFace(face));
+    AddPointVolumes(region, body, loaded);
     return loaded;
   }
   for (const Triangle& t : region.triangles) {
@@ -96,10 +102,8 @@ void TetModelBuilder::AddLoads(const TetBody& body) {
 std::vector<PressureFace> TetModelBuilder::FacesOf(const Region& region, const TetBody& body) const {
   const auto first = static_cast<std::int32_t>(body.node_begin);
   std::vector<PressureFace> faces;
-  if (model_.order() == ElementOrder::kHexahedral) {
-    for (const Quad& side : region.sides) {
-      for (int c = 0; c < 4; ++c) (c == 0 ? faces.emplace_back() : faces.back()).nodes[c] = first + side[c];
-    }
+  if (IsHexahedral(model_.order())) {
+    for (const Quad& side : region.sides) faces.push_back(FaceOf(Shifted(side, first)));
     return faces;
   }
   for (const Triangle& t : region.triangles) {
@@ -120,8 +124,10 @@ MeanPosition TetModelBuilder::MeanOf(const Region& region, const TetBody& body) 
   std::map<std::int32_t, double> weights;
   double sum = 0;
   for (const LoadedRegion::Face& face : loaded.faces) {
-    for (int c = 0; c < face.count; ++c) weights[face.nodes[c]] += face.area.norm() / face.count;
-    sum += face.area.norm();
+    for (int c = 0; c < face.count; ++c) {
+      weights[face.nodes[c]] += face.share[c];
+      sum += face.share[c];
+    }
   }
   if (weights.empty()) {
     for (const std::int32_t n : loaded.nodes) weights[n] = 1;
@@ -188,10 +194,13 @@ std::map<std::int32_t, double> TetModelBuilder::SurfaceAreas(const TetBody& body
   const auto first = static_cast<std::int32_t>(body.node_begin);
   const TetMesh& mesh = body.source->tet().mesh;
   std::map<std::int32_t, double> areas;
-  if (model_.order() == ElementOrder::kHexahedral) {
-    for (const Quad& side : BoundaryOfHexahedra(mesh, stop_).quads) {
-      const LoadedRegion::Face face = LoadedSide(Shifted(side, first), model_.rest_positions_);
-      for (int c = 0; c < 4; ++c) areas[face.nodes[c]] += face.share[c];
+  if (IsHexahedral(model_.order())) {
+    for (const Quad& quad : BoundaryOfHexahedra(mesh, stop_).quads) {
+      const Quad side = Shifted(quad, first);
+      const LoadedRegion::Face face = model_.order() == ElementOrder::kHexahedral
+                                          ? LoadedSide(side, model_.rest_positions_)
+                                          : LoadedFace(FaceOf(side));
+      for (int c = 0; c < face.count; ++c) areas[face.nodes[c]] += face.share[c];
     }
     return areas;
   }

@@ -44,12 +44,32 @@ std::array<FacePoint<4>, 4> BilinearFacePoints() {
   return {point(kNear, kNear), point(1 - kNear, kNear), point(1 - kNear, 1 - kNear), point(kNear, 1 - kNear)};
 }
 
+// 3 x 3 Gauss points, exact for N_a (x,1 x x,2) of a biquadratic side.
+std::array<FacePoint<9>, 9> BiquadraticFacePoints() {
+  // The step of each node along u and v: corners, edges, middle.
+  constexpr int kSteps[9][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 0}, {2, 1}, {1, 2}, {0, 1}, {1, 1}};
+  using Shape = HexahedralQuadraticShape;
+  std::array<FacePoint<9>, 9> points;
+  for (int q = 0; q < 9; ++q) {
+    const double u = Shape::Place(q, 0), v = Shape::Place(q, 1);
+    points[q].weight = Shape::LineWeight(q % 3) * Shape::LineWeight(q / 3);
+    for (int a = 0; a < 9; ++a) {
+      const auto [i, j] = kSteps[a];
+      points[q].N[a] = QuadraticFactor(i, u) * QuadraticFactor(j, v);
+      points[q].d1[a] = QuadraticFactorSlope(i, u) * QuadraticFactor(j, v);
+      points[q].d2[a] = QuadraticFactor(i, u) * QuadraticFactorSlope(j, v);
+    }
+  }
+  return points;
+}
+
 // Calls visit(points of a face) for faces of the given order.
 template <class Visit>
 void WithFacePoints(ElementOrder order, const Visit& visit) {
   static const auto linear = LinearFacePoints();
   static const auto quadratic = QuadraticFacePoints();
   static const auto bilinear = BilinearFacePoints();
+  static const auto biquadratic = BiquadraticFacePoints();
   switch (order) {
     case ElementOrder::kLinear:
       return visit(linear);
@@ -57,6 +77,8 @@ void WithFacePoints(ElementOrder order, const Visit& visit) {
       return visit(quadratic);
     case ElementOrder::kHexahedral:
       return visit(bilinear);
+    case ElementOrder::kHexahedralQuadratic:
+      return visit(biquadratic);
   }
 }
 
@@ -166,6 +188,18 @@ void ForEnds(const LineSpringLoad& load, const Visit& visit) {
 
 double DistanceBetween(const MeanPosition& a, const MeanPosition& b, const NodalVector& x) {
   return (PositionOf(b, x) - PositionOf(a, x)).norm();
+}
+
+std::vector<double> SharesOf(ElementOrder order, const PressureFace& face, const NodalVector& X) {
+  std::vector<double> shares;
+  WithFacePoints(order, [&]<int kNodes, std::size_t kPoints>(const std::array<FacePoint<kNodes>, kPoints>& points) {
+    shares.assign(kNodes, 0.0);
+    for (const FacePoint<kNodes>& point : points) {
+      const double area = TangentOf<kNodes>(point.d1, face, X).cross(TangentOf<kNodes>(point.d2, face, X)).norm();
+      for (int a = 0; a < kNodes; ++a) shares[a] += point.weight * area * point.N[a];
+    }
+  });
+  return shares;
 }
 
 std::vector<SpringEntry> SpringsOnFaces(ElementOrder order, std::span<const PressureFace> faces, const NodalVector& X,

@@ -20,10 +20,13 @@ class TetModel;
 // All are multiplied by the scale of their load.
 
 // A face of the surface: three corners and, for quadratic elements, the nodes between corners 0 and 1, 1 and 2, 2 and
-// 0; of hexahedra, four corners. Counter-clockwise seen from outside.
+// 0; of hexahedra, four corners and, for those of 27 nodes, the nodes between corners 0 and 1 and so on, then that in
+// the middle. Counter-clockwise seen from outside.
 struct PressureFace {
-  std::array<std::int32_t, 6> nodes = {};
+  std::array<std::int32_t, 9> nodes = {};
 };
+// The area of a face at rest that belongs to each of its nodes: the integrals of its shape functions [m^2].
+std::vector<double> SharesOf(ElementOrder order, const PressureFace& face, const NodalVector& X);
 struct PressureLoad {
   std::size_t load = 0;  // index into TetModel::loads(), for its scale
   double pressure = 0;   // at scale 1 [Pa]

@@ -21,28 +21,30 @@ constexpr double kSlack = 1.1, kLeastGain = 0.5;
 // The least reduction that is worth a refinement.
 constexpr double kLeastPass = 0.1;
 
-// Interpolation from the corners of quadratic elements to all of their nodes, along straight edges; nothing for other
-// elements.
+// Interpolation from the corners of elements to all of their nodes, along straight edges and within flat sides; nothing
+// for elements that have corners only.
 std::optional<Prolongation> FromCorners(const TetModel& model, const FreeComponents& free) {
-  if (model.order() != ElementOrder::kQuadratic) return std::nullopt;
-  std::vector<std::array<std::int32_t, 2>> ends(model.nodes(), {kNone, kNone});
-  for (std::size_t e = 0; e < model.elements(); ++e) {
-    const auto nodes = model.NodesOf<QuadraticElement>(e);
-    for (int c = 0; c < 4; ++c) ends[nodes[c]] = {nodes[c], kNone};
-    for (int k = 0; k < 6; ++k) ends[nodes[4 + k]] = {nodes[kTetEdges[k][0]], nodes[kTetEdges[k][1]]};
+  constexpr std::array<std::int32_t, 8> kNoParents = {kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone};
+  std::vector<std::array<std::int32_t, 8>> parents(model.nodes(), kNoParents);
+  for (const TetBody& body : model.bodies()) {
+    model.ForHigherNodes(body, [&](std::int32_t node, std::span<const std::int32_t> corners) {
+      std::copy(corners.begin(), corners.end(), parents[node].begin());
+    });
   }
   std::vector<std::int32_t> coarse_of(model.nodes(), kNone);
   Prolongation result;
   result.is_diagonal = true;
   for (std::size_t n = 0; n < model.nodes(); ++n) {
-    if (ends[n][1] == kNone) coarse_of[n] = static_cast<std::int32_t>(result.coarse++);
+    if (parents[n][0] == kNone) coarse_of[n] = static_cast<std::int32_t>(result.coarse++);
   }
+  if (result.coarse == model.nodes()) return std::nullopt;
   PatternBuilder builder;
   std::vector<std::int32_t> columns;
   for (std::size_t n = 0; n < model.nodes(); ++n) {
     columns.clear();
-    for (const std::int32_t end : ends[n]) {
-      if (end != kNone) columns.push_back(coarse_of[end]);
+    if (coarse_of[n] != kNone) columns.push_back(coarse_of[n]);
+    for (const std::int32_t parent : parents[n]) {
+      if (parent != kNone) columns.push_back(coarse_of[parent]);
     }
     builder.AddRow(columns);
   }
@@ -53,7 +55,7 @@ std::optional<Prolongation> FromCorners(const TetModel& model, const FreeCompone
     if (coarse_of[n] != kNone) corner_of[coarse_of[n]] = static_cast<std::int32_t>(n);
   }
   for (std::size_t n = 0; n < model.nodes(); ++n) {
-    const double weight = ends[n][1] == kNone ? 1 : 0.5;
+    const double weight = 1.0 / (result.pattern.begin[n + 1] - result.pattern.begin[n]);
     for (std::int32_t k = result.pattern.begin[n]; k < result.pattern.begin[n + 1]; ++k) {
       result.values[k].setZero();
       for (int c = 0; c < 3; ++c) {

@@ -32,6 +32,9 @@ void StiffnessLayout::SetPlaces(const TetModel& model, const BlockPattern& patte
           const std::size_t slot = chunks.slot[e];
           const auto turned = static_cast<unsigned>(nodes[a] < nodes[b]) << slot % kBlock;
           turned_[pairs_ * (slot / kBlock) + a * (a + 1) / 2 + b] |= static_cast<std::uint16_t>(turned);
+          if (a == b || nodes[a] != nodes[b]) continue;
+          doubled_.resize(turned_.size());
+          doubled_[pairs_ * (slot / kBlock) + a * (a + 1) / 2 + b] |= static_cast<std::uint16_t>(1u << slot % kBlock);
         }
       }
     }

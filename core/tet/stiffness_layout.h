@@ -25,6 +25,7 @@ class StiffnessLayout {
   // The places of an element's pairs of nodes, in the layout of ChunkBlocks, starting at block b of all blocks.
   const std::uint16_t* PlacesOf(std::size_t b) const { return &places_[pairs_ * kBlock * b]; }
   const std::uint16_t* TurnedOf(std::size_t b) const { return &turned_[pairs_ * b]; }
+  const std::uint16_t* DoubledOf(std::size_t b) const { return doubled_.empty() ? nullptr : &doubled_[pairs_ * b]; }
 
   // Blocks of the lower triangle that several chunks share, or that have none: the slots of shared()[i] are
   // slots()[slot_begin()[i] .. slot_begin()[i + 1]).
@@ -41,6 +42,7 @@ class StiffnessLayout {
   std::vector<std::size_t> begin_ = {0};
   std::vector<Target> targets_, shared_;
   std::vector<std::uint16_t> places_, turned_;
+  std::vector<std::uint16_t> doubled_;  // empty without collapsed elements
   Sharing sharing_;
 };
 

@@ -11,7 +11,8 @@ namespace fascicle {
 
 // Averages of the volume ratio, against volumetric locking.
 //
-// Of hexahedra: the mean over each element (mean dilatation). Of tetrahedra: nodal averages. Their patch is the dual
+// Of hexahedra: the mean over each element (mean dilatation), or a linear function of its coordinates, as four values
+// (shape_functions.h). Of tetrahedra: nodal averages. Their patch is the dual
 // region of a corner node among the elements of one group, weighted by the corner's barycentric coordinate L_n:
 //   V_n = sum of the integrals of L_n over those elements at rest,   theta_n = (1/V_n) sum of the integrals of L_n J.
 // Most of the volume energy of a nearly incompressible law acts on theta_n, U = k/2 (ln theta)^2, instead of each
@@ -22,7 +23,7 @@ namespace fascicle {
 // nodes to elements to nodes (the cyclic smoothing of [Onishi & Amaya 2017]). This operator W is self-adjoint in the
 // inner product weighted by V. See README.md. Immutable once built.
 struct VolumePatches {
-  // The patch at each corner of a tetrahedron, or that of a hexahedron in the first place (Element::kPatches); kNone in
+  // The patch at each corner of a tetrahedron, or the Element::kPatches of a hexahedron in the first places; kNone in
   // elements that keep their whole volume energy.
   using Corners = std::array<std::int32_t, 4>;
   static constexpr std::int32_t kNone = -1;

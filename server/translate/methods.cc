@@ -31,6 +31,7 @@ ElementOrder ToElement(v1::Element element, Stepping stepping) {
   if (element == v1::ELEMENT_LINEAR) return ElementOrder::kLinear;
   if (element == v1::ELEMENT_QUADRATIC) return ElementOrder::kQuadratic;
   if (element == v1::ELEMENT_HEXAHEDRAL) return ElementOrder::kHexahedral;
+  if (element == v1::ELEMENT_HEXAHEDRAL_QUADRATIC) return ElementOrder::kHexahedralQuadratic;
   const bool is_explicit = stepping == Stepping::kExplicit || stepping == Stepping::kMixed;
   return is_explicit ? ElementOrder::kLinear : ElementOrder::kQuadratic;
 }

@@ -1,5 +1,7 @@
 #include "server/translate/refine_body.h"
 
+#include <algorithm>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -85,6 +87,14 @@ void RefineShape(VoxelShape& shape, const std::stop_token& stop) {
 std::int64_t ElementsOf(const TetShape& shape) { return static_cast<std::int64_t>(ElementCount(shape.mesh)); }
 std::int64_t ElementsOf(const VoxelShape& shape) { return static_cast<std::int64_t>(shape.mesh.bricks.size()); }
 
+// Wedges and pyramids have no parts of their own kinds that match their neighbours'.
+bool HasParts(const TetShape& shape) {
+  return std::all_of(shape.mesh.hexahedra.begin(), shape.mesh.hexahedra.end(), [](const Hexahedron& hexahedron) {
+    return std::set<std::int32_t>(hexahedron.begin(), hexahedron.end()).size() == hexahedron.size();
+  });
+}
+bool HasParts(const VoxelShape&) { return true; }
+
 // Whether the budget allows the parts, which it then pays.
 bool PayForParts(const BodySource& source, std::int64_t elements, Problems& problems) {
   std::int64_t parts = elements;
@@ -102,6 +112,10 @@ bool PayForParts(const BodySource& source, std::int64_t elements, Problems& prob
 
 template <class Shape>
 void Refine(const BodySource& source, const RegionSelectors& selectors, Shape& shape, Body& body, Problems& problems) {
+  if (!HasParts(shape)) {
+    problems.Add("refinements", source.path + " has wedges or pyramids, which are not refined", "mesh the body finer");
+    return;
+  }
   if (!PayForParts(source, ElementsOf(shape), problems)) return;
   for (int k = 0; k < source.refinements; ++k) RefineShape(shape, source.tools.stop);
   body.regions = SelectRegions(selectors, shape.mesh, source.tools.stop);

@@ -41,8 +41,11 @@ void CheckHead(const v1::Scene& scene, Problems& problems) {
 
 void AddCurvedEdgesNote(const TetMethod& method, const std::string& path, Body& body) {
   const auto* tet = std::get_if<TetShape>(&body.shape);
-  if (tet == nullptr || tet->mesh.curved_edges.empty() || method.element != ElementOrder::kLinear) return;
-  body.notes.push_back(JoinPath(path, "mesh") + ": linear elements ignore that edges of the mesh are curved");
+  if (tet == nullptr || tet->mesh.curved_edges.empty() ||
+      (method.element != ElementOrder::kLinear && method.element != ElementOrder::kHexahedral))
+    return;
+  body.notes.push_back(JoinPath(path, "mesh") +
+                       ": elements without mid-edge nodes ignore that edges of the mesh are curved");
 }
 
 std::string Gigabytes(double bytes) {
@@ -102,7 +105,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   result->floors = TranslateFloors(filled, found);
   result->squeezes = TranslatePlaneForceFields(filled, found);
 
-  const bool hexahedral = result->method == Method::kTet && result->tet.element == ElementOrder::kHexahedral;
+  const bool hexahedral = result->method == Method::kTet && IsHexahedral(result->tet.element);
   const Cells cells = hexahedral ? Cells::kHexahedra : Cells::kTetrahedra;
   const bool quadratic = result->method == Method::kTet && result->tet.element == ElementOrder::kQuadratic;
   Names names("body");

@@ -89,9 +89,9 @@ struct NamedScene {
 inline NamedScene TetScene(const std::string& name, Stepping stepping, ElementOrder element) {
   // Implicit and quadratic steps take longer: they get fewer elements, and explicit quadratic ones a shorter time.
   const bool is_explicit = stepping == Stepping::kExplicit || stepping == Stepping::kMixed;
-  const bool is_quadratic = element == ElementOrder::kQuadratic;
-  const char* suffix = is_quadratic ? "_quadratic" : element == ElementOrder::kLinear ? "_linear" : "_hexahedral";
-  NamedScene named = {"tet_" + name + suffix, BusyScene(stepping, element, is_explicit && !is_quadratic ? 8 : 2)};
+  const bool is_quadratic = element == ElementOrder::kQuadratic || element == ElementOrder::kHexahedralQuadratic;
+  NamedScene named = {"tet_" + name + "_" + ElementNameOf(element),
+                      BusyScene(stepping, element, is_explicit && !is_quadratic ? 8 : 2)};
   if (is_explicit && is_quadratic) {
     named.scene.duration /= 4;
     named.scene.output.frame_interval /= 4;
@@ -121,7 +121,7 @@ inline NamedScene EulerianSceneOf(const std::string& name, VolumeTreatment volum
 
 inline std::vector<NamedScene> SmallScenes() {
   std::vector<NamedScene> scenes;
-  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral}) {
+  for (const ElementOrder element : kEveryElement) {
     scenes.push_back(TetScene("explicit", Stepping::kExplicit, element));
     scenes.push_back(TetScene("mixed", Stepping::kMixed, element));
     scenes.push_back(TetScene("backward_euler", Stepping::kBackwardEuler, element));

@@ -44,12 +44,17 @@ inline Body ClampedCube(int n, const Material& law, const Curve& lift, Cells cel
 template <class Map>
 void Place(const Map& place, TetMesh& mesh) {
   std::set<std::array<std::int32_t, 2>> edges;
-  for (const Tetrahedron& tet : mesh.tetrahedra) {
-    if (!mesh.hexahedra.empty()) break;
-    for (const auto& [a, b] : kTetEdges) {
-      const auto [i, j] = std::minmax(tet[a], tet[b]);
-      if (!edges.insert({i, j}).second) continue;
-      mesh.curved_edges.push_back({{i, j}, place(0.5 * (mesh.nodes[i] + mesh.nodes[j]))});
+  const auto add = [&](std::int32_t a, std::int32_t b) {
+    const auto [i, j] = std::minmax(a, b);
+    if (!edges.insert({i, j}).second) return;
+    mesh.curved_edges.push_back({{i, j}, place(0.5 * (mesh.nodes[i] + mesh.nodes[j]))});
+  };
+  for (const Hexahedron& hexahedron : mesh.hexahedra) {
+    for (const auto& [a, b] : kHexEdges) add(hexahedron[a], hexahedron[b]);
+  }
+  if (mesh.hexahedra.empty()) {
+    for (const Tetrahedron& tet : mesh.tetrahedra) {
+      for (const auto& [a, b] : kTetEdges) add(tet[a], tet[b]);
     }
   }
   for (Vec3& X : mesh.nodes) X = place(X);

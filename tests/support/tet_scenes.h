@@ -44,10 +44,16 @@ inline Body MakeBody(std::string name, TetMesh mesh, Material material) {
 
 enum Side { kX0, kX1, kY0, kY1, kZ0, kZ1 };
 
-// The cells that an element needs.
-inline Cells CellsOf(ElementOrder element) {
-  return element == ElementOrder::kHexahedral ? Cells::kHexahedra : Cells::kTetrahedra;
+inline constexpr std::array kEveryElement = {ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral,
+                                             ElementOrder::kHexahedralQuadratic};
+// The name in a scene, in small letters.
+inline std::string ElementNameOf(ElementOrder element) {
+  constexpr std::array kNames = {"linear", "quadratic", "hexahedral", "hexahedral_quadratic"};
+  return kNames[static_cast<std::size_t>(element)];
 }
+
+// The cells that an element needs.
+inline Cells CellsOf(ElementOrder element) { return IsHexahedral(element) ? Cells::kHexahedra : Cells::kTetrahedra; }
 
 inline Body BoxBody(const Vec3& size, const std::array<int, 3>& divisions, Material material,
                     Cells cells = Cells::kTetrahedra) {

@@ -126,13 +126,8 @@ TEST_P(IterativeTest, ConjugateGradientsGiveTheSameBitsForAnyThreadsAndAfterARes
   EXPECT_EQ(run(1, true), reference);
 }
 
-INSTANTIATE_TEST_SUITE_P(Elements, IterativeTest,
-                         ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral),
-                         [](const auto& element) {
-                           return element.param == ElementOrder::kLinear      ? "linear"
-                                  : element.param == ElementOrder::kQuadratic ? "quadratic"
-                                                                              : "hexahedral";
-                         });
+INSTANTIATE_TEST_SUITE_P(Elements, IterativeTest, ::testing::ValuesIn(kEveryElement),
+                         [](const auto& element) { return ElementNameOf(element.param); });
 
 // Problem d at 3 and 37 thousand unknown components.
 TEST(IterativeGrowthTest, IterationsDoNotGrow) {

@@ -80,7 +80,7 @@ TEST(PressureTest, InflatesATubeAsTheClosedFormSays) {
 // A strip bent by a pressure on its free face, whose rim is free: the force has no potential. The equilibrium is that
 // of the final shape, and the pressure is normal to it.
 TEST(PressureTest, FollowsAStripWithAFreeRim) {
-  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral}) {
+  for (const ElementOrder element : kEveryElement) {
     Body body = BoxBody(Vec3(0.04, 0.005, 0.002), {16, 2, 2}, NeoHookean(std::array{1e5, 0.3}), CellsOf(element));
     body.constraints = {Fix(kX0)};
     // Linear elements and hexahedra are stiffer in bending.
@@ -142,7 +142,7 @@ TEST(BodyForceTest, StretchesABarAsTheClosedFormSays) {
 // A block on springs without supports, pulled by a traction on the same face: it moves by F/k on every axis, as
 // a whole.
 TEST(SpringsTest, HoldABlock) {
-  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral}) {
+  for (const ElementOrder element : kEveryElement) {
     Body body = BoxBody(Vec3(0.01, 0.01, 0.02), {2, 2, 4}, NeoHookean(std::array{1e6, 0.3}), CellsOf(element));
     Load springs;
     springs.region = kZ0;

@@ -83,7 +83,7 @@ std::vector<Malformed> MalformedFiles() {
       {"MeditCutNumber", "m.mesh", Replaced(kMedit, "20\nEnd\n", "2"), "", "ends without the keyword End"},
       {"MeditTwoSections", "m.mesh", Replaced(kMedit, "End\n", "Tetrahedra 0\nEnd\n"), "", "a second section Tetra"},
       {"MeditHexahedra", "m.mesh", Replaced(kMedit, "End\n", "Hexahedra 1\n1 2 3 4 5 1 2 3 0\nEnd\n"), "",
-       "the file has 1 hexahedra and 2 tetrahedra; a mesh must have either tetrahedra or hexahedra only (`fascicle "
+       "the file has 1 hexahedra and 2 tetrahedra; a mesh must have tetrahedra only, or none (`fascicle "
        "mesh FILE --convert --split-hexahedra"},
       // TetGen
       {"TetgenNoElements", "m.node", kTetgenNodes, "", "the .ele file with the tetrahedra is missing"},

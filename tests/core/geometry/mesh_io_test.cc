@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <iomanip>
 #include <map>
+#include <sstream>
 
 #include "core/base/stop.h"
 #include "core/geometry/mesh_checks.h"
 #include "core/geometry/mesh_writer.h"
+#include "core/geometry/quadratic_hexahedron.h"
 #include "core/geometry/shapes.h"
 #include "core/geometry/triangle_mesh.h"
 #include "tests/support/mesh_samples.h"
@@ -185,6 +189,73 @@ TEST(MeshIoTest, TenNodesBecomeCurvedEdges) {
     Problems problems;
     CheckMesh(*mesh, problems);
     EXPECT_TRUE(problems.empty()) << problems.ToString();
+  }
+}
+
+// A cube whose edges are all curved, each by another amount; formats have different orders of edges.
+TEST(MeshIoTest, HexahedraOfTwentyNodesHaveCurvedEdges) {
+  constexpr int kCorners[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                  {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  // The ends of the edges in the order of Gmsh; the others have that of kHexEdges.
+  constexpr int kGmshEdges[12][2] = {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3},
+                                     {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}};
+  const auto middle_of = [&](int a, int b) {
+    Vec3 middle;
+    for (int d = 0; d < 3; ++d) middle[d] = 0.5 * (kCorners[a][d] + kCorners[b][d]);
+    return Vec3(middle + (0.01 * a + 0.001 * b) * (middle - Vec3::Constant(0.5)));
+  };
+  const auto text_of = [](const Vec3& x) {
+    std::ostringstream out;
+    out << std::setprecision(17) << x[0] << " " << x[1] << " " << x[2];
+    return out.str();
+  };
+  const auto points_of = [&](const int(&edges)[12][2], int count, const std::function<std::string(int)>& before) {
+    std::string points;
+    for (int n = 0; n < count; ++n) {
+      const Vec3 x =
+          n < 8    ? Vec3(kCorners[n][0], kCorners[n][1], kCorners[n][2])
+          : n < 20 ? middle_of(std::min(edges[n - 8][0], edges[n - 8][1]), std::max(edges[n - 8][0], edges[n - 8][1]))
+                   : Vec3(Vec3::Constant(0.01 * n));
+      points += before(n) + text_of(x) + "\n";
+    }
+    return points;
+  };
+  for (const int count : {20, 27}) {
+    std::string from_0, from_1;
+    for (int n = 0; n < count; ++n) {
+      from_0 += " " + std::to_string(n);
+      from_1 += (n == 0 ? "" : ", ") + std::to_string(n + 1);
+    }
+    std::string gmsh_nodes = from_1;
+    std::erase(gmsh_nodes, ',');
+    const std::string size = std::to_string(count);
+    const std::string gmsh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + size + "\n" +
+                             points_of(kGmshEdges, count, [](int n) { return std::to_string(n + 1) + " "; }) +
+                             "$EndNodes\n$Elements\n1\n1 " + (count == 20 ? "17" : "12") + " 2 3 1 " + gmsh_nodes +
+                             "\n$EndElements\n";
+    const std::string vtk = "# vtk DataFile Version 3.0\nm\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " + size +
+                            " double\n" + points_of(kHexEdges, count, [](int) { return ""; }) + "CELLS 1 " +
+                            std::to_string(count + 1) + "\n" + size + from_0 + "\nCELL_TYPES 1\n" +
+                            (count == 20 ? "25" : "29") + "\n";
+    std::string abaqus_points = points_of(kHexEdges, count, [](int n) { return std::to_string(n + 1) + " "; });
+    std::replace(abaqus_points.begin(), abaqus_points.end(), ' ', ',');
+    const std::string abaqus = "*NODE\n" + abaqus_points + "*ELEMENT, TYPE=C3D" + size + "\n1, " + from_1 + "\n";
+    for (const auto& [name, text] :
+         {std::pair<std::string, std::string>{"m.msh", gmsh}, {"m.vtk", vtk}, {"m.inp", abaqus}}) {
+      Problems problems;
+      MeshRemarks remarks;
+      const auto mesh = ReadMesh({.name = name, .bytes = text, .solids = Solids::kKeep}, problems, {}, &remarks);
+      ASSERT_TRUE(mesh) << name << problems.ToString();
+      EXPECT_EQ(mesh->nodes.size(), 8u);
+      ASSERT_EQ(mesh->hexahedra.size(), 1u);
+      ASSERT_EQ(mesh->curved_edges.size(), 12u) << name;
+      for (const CurvedEdge& edge : mesh->curved_edges) {
+        EXPECT_LT((edge.middle - middle_of(edge.ends[0], edge.ends[1])).norm(), 1e-15) << name;
+      }
+      CheckMesh(*mesh, problems);
+      EXPECT_TRUE(problems.empty()) << problems.ToString();
+      EXPECT_EQ(remarks.notes.empty(), count == 20) << name;
+    }
   }
 }
 

@@ -152,9 +152,7 @@ TEST_P(ElementMatricesTest, SideBySideAsPointByPoint) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, ElementMatricesTest,
-                         ::testing::Combine(::testing::Range(0, kLawsOfKernels),
-                                            ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic,
-                                                              ElementOrder::kHexahedral),
+                         ::testing::Combine(::testing::Range(0, kLawsOfKernels), ::testing::ValuesIn(kEveryElement),
                                             ::testing::Values(VolumeForm::kNodal, VolumeForm::kElement)));
 
 NodalVector Product(LoadedMatrix& s, const NodalVector& p) {
@@ -188,16 +186,15 @@ TEST_P(DerivativesTest, BlocksAreThoseOfTheForce) {
   EXPECT_NEAR((energy_ahead - energy_behind) / (2 * h), -Dot(s.team, force, p), 1e-6 * LargestNorm(force));
 }
 INSTANTIATE_TEST_SUITE_P(Potentials, DerivativesTest,
-                         ::testing::Combine(::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic,
-                                                              ElementOrder::kHexahedral),
-                                            ::testing::Bool()));
+                         ::testing::Combine(::testing::ValuesIn(kEveryElement), ::testing::Bool()));
 
 // In several chunks: the matrix is symmetric, its product equals the matrix-free one, and its bits do not depend on the
 // number of threads.
 class AssembleStiffnessTest : public ::testing::TestWithParam<ElementOrder> {};
 
 TEST_P(AssembleStiffnessTest, AddsEveryBlockInItsPlace) {
-  LoadedMatrix s(LawsOfKernels()[5], GetParam(), VolumeForm::kElement, GetParam() == ElementOrder::kQuadratic ? 6 : 11);
+  LoadedMatrix s(LawsOfKernels()[5], GetParam(), VolumeForm::kElement,
+                 std::array{11, 6, 11, 6}[static_cast<std::size_t>(GetParam())]);
   ASSERT_GT(s.model.chunks().chunks.size(), 1u);
   std::vector<BlockValues> results;
   for (const int threads : {1, 2, 3}) {
@@ -244,8 +241,7 @@ TEST_P(AssembleStiffnessTest, AddsEveryBlockInItsPlace) {
   });
   EXPECT_LT(LargestDifference(product, expected), 1e-12 * LargestNorm(expected));
 }
-INSTANTIATE_TEST_SUITE_P(Elements, AssembleStiffnessTest,
-                         ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral));
+INSTANTIATE_TEST_SUITE_P(Elements, AssembleStiffnessTest, ::testing::ValuesIn(kEveryElement));
 
 }  // namespace
 }  // namespace fascicle

@@ -80,7 +80,7 @@ TEST_P(TetFieldsTest, OfAnAffineDeformationAreThoseOfItsGradient) {
       const double scale = info.from == FieldSource::kDeformation ? 1 : 1e5;
       if (info.field == OutputField::kPrincipalStressDirections) continue;  // of either sign
       const std::vector<double> values = block.Of(info.field);
-      ASSERT_EQ(values.size(), info.components * (GetParam() == ElementOrder::kHexahedral ? 12 : 72));
+      ASSERT_EQ(values.size(), info.components * (IsHexahedral(GetParam()) ? 12 : 72));
       for (std::size_t i = 0; i < values.size(); ++i) {
         EXPECT_NEAR(values[i], expected[i % info.components], 1e-10 * scale) << info.name;
       }
@@ -121,11 +121,16 @@ TEST_P(TetFieldsTest, EnergyDensityAddsUpToTheEnergy) {
   EXPECT_NEAR(sum, energy, 1e-12 * std::abs(energy));
 }
 
-// x = X + c X_0^2 e_x is represented exactly by the quadratic element: displacement and F at any point.
-TEST(TetProbeTest, AQuadraticElementIsInterpolatedExactly) {
-  Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, NeoHookean(std::array{1e4, 0.3}));
+// x = X + c X_0^2 e_x is represented exactly by quadratic elements: displacement and F at any point.
+class QuadraticProbeTest : public ::testing::TestWithParam<ElementOrder> {};
+INSTANTIATE_TEST_SUITE_P(Elements, QuadraticProbeTest,
+                         ::testing::Values(ElementOrder::kQuadratic, ElementOrder::kHexahedralQuadratic),
+                         [](const auto& element) { return ElementNameOf(element.param); });
+
+TEST_P(QuadraticProbeTest, QuadraticElementsAreInterpolatedExactly) {
+  Body body = BoxBody(Vec3(0.03, 0.02, 0.02), {3, 2, 2}, NeoHookean(std::array{1e4, 0.3}), CellsOf(GetParam()));
   body.constraints = {Fix(kX0)};
-  SteppedRun run(StaticScene(std::move(body), ElementOrder::kQuadratic));
+  SteppedRun run(StaticScene(std::move(body), GetParam()));
   for (std::size_t n = 0; n < run.model.nodes(); ++n) {
     const Vec3& X = run.model.rest_positions()[n];
     run.state.positions[n] = X + Vec3(5 * X[0] * X[0], 0, 0);
@@ -163,8 +168,7 @@ TEST_P(TetFieldsTest, NodalForcesAddUp) {
   EXPECT_LT(sum_of(OutputField::kInternalForce).norm(), 1e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(Elements, TetFieldsTest,
-                         ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral));
+INSTANTIATE_TEST_SUITE_P(Elements, TetFieldsTest, ::testing::ValuesIn(kEveryElement));
 
 }  // namespace
 }  // namespace fascicle

@@ -29,7 +29,7 @@ Scene FallingCube(Stepping stepping, ElementOrder element, double height) {
 
 // The floor's force is minus the gradient of its energy.
 TEST(FloorTest, ForceIsTheSlopeOfTheEnergy) {
-  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral}) {
+  for (const ElementOrder element : kEveryElement) {
     Scene scene = FallingCube(Stepping::kExplicit, element, 0);
     scene.floors.push_back({"wall", Vec3(0.001, 0, 0), Vec3(1, 0.2, 0).normalized()});
     const TetModel model(scene);
@@ -61,7 +61,7 @@ TEST(FloorTest, ForceIsTheSlopeOfTheEnergy) {
 
 // Falls freely, bounces, and keeps its energy, because there is no damping.
 TEST(FloorTest, ABouncingCubeKeepsItsEnergy) {
-  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral}) {
+  for (const ElementOrder element : kEveryElement) {
     Scene scene = FallingCube(Stepping::kExplicit, element, 0.02);
     scene.tet.safety = 0.3;  // a side that hits the ground as a whole is the worst case: 3 % at 0.9
     const RunResult run = RunScene(scene, 2);
@@ -102,7 +102,7 @@ TEST(FloorTest, TheFloorCarriesTheWeight) {
 // balance, and both elements agree.
 TEST(FloorTest, PressedInEquilibrium) {
   std::vector<double> push;
-  for (const ElementOrder element : {ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral}) {
+  for (const ElementOrder element : kEveryElement) {
     Scene scene = FallingCube(Stepping::kQuasiStatic, element, 0.002);
     scene.gravity.acceleration.setZero();
     Constraint lid = Fix(kZ1);

@@ -123,9 +123,7 @@ TEST_P(KernelsTest, EnergyIsThatOfTheLaws) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, KernelsTest,
-                         ::testing::Combine(::testing::Range(0, kLawsOfKernels),
-                                            ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic,
-                                                              ElementOrder::kHexahedral),
+                         ::testing::Combine(::testing::Range(0, kLawsOfKernels), ::testing::ValuesIn(kEveryElement),
                                             ::testing::Values(VolumeForm::kNodal, VolumeForm::kElement)));
 
 // All instruction sets and any number of threads: the same bits.
@@ -133,10 +131,8 @@ class SameBitsTest : public ::testing::TestWithParam<std::tuple<int, ElementOrde
 
 TEST_P(SameBitsTest, AnySetAnyThreads) {
   const auto [law, element] = GetParam();
-  const Setting s(LawsOfKernels()[law], element, VolumeForm::kNodal,
-                  element == ElementOrder::kLinear      ? 9
-                  : element == ElementOrder::kQuadratic ? 8
-                                                        : 14);
+  constexpr std::array kAcross = {9, 8, 14, 8};  // for several chunks
+  const Setting s(LawsOfKernels()[law], element, VolumeForm::kNodal, kAcross[static_cast<std::size_t>(element)]);
   ASSERT_GT(s.model.chunks().chunks.size(), 5u);
   NodalVector first, first_product;
   double power = 0;
@@ -164,9 +160,7 @@ TEST_P(SameBitsTest, AnySetAnyThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, SameBitsTest,
-                         ::testing::Combine(::testing::Range(0, kLawsOfKernels),
-                                            ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic,
-                                                              ElementOrder::kHexahedral)));
+                         ::testing::Combine(::testing::Range(0, kLawsOfKernels), ::testing::ValuesIn(kEveryElement)));
 
 // In single precision: forces to six digits of the largest, the same bits with any set and threads.
 class SingleTest : public ::testing::TestWithParam<std::tuple<int, ElementOrder>> {};
@@ -200,9 +194,7 @@ TEST_P(SingleTest, ForcesToSixDigits) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Laws, SingleTest,
-                         ::testing::Combine(::testing::Range(0, kLawsOfKernels),
-                                            ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic,
-                                                              ElementOrder::kHexahedral)));
+                         ::testing::Combine(::testing::Range(0, kLawsOfKernels), ::testing::ValuesIn(kEveryElement)));
 
 // A muscle between fixed ends that contracts to full activation and vibrates: single precision against double.
 TEST(SingleTest, ContractionFollowsDouble) {

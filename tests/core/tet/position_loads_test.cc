@@ -47,7 +47,7 @@ double VolumeAt(const TetModel& model, const NodalVector& x) {
       const auto nodes = model.NodesOf<Element>(e);
       for (int a = 0; a < Element::kNodes; ++a) at[a] = x[nodes[a]];
       for (int q = 0; q < Element::kPoints; ++q) {
-        volume += Element::kPointWeight * Determinant(EdgeMatrix(Element::Corners(at, q))) / 6;
+        volume += Element::PointWeight(q) * Determinant(EdgeMatrix(Element::Corners(at, q))) / 6;
       }
     }
   });
@@ -152,13 +152,8 @@ TEST_P(PositionLoadsTest, SpringsPullToTheRestPositions) {
   EXPECT_LT((sum - Vec3(-0.2, 0, 0.028)).norm(), 1e-14);
 }
 
-INSTANTIATE_TEST_SUITE_P(Elements, PositionLoadsTest,
-                         ::testing::Values(ElementOrder::kLinear, ElementOrder::kQuadratic, ElementOrder::kHexahedral),
-                         [](const auto& test) {
-                           return test.param == ElementOrder::kLinear      ? "linear"
-                                  : test.param == ElementOrder::kQuadratic ? "quadratic"
-                                                                           : "hexahedral";
-                         });
+INSTANTIATE_TEST_SUITE_P(Elements, PositionLoadsTest, ::testing::ValuesIn(kEveryElement),
+                         [](const auto& test) { return ElementNameOf(test.param); });
 
 }  // namespace
 }  // namespace fascicle
