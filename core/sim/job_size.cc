@@ -13,7 +13,23 @@ constexpr double kPerVoxel = 600;
 constexpr double kPerCell = 1200;
 constexpr double kPerExplicitPoint = 320;  // of tetrahedra and hexahedra
 // A node's share of the matrix, its levels, and the vectors of the solver.
-constexpr double kPerLinearNode = 8'000, kPerQuadraticNode = 13'000, kPerHexahedralNode = 12'000;
+constexpr double kPerLinearNode = 8'000, kPerQuadraticNode = 13'000, kPerHexahedralNode = 12'000,
+                 kPerQuadraticHexahedralNode = 25'000;
+
+double PerNode(ElementOrder order) {
+  switch (order) {
+    case ElementOrder::kLinear:
+      return kPerLinearNode;
+    case ElementOrder::kQuadratic:
+      return kPerQuadraticNode;
+    case ElementOrder::kHexahedral:
+      return kPerHexahedralNode;
+    case ElementOrder::kHexahedralQuadratic:
+      break;
+  }
+  return kPerQuadraticHexahedralNode;
+}
+
 // Factors of a matrix of n unknowns from a body of three dimensions, by nested dissection: of the order n^(4/3)
 // [George 1973].
 constexpr double kPerFactor = 300;
@@ -24,10 +40,9 @@ struct TetSize {
 
 TetSize TetSizeOf(const TetMesh& mesh, ElementOrder order) {
   const auto nodes = static_cast<double>(mesh.nodes.size());
-  if (order == ElementOrder::kHexahedral) {
-    const auto hexahedra = static_cast<double>(mesh.hexahedra.size());
-    return {nodes, hexahedra, 8 * hexahedra};
-  }
+  const auto hexahedra = static_cast<double>(mesh.hexahedra.size());
+  if (order == ElementOrder::kHexahedral) return {nodes, hexahedra, 8 * hexahedra};
+  if (order == ElementOrder::kHexahedralQuadratic) return {8 * nodes, hexahedra, 27 * hexahedra};
   const auto tetrahedra = static_cast<double>(mesh.tetrahedra.size());
   if (order == ElementOrder::kLinear) return {nodes, tetrahedra, tetrahedra};
   // A mesh has about as many edges as nodes and tetrahedra [Euler's formula].
@@ -37,12 +52,9 @@ TetSize TetSizeOf(const TetMesh& mesh, ElementOrder order) {
 double TetMemory(const TetMethod& method, const TetSize& size) {
   const double explicit_memory = kPerExplicitPoint * size.points;
   if (method.stepping == Stepping::kExplicit || method.stepping == Stepping::kMixed) return explicit_memory;
-  const double per_node = method.element == ElementOrder::kLinear      ? kPerLinearNode
-                          : method.element == ElementOrder::kQuadratic ? kPerQuadraticNode
-                                                                       : kPerHexahedralNode;
   const double factors =
       method.linear_solver == LinearSolver::kDirect ? kPerFactor * std::pow(3 * size.nodes, 4. / 3) : 0;
-  return explicit_memory + per_node * size.nodes + factors;
+  return explicit_memory + PerNode(method.element) * size.nodes + factors;
 }
 
 double MemoryOf(const Scene& scene) {

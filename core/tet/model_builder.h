@@ -86,7 +86,7 @@ class TetModelBuilder {
   const Scene& scene_;
   TetModel& model_;
   std::stop_token stop_;
-  std::size_t activations_ = 0;  // of the bodies so far, with those of their parts
+  std::size_t activations_ = 0;                        // of the bodies so far, with those of their parts
   std::map<Quad, std::int32_t> middles_of_hexahedra_;  // of edges and sides: ascending corners
   // For each point and each element, in double precision.
   std::vector<Mat3> Dm_inverse_;
