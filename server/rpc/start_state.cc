@@ -12,11 +12,11 @@ namespace {
 
 constexpr const char* kJob = "start.frame.job";
 
-std::string ReadFrame(FrameStore& frames, std::int64_t index) {
+// All chunks, one after another. `read`: the chunk of a number, or nothing.
+template <class Read>
+std::string Join(const Read& read) {
   std::string bytes;
-  for (std::int64_t chunk = 0; const std::optional<std::string> part = frames.ReadChunk(index, chunk); ++chunk) {
-    bytes += *part;
-  }
+  for (std::int64_t chunk = 0; const std::optional<std::string> part = read(chunk); ++chunk) bytes += *part;
   return bytes;
 }
 
@@ -30,15 +30,15 @@ std::optional<std::string> StateOf(Store& store, const v1::FrameStart& start, Pr
   const std::shared_ptr<FrameStore> frames = store.OpenFrames(*id);
   const std::int64_t count = frames == nullptr ? 0 : frames->frame_count();
   const std::int64_t index = start.has_frame() ? start.frame() : count - 1;
-  const std::optional<std::string> geometry = count == 0 ? std::nullopt : frames->GetGeometry();
-  if (!geometry || index < 0 || index >= count) {
+  if (count == 0 || index < 0 || index >= count) {
     problems.Add(count == 0 ? kJob : "start.frame.frame",
                  start.job() + " has " + (count == 0 ? "no frames yet" : std::to_string(count) + " frames, from 0 on"));
     return std::nullopt;
   }
   v1::FrameState state;
-  if (!state.mutable_geometry()->ParseFromString(*geometry) ||
-      !state.mutable_frame()->ParseFromString(ReadFrame(*frames, index))) {
+  const std::string geometry = Join([&](std::int64_t chunk) { return frames->ReadGeometryChunk(chunk); });
+  const std::string frame = Join([&](std::int64_t chunk) { return frames->ReadChunk(index, chunk); });
+  if (!state.mutable_geometry()->ParseFromString(geometry) || !state.mutable_frame()->ParseFromString(frame)) {
     throw StoreError("the frames of job " + *id + " can't be read");
   }
   return state.SerializeAsString();
