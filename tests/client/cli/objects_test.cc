@@ -120,7 +120,7 @@ std::vector<Frame> StoreRun(server::Store& store) {
   AddObjects(layout);
   job.frames()->PutGeometry(codec.encode_geometry(*scene, layout));
   server::RunProfile profile;
-  server::FrameWriter writer(job, codec, profile, [] {});
+  server::FrameWriter writer(store, job, codec, profile, [] {});
   WithObjects sink(writer);
   EXPECT_EQ(simulation.Run(sink, {}).kind, Outcome::Kind::kSucceeded);
   writer.Finish();
