@@ -146,15 +146,15 @@ void AddNote(const v1::FrameStart& start, const v1::Frame& frame, std::vector<Bo
 void TranslateFrame(const v1::Scene& wire, const AssetReader& assets, Scene& scene, Problems& problems) {
   const v1::FrameStart& start = wire.start().frame();
   scene.start.frame = true;
-  if (!start.has_state()) {
-    return problems.Add(JoinPath(kFrame, "job"), "is missing", "jobs/ID, such as `fascicle list` prints it");
-  }
   for (int i = 0; i < wire.bodies_size(); ++i) {
     const std::string path = IndexPath("bodies", static_cast<std::size_t>(i));
     for (const auto& [given, field] : {std::pair(wire.bodies(i).has_initial_displacement(), "initial_displacement"),
                                        std::pair(wire.bodies(i).has_initial_velocity(), "initial_velocity")}) {
       if (given) problems.Add(JoinPath(path, field), "is given beside start.frame, which has its values", "omit it");
     }
+  }
+  if (!start.has_state()) {
+    return problems.Add(JoinPath(kFrame, "job"), "is missing", "jobs/ID, such as `fascicle list` prints it");
   }
   const auto bytes = ReadFile(start.state(), JoinPath(kFrame, "state"), assets, problems);
   if (!bytes || scene.method != Method::kTet) return;
