@@ -156,7 +156,9 @@ void TranslateFrame(const v1::Scene& wire, const AssetReader& assets, Scene& sce
   if (!start.has_state()) {
     return problems.Add(JoinPath(kFrame, "job"), "is missing", "jobs/ID, such as `fascicle list` prints it");
   }
-  const auto bytes = ReadFile(start.state(), JoinPath(kFrame, "state"), assets, problems);
+  v1::FileRef file = start.state();
+  if (file.path().empty()) file.set_path("frame");  // it has one format only
+  const auto bytes = ReadFile(file, JoinPath(kFrame, "state"), assets, problems);
   if (!bytes || scene.method != Method::kTet) return;
   v1::FrameState state;
   if (!state.ParseFromString(*bytes) || state.geometry().bodies_size() != state.frame().bodies_size()) {

@@ -36,6 +36,11 @@ $Elements
 $EndElements
 )";
 
+void SetFile(const std::string& asset, v1::FileRef& file) {
+  file.set_path("values.txt");
+  file.set_asset(asset);
+}
+
 v1::Scene TenNodeScene(Files& files, const std::string& displacement, const std::string& velocity) {
   v1::Scene scene = ParseText(R"(
     name: "one" duration: 1 tet { stepping: STEPPING_NEWMARK } output { frame_interval: 0.1 }
@@ -45,8 +50,8 @@ v1::Scene TenNodeScene(Files& files, const std::string& displacement, const std:
     })");
   v1::Body& body = *scene.mutable_bodies(0);
   body.mutable_mesh()->mutable_file()->set_asset(files.Add(kTenNodes));
-  if (!displacement.empty()) body.mutable_initial_displacement()->set_asset(files.Add(displacement));
-  if (!velocity.empty()) body.mutable_initial_velocity()->set_asset(files.Add(velocity));
+  if (!displacement.empty()) SetFile(files.Add(displacement), *body.mutable_initial_displacement());
+  if (!velocity.empty()) SetFile(files.Add(velocity), *body.mutable_initial_velocity());
   return scene;
 }
 
