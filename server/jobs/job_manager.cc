@@ -30,15 +30,17 @@ std::string NewestId(Store& store) {
 }
 
 // A job whose thread crashed the process is its cause; one that merely ran when the process was killed may be. A job
-// ends when it was the cause twice at the same step, or ran at six such ends without any progress in between.
-constexpr std::int64_t kScoreOfCrash = 3, kScoreOfKill = 1, kMostScore = 6;
+// ends when it was the cause twice at the same place, or ran at twenty such ends without any progress in between.
+constexpr std::int64_t kScoreOfCrash = 10, kScoreOfKill = 1, kMostScore = 20;
 
 // Ends the job if it seems to crash the process whenever it is run.
 void NoteCrash(const JobManagerOptions& options, const JobCodec& codec, JobRecord& record) {
   const auto& crashes = options.crashes;
   const bool is_cause = std::find(crashes.begin(), crashes.end(), record.id) != crashes.end();
-  if (record.step > record.crash_step) record.crash_score = 0;
-  record.crash_step = record.step;
+  // Frames are counted when they are stored, steps about once a second.
+  const std::int64_t place = record.step + record.frame_count;
+  if (place > record.crash_place) record.crash_score = 0;
+  record.crash_place = place;
   record.crash_score += is_cause ? kScoreOfCrash : kScoreOfKill;
   if (record.crash_score < kMostScore) return;
   Failure failure;
@@ -56,9 +58,6 @@ void NoteCrash(const JobManagerOptions& options, const JobCodec& codec, JobRecor
 void Resume(Store& store, const JobManagerOptions& options, const JobCodec& codec, JobRecord& record) {
   if (record.state == JobState::kQueued) return;
   const bool is_cancelled = record.state == JobState::kCancelling;
-  record.state = is_cancelled ? JobState::kCancelled : JobState::kQueued;
-  if (is_cancelled) record.end_time_us = UnixTimeUs();
-  if (!is_cancelled) NoteCrash(options, codec, record);
   try {
     if (const std::shared_ptr<FrameStore> frames = store.OpenFrames(record.id)) {
       record.frame_count = frames->frame_count();
@@ -67,6 +66,9 @@ void Resume(Store& store, const JobManagerOptions& options, const JobCodec& code
   } catch (const StoreError&) {
     // A damaged file makes its own job fail, when that is started, and nothing else.
   }
+  record.state = is_cancelled ? JobState::kCancelled : JobState::kQueued;
+  if (is_cancelled) record.end_time_us = UnixTimeUs();
+  if (!is_cancelled) NoteCrash(options, codec, record);
   store.UpdateJob(record);
 }
 

@@ -36,18 +36,18 @@ constexpr std::array<const char*, 4> kControlFormats = {
     "ALTER TABLE jobs ADD COLUMN warnings BLOB NOT NULL DEFAULT x''",
     // Format 4: crashes and checksums.
     R"(ALTER TABLE jobs ADD COLUMN crash_score INTEGER NOT NULL DEFAULT 0;
-       ALTER TABLE jobs ADD COLUMN crash_step INTEGER NOT NULL DEFAULT -1;
+       ALTER TABLE jobs ADD COLUMN crash_place INTEGER NOT NULL DEFAULT -1;
        ALTER TABLE jobs ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
        UPDATE jobs SET checksum = row_checksum(id, request_id, request_digest, scene_name, threads, state, failure,
          attempt, generation, create_time_us, start_time_us, end_time_us, fraction, time, step, frame_count,
-         stored_bytes, profile, warnings, crash_score, crash_step);
+         stored_bytes, profile, warnings, crash_score, crash_place);
        ALTER TABLE specs ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
        UPDATE specs SET checksum = row_checksum(job_id, spec);)"};
 
 constexpr std::string_view kColumns =
     "id, request_id, request_digest, scene_name, threads, state, failure, attempt, generation, create_time_us, "
     "start_time_us, end_time_us, fraction, time, step, frame_count, stored_bytes, profile, warnings, "
-    "crash_score, crash_step";
+    "crash_score, crash_place";
 
 std::string Columns() { return std::string(kColumns); }
 // The columns of a record, and whether they are intact.
@@ -80,7 +80,7 @@ JobRecord ReadRecord(const Rows& row, const Database& database) {
   job.profile = row.String(17);
   job.warnings = row.String(18);
   job.crash_score = row.Int(19);
-  job.crash_step = row.Int(20);
+  job.crash_place = row.Int(20);
   return job;
 }
 
@@ -109,7 +109,7 @@ JobWriter::JobWriter(Database& database, const std::string& schema)
           "UPDATE " + schema +
           ".jobs SET state = ?2, failure = ?3, attempt = ?4, generation = ?5, start_time_us = ?6, end_time_us = ?7, "
           "fraction = ?8, time = ?9, step = ?10, frame_count = ?11, stored_bytes = ?12, profile = ?13, warnings = ?14, "
-          "crash_score = ?15, crash_step = ?16 WHERE id = ?1")),
+          "crash_score = ?15, crash_place = ?16 WHERE id = ?1")),
       renew_checksum_(database.Prepare("UPDATE " + schema + ".jobs SET checksum = " + JobChecksum() + " WHERE id = ?")),
       delete_(database.Prepare("DELETE FROM " + schema + ".jobs WHERE id = ?")) {}
 
@@ -122,7 +122,7 @@ void JobWriter::Insert(const JobRecord& job) {
   insert_job_.Run(job.id, job.request_id, Blob{job.request_digest}, job.scene_name, job.threads,
                   static_cast<int>(job.state), Blob{job.failure}, job.attempt, job.generation, job.create_time_us,
                   job.start_time_us, job.end_time_us, job.fraction, job.time, job.step, job.frame_count,
-                  job.stored_bytes, Blob{job.profile}, Blob{job.warnings}, job.crash_score, job.crash_step);
+                  job.stored_bytes, Blob{job.profile}, Blob{job.warnings}, job.crash_score, job.crash_place);
   renew_checksum_.Run(job.id);
   insert_spec_.Run(job.id, Blob{job.spec});
 }
@@ -135,7 +135,7 @@ void JobWriter::Update(const JobRecord& job) {
   }
   update_.Run(job.id, static_cast<int>(job.state), Blob{job.failure}, job.attempt, job.generation, job.start_time_us,
               job.end_time_us, job.fraction, job.time, job.step, job.frame_count, job.stored_bytes, Blob{job.profile},
-              Blob{job.warnings}, job.crash_score, job.crash_step);
+              Blob{job.warnings}, job.crash_score, job.crash_place);
   renew_checksum_.Run(job.id);
 }
 

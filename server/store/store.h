@@ -72,9 +72,9 @@ struct JobRecord {
   std::int64_t frame_count = 0;     // as last stored; exact once the state is final
   std::int64_t stored_bytes = 0;    // of frames and geometry, as last stored; exact once the state is final
   // How much speaks for this job as the cause when the process ended without stopping it, since its last progress, and
-  // the step that it had reached then; see job_manager.cc.
+  // the place that it had reached then; see job_manager.cc.
   std::int64_t crash_score = 0;
-  std::int64_t crash_step = -1;
+  std::int64_t crash_place = -1;
 };
 
 // Jobs. Changes are durable (fsync) when a function returns.

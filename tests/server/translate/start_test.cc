@@ -114,7 +114,7 @@ TEST(InitialState, OfABuiltInShapeMayHaveMidEdgeNodesLast) {
   v1::Scene wire = BoxScene();
   wire.mutable_tet()->set_stepping(v1::STEPPING_BDF2);
   const std::size_t nodes = 60, edges = NumberEdges(Translate(wire, files)->bodies[0].tet().mesh).ends.size();
-  wire.mutable_bodies(0)->mutable_initial_velocity()->set_asset(files.Add(Lines(static_cast<int>(nodes + edges))));
+  SetFile(files.Add(Lines(static_cast<int>(nodes + edges))), *wire.mutable_bodies(0)->mutable_initial_velocity());
   const auto scene = Translate(wire, files);
   ASSERT_NE(scene, nullptr);
   EXPECT_EQ(scene->bodies[0].tet().initial_velocity.size(), nodes + edges);
@@ -123,7 +123,7 @@ TEST(InitialState, OfABuiltInShapeMayHaveMidEdgeNodesLast) {
 TEST(InitialState, VelocitiesHaveNoEffectWithoutInertia) {
   Files files;
   v1::Scene wire = BoxScene();
-  wire.mutable_bodies(0)->mutable_initial_velocity()->set_asset(files.Add(Lines(60)));
+  SetFile(files.Add(Lines(60)), *wire.mutable_bodies(0)->mutable_initial_velocity());
   wire.mutable_start()->mutable_equilibrium();
   EXPECT_THAT(At(ProblemsOf(wire, files), "bodies[0].initial_velocity"), HasSubstr("has no effect"));
   wire.clear_start();
@@ -228,7 +228,7 @@ TEST(StartInput, EveryMistakeIsToldAtOnce) {
   Files files;
   v1::Scene wire = BoxScene();
   wire.mutable_start()->mutable_frame()->set_frame(2);
-  wire.mutable_bodies(0)->mutable_initial_velocity()->set_asset(files.Add(Lines(60)));
+  SetFile(files.Add(Lines(60)), *wire.mutable_bodies(0)->mutable_initial_velocity());
   const Problems problems = ProblemsOf(wire, files);
   EXPECT_THAT(At(problems, "start.frame.job"), HasSubstr("is missing"));
   wire.mutable_start()->mutable_frame()->mutable_state()->set_asset(files.Add("no frame at all"));
