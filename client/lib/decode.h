@@ -21,8 +21,7 @@ struct BodyShape {
   // Of all nodes: those of the mesh, then the mid-edge nodes of quadratic tetrahedra if the job has them [m].
   std::vector<Vec3> positions;
   std::vector<std::array<std::uint32_t, 4>> tetrahedra;  // node indices, all in range
-  // The mid-edge nodes of each tetrahedron in VTK's order, in the middle of its edges 01 12 02 03 13 23; empty if its
-  // edges are straight.
+  // The mid-edge nodes of each tetrahedron in VTK's order, on its edges 01 12 02 03 13 23; empty if edges are straight.
   std::vector<std::array<std::uint32_t, 6>> mid_edges;
   std::vector<std::array<std::uint32_t, 8>> bricks;     // in place of tetrahedra: voxels or hexahedra
   std::vector<std::array<std::uint32_t, 3>> triangles;  // in place of tetrahedra: a closed surface

@@ -59,7 +59,7 @@ void SetColours(const std::vector<double>& values, vtkUnstructuredGrid& grid) {
 
 vtkSmartPointer<vtkPolyData> MakeCurvedEdges(const BodyShape& shape, const std::vector<Vec3>& positions,
                                              const std::vector<double>& values) {
-  // Ends and middle of each edge.
+  // Ends and mid-edge node of each edge.
   std::set<std::array<std::uint32_t, 3>> edges;
   for (const SurfaceTriangle& triangle : SurfaceTriangles(shape)) {
     for (std::size_t c = 0; c < 3; ++c) {

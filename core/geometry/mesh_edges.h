@@ -27,7 +27,7 @@ struct MeshEdges {
 // Time grows as n log n. Throws Stopped after a stop request.
 MeshEdges NumberEdges(const TetMesh& mesh, const std::stop_token& stop = {});
 
-// The middle of every edge, straight or curved, in the unit of the mesh's nodes.
+// The place of the mid-edge node on every edge, straight or curved, in the unit of the mesh's nodes.
 std::vector<Vec3> EdgeMiddles(const TetMesh& mesh, const MeshEdges& edges);
 
 // For each edge whether its mid-edge node belongs to a set of nodes: both ends do, and the edge is on the boundary or

@@ -9,7 +9,7 @@ Quad Shifted(const Quad& quad, std::int32_t first) {
 
 }  // namespace
 
-// The node in the middle of an edge between two nodes of the model.
+// The mid-edge node between two nodes of the model.
 std::int32_t TetModelBuilder::MiddleOf(std::int32_t i, std::int32_t j) const {
   std::size_t b = model_.bodies_.size() - 1;
   while (model_.bodies_[b].node_begin > static_cast<std::size_t>(i)) --b;
