@@ -292,7 +292,7 @@ TEST(BodyMesh, SidesOfQuadraticElementsAreCurved) {
   for (const Vec3& X : shape.positions) values.push_back(X.x());
   const auto grid = MakeGrid(shape, shape.positions, values);
   EXPECT_NEAR(AreaOf(*MakeSurface(*grid)) / kArea, 1, 0.01);
-  EXPECT_LT(AreaOf(*MakeSurface(*MakeGrid(corners, corners.positions, {}))) / kArea, 0.94);
+  EXPECT_LT(AreaOf(*MakeSurface(*MakeGrid(corners, corners.positions, {}))) / kArea, 0.97) << "straight sides lose 3 %";
   const auto edges = MakeCurvedEdges(shape, shape.positions, values);
   ASSERT_GT(edges->GetNumberOfLines(), 50);
   vtkDataArray& colour = *edges->GetPointData()->GetScalars();
