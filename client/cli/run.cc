@@ -38,7 +38,6 @@ constexpr const char* kRunExamples = R"(  fascicle run scene.json               
   fascicle run scene.json --profile               and print the time spent in each stage
   fascicle run scene.json --check                 again with half the step and half the mesh size: is it converged?
   fascicle run scene.json --set 'bodies[0].activation.values=[0, 0.5]'
-  fascicle run scene.json --start out:3           or as its frame 3
   fascicle run scene.json --json | jq .series     for programs
 
 out/largest.png is the frame with the largest displacement, where a body is nearer to its rest shape at the end.
