@@ -1,12 +1,9 @@
-#include <iostream>
 #include <memory>
 
 #include <CLI/App.hpp>
-#include <nlohmann/json.hpp>
 
 #include "client/cli/command.h"
 #include "client/cli/job_source.h"
-#include "client/cli/progress_bar.h"
 #include "client/cli/summary.h"
 
 namespace fascicle::client {
@@ -19,11 +16,7 @@ constexpr const char* kCancelExamples =
 int Cancel(const std::string& name, const Context& context) {
   Client client = Connect(context);
   const v1::Job job = Take(client.CancelJob(FindJob(client, name)));
-  if (context.json) {
-    PrintJson(JobJson(job));
-  } else {
-    std::cout << job.name() << "  " << StateName(job.state()) << '\n';
-  }
+  PrintState(job, context.json);
   return kDone;
 }
 

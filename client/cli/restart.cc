@@ -1,9 +1,7 @@
-#include <iostream>
 #include <memory>
 #include <string>
 
 #include <CLI/App.hpp>
-#include <nlohmann/json.hpp>
 
 #include "client/cli/command.h"
 #include "client/cli/job_source.h"
@@ -25,11 +23,7 @@ struct RestartArguments {
 int Restart(const RestartArguments& arguments, const Context& context) {
   Client client = Connect(context);
   const v1::Job job = Take(client.RestartJob(FindJob(client, arguments.job), arguments.from_start));
-  if (context.json) {
-    PrintJson(JobJson(job));
-  } else {
-    std::cout << job.name() << "  " << StateName(job.state()) << '\n';
-  }
+  PrintState(job, context.json);
   return kDone;
 }
 

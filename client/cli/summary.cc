@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iostream>
 
 #include <nlohmann/json.hpp>
 
@@ -181,6 +182,11 @@ void PrintWarnings(const v1::Job& job) {
     std::printf(", t = %.6g s: %s\n", warning.time(), warning.message().c_str());
     if (!warning.advice().empty()) std::printf("  try: %s\n", warning.advice().c_str());
   }
+}
+
+void PrintState(const v1::Job& job, bool json) {
+  if (json) return PrintJson(JobJson(job));
+  std::cout << job.name() << "  " << StateName(job.state()) << '\n';
 }
 
 void PrintFailure(const v1::Failure& failure) {

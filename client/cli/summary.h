@@ -17,6 +17,8 @@ int ExitCodeOf(const v1::Job& job);
 
 // A job in the form in which `show`, `list`, `submit` and others print it.
 Json JobJson(const v1::Job& job);
+// The job as JSON, or its name and state as text, on stdout.
+void PrintState(const v1::Job& job, bool json);
 void PrintFailure(const v1::Failure& failure);
 void PrintWarnings(const v1::Job& job);
 

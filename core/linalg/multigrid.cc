@@ -10,9 +10,6 @@ namespace {
 // A level with at most this many blocks is factored.
 constexpr std::size_t kCoarsest = 500;
 constexpr std::size_t kMostLevels = 10;
-// Matrices whose least eigenvalue, preconditioned by their diagonal blocks, is above this (the largest is about 3) need
-// no coarser levels.
-constexpr double kLeastForSmoothing = 1e-3;
 constexpr int kPowerIterations = 12;
 constexpr double kEigenvalueMargin = 1.15;
 // Added to the coarsest diagonal, relative to it, for rotations that have no stiffness.
@@ -101,13 +98,11 @@ Multigrid::Multigrid(const BlockPattern& pattern, const NodalVector& positions, 
 
 Multigrid::~Multigrid() = default;
 
-bool Multigrid::SetUp(const BlockValues& values, ThreadTeam& team, double least_eigenvalue) {
-  smoothes_only_ = least_eigenvalue >= kLeastForSmoothing;
+bool Multigrid::SetUp(const BlockValues& values, ThreadTeam& team) {
   const BlockValues* current = &values;
   for (std::size_t l = 0; HasCoarser(l); ++l) {
     Level& level = *levels_[l];
     level.matrix.SetValues(*current, team);
-    if (smoothes_only_) return true;
     if (l + 1 == levels_.size()) AddLevel(*current, team);
     level.galerkin.Compute(*level.pattern, *current, *level.prolongation, team, level.coarse_values);
     levels_[l + 1]->IsolateUnused(level.coarse_values);
@@ -204,11 +199,6 @@ void Multigrid::Apply(const FloatField& r, ThreadTeam& team, FloatField& z) {
 
 void Multigrid::Cycle(std::size_t l, const FloatField& b, ThreadTeam& team, FloatField& x) {
   Level& level = *levels_[l];
-  if (smoothes_only_) {
-    level.matrix.SweepFromZero(b, team, x);
-    level.matrix.SweepBackFromSweep(team, x);
-    return;
-  }
   if (l + 1 == levels_.size()) {
     SolveCoarsest(b, x);
     return;

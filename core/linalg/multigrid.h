@@ -31,9 +31,7 @@ class Multigrid {
   // Takes the values of the finest level, with prescribed components isolated. The aggregation is found at the first
   // call after construction or ForgetAggregation and kept; all values are new. False when the coarsest level can't be
   // factored.
-  // `least_eigenvalue`: a lower bound for the matrix preconditioned by its diagonal blocks, or 0 if there is none.
-  // Where it is close enough to the largest eigenvalue, smoothing alone suffices and there are no coarser levels.
-  bool SetUp(const BlockValues& values, ThreadTeam& team, double least_eigenvalue = 0);
+  bool SetUp(const BlockValues& values, ThreadTeam& team);
 
   // Makes the next SetUp independent of everything before it.
   void ForgetAggregation();
@@ -56,7 +54,6 @@ class Multigrid {
 
   std::vector<std::unique_ptr<Level>> levels_;
   DirectSolver coarsest_;
-  bool smoothes_only_ = false;
   bool first_is_given_ = false, coarsest_analyzed_ = false;
   std::vector<double> coarsest_values_, coarsest_side_;
 };
