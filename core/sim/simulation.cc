@@ -62,7 +62,7 @@ ProblemText TextOf(StepProblem problem, Method method) {
               "use a larger margin, or a larger grid by lowest and highest"};
     case StepProblem::kNoEquilibrium:
       return {
-          "NOT_CONVERGED", "no equilibrium was found, even with the step reduced to a few thousandths",
+          "NOT_CONVERGED", "no equilibrium was found, even with the step reduced to a few ten-thousandths",
           "the listed elements are farthest from it: check whether the body can bear this load there; load, move or "
           "activate more slowly, or use a stepping with inertia (backward_euler), which can simulate snap-through"};
     case StepProblem::kUnstable:

@@ -14,7 +14,7 @@ namespace {
 constexpr int kEasyIterations = 10;
 // Static solutions are extrapolated to at most this multiple of the last step.
 constexpr double kFarthest = 4;
-// A run fails when it needs steps shorter than this part of its fixed step, or else of its duration.
+// A run fails when it needs steps shorter than this part of its longest step.
 constexpr double kShortestStep = 0x1p-12;
 // A step whose loads still depend on its positions after this many expansions is too long.
 constexpr int kMostExpansions = 30;
@@ -140,8 +140,11 @@ void TetSolver::AcceptImplicit(TetState& state, const StepReport& report, double
 
 bool TetSolver::CutImplicit(TetState& state, double dt) const {
   state.next_step = dt / 2;
-  const double duration = model_.scene().duration;
-  return !(dt / 2 < kShortestStep * (method_.time_step ? std::min(*method_.time_step, duration) : duration));
+  const Scene& scene = model_.scene();
+  // Steps end at frames.
+  double longest = std::min(scene.duration, scene.output.frame_interval);
+  if (method_.time_step) longest = std::min(longest, *method_.time_step);
+  return !(dt / 2 < kShortestStep * longest);
 }
 
 StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step, TetState& next) {
