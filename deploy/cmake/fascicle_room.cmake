@@ -71,11 +71,13 @@ endfunction()
 
 # A program of Google tests over rooms:
 #
-#   fascicle_test(geometry_test SOURCES mesh_io_test.cc DEPS core/geometry [LABELS slow] [TIMEOUT 60])
+#   fascicle_test(geometry_test SOURCES mesh_io_test.cc DEPS core/geometry [LABELS slow] [TIMEOUT 60]
+#                 [THREADED TetrahedralizeTest.*])
 #
+# THREADED names the tests in which threads meet; the thread sanitizer runs only these. The default is all.
 # Tests find the project's root and anatomical data by tests/support/paths.h.
 function(fascicle_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS;LABELS;THREADED" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE fascicle_settings GTest::gtest_main GTest::gmock)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests/bin)
@@ -91,7 +93,11 @@ function(fascicle_test name)
   endif()
   if(FASCICLE_SANITIZE)
     # Sanitized programs start slowly: each runs once, with all of its tests.
-    add_test(NAME ${name} COMMAND ${name})
+    set(filter "*")
+    if(FASCICLE_SANITIZE STREQUAL "thread" AND ARG_THREADED)
+      list(JOIN ARG_THREADED ":" filter)
+    endif()
+    add_test(NAME ${name} COMMAND ${name} --gtest_filter=${filter})
     set_tests_properties(${name} PROPERTIES TIMEOUT 900 LABELS "${ARG_LABELS}")
   else()
     gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
