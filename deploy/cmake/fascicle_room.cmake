@@ -104,12 +104,12 @@ function(fascicle_test name)
   endif()
 endfunction()
 
-# A benchmark that deploy/bench finds; `benchmark` is Google's library:
+# A benchmark that deploy/bench builds and finds; `benchmark` is Google's library:
 #
 #   fascicle_bench(tet_bench SOURCES tet_bench.cc DEPS core/tet)
 function(fascicle_bench name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
-  add_executable(${name} ${ARG_SOURCES})
+  add_executable(${name} EXCLUDE_FROM_ALL ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE fascicle_settings benchmark::benchmark)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bench)
   fascicle_link(${name} PRIVATE tests/support ${ARG_DEPS})
