@@ -1,0 +1,149 @@
+// The arm of OpenSim's examples against published and independent results.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "client/import/motion_table.h"
+#include "client/import/osim_reader.h"
+#include "core/skeleton/low_pass.h"
+#include "core/skeleton/muscle_path.h"
+#include "core/skeleton/skeleton_mechanics.h"
+#include "tests/support/paths.h"
+
+namespace fascicle {
+namespace {
+
+using client::MotionTable;
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+
+std::string Contents(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class Arm26Test : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = testing::DataFolder() / "opensim_arm26";
+    if (!std::filesystem::exists(folder_)) GTEST_SKIP() << "there is no " << folder_;
+    Problems problems;
+    const auto model = client::ReadOsim(Contents(folder_ / "arm26.osim"), "arm26.osim", problems);
+    ASSERT_TRUE(model) << problems.ToString();
+    for (const client::Notice& notice : model->notices)
+      std::printf("%s: %s\n", notice.where.c_str(), notice.message.c_str());
+    skeleton_ = model->skeleton;
+  }
+
+  MotionTable Table(const std::string& name) {
+    Problems problems;
+    const auto table = client::ReadMotionTable(Contents(folder_ / name), name, problems);
+    EXPECT_TRUE(table) << problems.ToString();
+    return table.value_or(MotionTable());
+  }
+
+  std::filesystem::path folder_;
+  Skeleton skeleton_;
+};
+
+TEST_F(Arm26Test, IsReadWhole) {
+  EXPECT_EQ(skeleton_.bones.size(), 3u);
+  EXPECT_EQ(skeleton_.joints.size(), 3u);
+  EXPECT_EQ(skeleton_.coordinates.size(), 2u);
+  EXPECT_EQ(skeleton_.muscles.size(), 6u);
+}
+
+TEST_F(Arm26Test, MomentArmsAndLengthsOfTheElbow) {
+  std::ifstream in(testing::DataFolder() / "reference_curves/arm26_elbow_moment_arms.csv");
+  std::string line;
+  std::getline(in, line);
+  const std::array<const char*, 6> names = {"BIClong", "BICshort", "BRA", "TRIlong", "TRIlat", "TRImed"};
+  SkeletonMechanics mechanics(skeleton_);
+  const int elbow = IndexOf(skeleton_.coordinates, "r_elbow_flex");
+  std::array<double, 6> arm_error = {}, length_error = {}, first = {};
+  int rows = 0;
+  for (; std::getline(in, line); ++rows) {
+    std::stringstream words(line);
+    std::vector<double> values;
+    for (std::string word; std::getline(words, word, ',');) values.push_back(std::stod(word));
+    Eigen::VectorXd q = mechanics.StartCoordinates();
+    q[elbow] = values[0] * kRadiansPerDegree;
+    const MuscleGeometry geometry = GeometryOf(mechanics, q);
+    for (std::size_t m = 0; m < 6; ++m) {
+      const int muscle = IndexOf(skeleton_.muscles, names[m]);
+      arm_error[m] += std::pow(geometry.moment_arms(elbow, muscle) - values[1 + m], 2);
+      // The table leaves out what wraps at the shoulder, which is the same in all rows.
+      const double difference = geometry.lengths[muscle] - values[7 + m];
+      if (rows == 0) first[m] = difference;
+      length_error[m] = std::max(length_error[m], std::abs(difference - first[m]));
+    }
+  }
+  ASSERT_GT(rows, 20);
+  for (std::size_t m = 0; m < 6; ++m) {
+    std::printf("%-9s moment arm %.4f mm rms, length %.4f mm (constant difference %.3f mm)\n", names[m],
+                1e3 * std::sqrt(arm_error[m] / rows), 1e3 * length_error[m], 1e3 * first[m]);
+    EXPECT_LT(std::sqrt(arm_error[m] / rows), 0.5e-3) << names[m];
+    EXPECT_LT(length_error[m], 0.5e-3) << names[m];
+  }
+}
+
+// The derivative of the length is the moment arm, in every coordinate.
+TEST_F(Arm26Test, MomentArmsAreSlopesOfLengths) {
+  SkeletonMechanics mechanics(skeleton_);
+  constexpr double kStep = 1e-6;
+  for (const double elbow : {0.1, 0.6, 1.3, 2.0}) {
+    const Eigen::VectorXd q = Eigen::Vector2d(0.4, elbow);
+    const MuscleGeometry here = GeometryOf(mechanics, q);
+    for (Eigen::Index k = 0; k < q.size(); ++k) {
+      Eigen::VectorXd ahead = q, back = q;
+      ahead[k] += kStep;
+      back[k] -= kStep;
+      const Eigen::VectorXd slope =
+          (GeometryOf(mechanics, ahead).lengths - GeometryOf(mechanics, back).lengths) / (2 * kStep);
+      EXPECT_LT((slope + here.moment_arms.row(k).transpose()).cwiseAbs().maxCoeff(), 1e-8) << elbow;
+    }
+  }
+}
+
+TEST_F(Arm26Test, InverseDynamicsOfTheFlexion) {
+  const MotionTable motion = Table("motion/arm26_InverseKinematics.mot");
+  const MotionTable published = Table("reference/arm26_InverseDynamics_filtered.sto");
+  ASSERT_EQ(motion.times.size(), published.times.size());
+  SkeletonMechanics mechanics(skeleton_);
+  const double interval = (motion.times.back() - motion.times.front()) / static_cast<double>(motion.times.size() - 1);
+  std::vector<ScalarFunction> curves;
+  for (const Coordinate& coordinate : skeleton_.coordinates) {
+    std::vector<double> angles = *motion.Find(coordinate.name);
+    for (double& angle : angles) angle *= kRadiansPerDegree;
+    curves.push_back(ScalarFunction::Cubic(motion.times, LowPass(angles, interval, 6)));
+  }
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    const std::vector<double>& moments = *published.Find(skeleton_.coordinates[c].name + "_moment");
+    double square = 0, peak = 0;
+    for (std::size_t k = 0; k < published.times.size(); ++k) {
+      Eigen::VectorXd q(2), rates(2), accelerations(2);
+      for (int i = 0; i < 2; ++i) {
+        const ScalarFunction& curve = curves[static_cast<std::size_t>(i)];
+        q[i] = curve.At(published.times[k]);
+        rates[i] = curve.At(published.times[k], 1);
+        accelerations[i] = curve.At(published.times[k], 2);
+      }
+      const double moment = mechanics.InverseDynamics(q, rates, accelerations)[static_cast<Eigen::Index>(c)];
+      square += std::pow(moment - moments[k], 2);
+      peak = std::max(peak, std::abs(moments[k]));
+    }
+    const double rms = std::sqrt(square / static_cast<double>(published.times.size()));
+    std::printf("%s: rms %.4f N m, %.2f %% of the peak %.3f N m\n", skeleton_.coordinates[c].name.c_str(), rms,
+                100 * rms / peak, peak);
+    EXPECT_LT(rms, 0.02 * peak);
+  }
+}
+
+}  // namespace
+}  // namespace fascicle
