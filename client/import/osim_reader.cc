@@ -167,8 +167,9 @@ class OsimReader {
   void ReadWrap(pugi::xml_node node, int bone) {
     const std::string_view kind = node.name();
     wrap_names_.insert(NameOf(node));
-    if (kind != "WrapCylinder" && kind != "WrapSphere") {
-      xml_.Tell(Notice::Kind::kNotTaken, node, "muscles do not wrap around it", "use a cylinder or a sphere");
+    if (kind != "WrapCylinder" && kind != "WrapSphere" && kind != "WrapEllipsoid") {
+      xml_.Tell(Notice::Kind::kNotTaken, node, "muscles do not wrap around it",
+                "use a cylinder, a sphere or an ellipsoid");
       return;
     }
     if (node.child("active") && !xml_.Flag(node.child("active"))) return;
@@ -177,10 +178,16 @@ class OsimReader {
     surface.bone = bone;
     surface.pose = PoseOf(VectorOr(node.child("translation"), Vec3::Zero()),
                           VectorOr(node.child("xyz_body_rotation"), Vec3::Zero()));
-    surface.kind = kind == "WrapCylinder" ? WrapSurface::Kind::kCylinder : WrapSurface::Kind::kSphere;
-    surface.radius = NumberOr(node.child("radius"), 0);
-    surface.length = NumberOr(node.child("length"), 0);
-    if (!(surface.radius > 0)) xml_.Fail(node, "its radius must be positive");
+    if (kind == "WrapEllipsoid") {
+      surface.kind = WrapSurface::Kind::kEllipsoid;
+      surface.radii = VectorOr(node.child("dimensions"), Vec3::Zero());
+      if (!(surface.radii.minCoeff() > 0)) xml_.Fail(node, "its dimensions must be positive");
+    } else {
+      surface.kind = kind == "WrapCylinder" ? WrapSurface::Kind::kCylinder : WrapSurface::Kind::kSphere;
+      surface.radius = NumberOr(node.child("radius"), 0);
+      surface.length = NumberOr(node.child("length"), 0);
+      if (!(surface.radius > 0)) xml_.Fail(node, "its radius must be positive");
+    }
     ReadQuadrant(node.child("quadrant"), surface);
     surfaces_.emplace(surface.name, static_cast<int>(skeleton_.surfaces.size()));
     skeleton_.surfaces.push_back(std::move(surface));

@@ -20,7 +20,8 @@ struct OsimModel {
 
 // Reads an OpenSim model (.osim of version 3 or 4): bones with mass, inertia and surfaces; weld, pin, slider,
 // universal, ball, free, planar and custom joints with their functions; coordinates; muscles with their path points
-// (conditional and moving ones, too) and the cylinders and spheres around which they wrap.
+// (conditional and moving ones, too) and the cylinders, spheres and
+// ellipsoids around which they wrap.
 //
 // `name` is that of the file in messages. All problems are added at once, each with its line. Any input is safe:
 // entities and other files are never followed. Source: the classes' properties in OpenSim's documentation. Thread-safe.

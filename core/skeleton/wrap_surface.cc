@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/skeleton/ellipsoid_geodesic.h"
+
 namespace fascicle {
 namespace {
 
@@ -48,26 +50,24 @@ bool Crosses(const Vec2& a, const Vec2& b, double radius) {
   return (a + t * d).norm() < radius;
 }
 
-// The way around a circle: the shorter one, or the one on the given side, which is that of `side` on `side_axis`.
-std::optional<Arc> WayAround(const Vec2& a, const Vec2& b, double radius, int side_axis, int side) {
+// The way around a circle: the shorter one, or the one on the side of `direction`, if that is not zero.
+std::optional<Arc> WayAround(const Vec2& a, const Vec2& b, double radius, const Vec2& direction) {
   if (a.norm() <= radius || b.norm() <= radius) return std::nullopt;
-  if (side == 0 || side_axis > 1) {
-    if (!Crosses(a, b, radius)) return std::nullopt;
-    const Arc left = Around(a, b, radius, 1), right = Around(a, b, radius, -1);
+  const bool crosses = Crosses(a, b, radius);
+  const Arc left = Around(a, b, radius, 1), right = Around(a, b, radius, -1);
+  if (direction.isZero()) {
+    if (!crosses) return std::nullopt;
     return left.length <= right.length ? left : right;
   }
-  Vec2 direction = Vec2::Zero();
-  direction[side_axis] = side;
   // Of the two ways, the one whose middle is on that side.
   const auto middle = [&](const Arc& arc, int turn) {
     const double c = std::cos(turn * arc.angle / 2), s = std::sin(turn * arc.angle / 2);
     return Vec2(c * arc.first.x() - s * arc.first.y(), s * arc.first.x() + c * arc.first.y()).dot(direction);
   };
-  const Arc left = Around(a, b, radius, 1), right = Around(a, b, radius, -1);
   const bool is_left = middle(left, 1) > middle(right, -1);
   const Arc& arc = is_left ? left : right;
   const Arc& other = is_left ? right : left;
-  if (Crosses(a, b, radius)) return arc;
+  if (crosses) return arc;
   // A straight line that does not cross the circle is free, unless it passes on the wrong side: then the way around
   // this side is the one that encloses the circle.
   const Vec2 d = b - a;
@@ -76,8 +76,14 @@ std::optional<Arc> WayAround(const Vec2& a, const Vec2& b, double radius, int si
   return arc;
 }
 
+Vec3 SideOf(const WrapSurface& surface) {
+  Vec3 side = Vec3::Zero();
+  side[surface.side_axis] = surface.side;
+  return side;
+}
+
 std::optional<Wrapping> AroundCylinder(const WrapSurface& surface, const Vec3& a, const Vec3& b) {
-  const auto arc = WayAround(a.head<2>(), b.head<2>(), surface.radius, surface.side_axis, surface.side);
+  const auto arc = WayAround(a.head<2>(), b.head<2>(), surface.radius, Vec2(SideOf(surface).head<2>()));
   if (!arc) return std::nullopt;
   // Unrolled, the line is straight.
   const double rise = (b.z() - a.z()) / arc->length;
@@ -91,25 +97,44 @@ std::optional<Wrapping> AroundCylinder(const WrapSurface& surface, const Vec3& a
   return wrapping;
 }
 
-// In the plane of the centre and both points.
-std::optional<Wrapping> AroundSphere(const WrapSurface& surface, const Vec3& a, const Vec3& b) {
+// The way from a to b around the sphere of a radius about the origin, in the plane of the origin and both points.
+struct SphereArc {
+  Vec3 first, last;
+  double angle = 0;  // [rad]
+};
+std::optional<SphereArc> WayAroundSphere(const Vec3& a, const Vec3& b, double radius, const Vec3& side) {
   const Vec3 x = a.normalized();
   const Vec3 off = b - b.dot(x) * x;
   if (off.norm() < 1e-12 * b.norm()) return std::nullopt;
   const Vec3 y = off.normalized();
-  const auto arc = WayAround(Vec2(a.norm(), 0), Vec2(b.dot(x), b.dot(y)), surface.radius, 0, 0);
+  const auto arc = WayAround(Vec2(a.norm(), 0), Vec2(b.dot(x), b.dot(y)), radius, Vec2(side.dot(x), side.dot(y)));
   if (!arc) return std::nullopt;
-  Wrapping wrapping;
-  wrapping.first = arc->first.x() * x + arc->first.y() * y;
-  wrapping.last = arc->last.x() * x + arc->last.y() * y;
-  wrapping.length = surface.radius * arc->angle;
-  return wrapping;
+  return SphereArc{arc->first.x() * x + arc->first.y() * y, arc->last.x() * x + arc->last.y() * y, arc->angle};
+}
+
+std::optional<Wrapping> AroundSphere(const WrapSurface& surface, const Vec3& a, const Vec3& b) {
+  const auto arc = WayAroundSphere(a, b, surface.radius, SideOf(surface));
+  if (!arc) return std::nullopt;
+  return Wrapping{arc->first, arc->last, surface.radius * arc->angle};
 }
 
 }  // namespace
 
 std::optional<Wrapping> Wrap(const WrapSurface& surface, const Vec3& a, const Vec3& b) {
-  return surface.kind == WrapSurface::Kind::kCylinder ? AroundCylinder(surface, a, b) : AroundSphere(surface, a, b);
+  switch (surface.kind) {
+    case WrapSurface::Kind::kCylinder:
+      return AroundCylinder(surface, a, b);
+    case WrapSurface::Kind::kSphere:
+      return AroundSphere(surface, a, b);
+    case WrapSurface::Kind::kEllipsoid:
+      break;
+  }
+  // An ellipsoid is a sphere in another scale. The way around that is near the shortest one.
+  const Vec3 scale = surface.radii.cwiseInverse();
+  const auto arc = WayAroundSphere(scale.cwiseProduct(a), scale.cwiseProduct(b), 1, SideOf(surface));
+  if (!arc) return std::nullopt;
+  return EllipsoidGeodesic(surface.radii, a, b, surface.radii.cwiseProduct(arc->first),
+                           surface.radii.cwiseProduct(arc->last));
 }
 
 }  // namespace fascicle

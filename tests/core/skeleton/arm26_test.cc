@@ -9,6 +9,7 @@
 
 #include "client/import/motion_table.h"
 #include "client/import/osim_reader.h"
+#include "core/skeleton/force_distribution.h"
 #include "core/skeleton/low_pass.h"
 #include "core/skeleton/muscle_path.h"
 #include "core/skeleton/skeleton_mechanics.h"
@@ -111,30 +112,40 @@ TEST_F(Arm26Test, MomentArmsAreSlopesOfLengths) {
   }
 }
 
-TEST_F(Arm26Test, InverseDynamicsOfTheFlexion) {
-  const MotionTable motion = Table("motion/arm26_InverseKinematics.mot");
-  const MotionTable published = Table("reference/arm26_InverseDynamics_filtered.sto");
-  ASSERT_EQ(motion.times.size(), published.times.size());
-  SkeletonMechanics mechanics(skeleton_);
+// The flexion without what is faster than 6 Hz, and its derivatives.
+struct FilteredMotion {
+  std::vector<ScalarFunction> curves;  // of each coordinate
+
+  Eigen::VectorXd At(double time, int derivative) const {
+    Eigen::VectorXd values(static_cast<Eigen::Index>(curves.size()));
+    for (Eigen::Index k = 0; k < values.size(); ++k)
+      values[k] = curves[static_cast<std::size_t>(k)].At(time, derivative);
+    return values;
+  }
+};
+
+FilteredMotion Filtered(const MotionTable& motion, const Skeleton& skeleton) {
   const double interval = (motion.times.back() - motion.times.front()) / static_cast<double>(motion.times.size() - 1);
-  std::vector<ScalarFunction> curves;
-  for (const Coordinate& coordinate : skeleton_.coordinates) {
+  FilteredMotion result;
+  for (const Coordinate& coordinate : skeleton.coordinates) {
     std::vector<double> angles = *motion.Find(coordinate.name);
     for (double& angle : angles) angle *= kRadiansPerDegree;
-    curves.push_back(ScalarFunction::Cubic(motion.times, LowPass(angles, interval, 6)));
+    result.curves.push_back(ScalarFunction::Cubic(motion.times, LowPass(angles, interval, 6)));
   }
-  for (std::size_t c = 0; c < curves.size(); ++c) {
+  return result;
+}
+
+TEST_F(Arm26Test, InverseDynamicsOfTheFlexion) {
+  const MotionTable published = Table("reference/arm26_InverseDynamics_filtered.sto");
+  const FilteredMotion motion = Filtered(Table("motion/arm26_InverseKinematics.mot"), skeleton_);
+  SkeletonMechanics mechanics(skeleton_);
+  for (std::size_t c = 0; c < skeleton_.coordinates.size(); ++c) {
     const std::vector<double>& moments = *published.Find(skeleton_.coordinates[c].name + "_moment");
     double square = 0, peak = 0;
     for (std::size_t k = 0; k < published.times.size(); ++k) {
-      Eigen::VectorXd q(2), rates(2), accelerations(2);
-      for (int i = 0; i < 2; ++i) {
-        const ScalarFunction& curve = curves[static_cast<std::size_t>(i)];
-        q[i] = curve.At(published.times[k]);
-        rates[i] = curve.At(published.times[k], 1);
-        accelerations[i] = curve.At(published.times[k], 2);
-      }
-      const double moment = mechanics.InverseDynamics(q, rates, accelerations)[static_cast<Eigen::Index>(c)];
+      const double t = published.times[k];
+      const double moment =
+          mechanics.InverseDynamics(motion.At(t, 0), motion.At(t, 1), motion.At(t, 2))[static_cast<Eigen::Index>(c)];
       square += std::pow(moment - moments[k], 2);
       peak = std::max(peak, std::abs(moments[k]));
     }
@@ -142,6 +153,35 @@ TEST_F(Arm26Test, InverseDynamicsOfTheFlexion) {
     std::printf("%s: rms %.4f N m, %.2f %% of the peak %.3f N m\n", skeleton_.coordinates[c].name.c_str(), rms,
                 100 * rms / peak, peak);
     EXPECT_LT(rms, 0.02 * peak);
+  }
+}
+
+TEST_F(Arm26Test, ActivationsOfTheFlexion) {
+  const MotionTable published = Table("reference/arm26_StaticOptimization_Nonphysiological_activation.sto");
+  const FilteredMotion motion = Filtered(Table("motion/arm26_InverseKinematics.mot"), skeleton_);
+  SkeletonMechanics mechanics(skeleton_);
+  ForceDistributor distributor;
+  const std::size_t muscles = skeleton_.muscles.size();
+  Eigen::VectorXd strength(static_cast<Eigen::Index>(muscles));
+  for (std::size_t m = 0; m < muscles; ++m) {
+    strength[static_cast<Eigen::Index>(m)] = skeleton_.muscles[m].max_isometric_force;
+  }
+  std::vector<double> square(muscles, 0);
+  for (std::size_t k = 0; k < published.times.size(); ++k) {
+    const double t = published.times[k];
+    const Eigen::VectorXd demand = mechanics.InverseDynamics(motion.At(t, 0), motion.At(t, 1), motion.At(t, 2));
+    const MuscleGeometry geometry = GeometryOf(mechanics, motion.At(t, 0));
+    const Distribution found = distributor.Solve(geometry.moment_arms * strength.asDiagonal(), demand);
+    EXPECT_TRUE(found.feasible) << t;
+    for (std::size_t m = 0; m < muscles; ++m) {
+      const double a = (*published.Find(skeleton_.muscles[m].name))[k];
+      square[m] += std::pow(found.activations[static_cast<Eigen::Index>(m)] - a, 2);
+    }
+  }
+  for (std::size_t m = 0; m < muscles; ++m) {
+    const double rms = std::sqrt(square[m] / static_cast<double>(published.times.size()));
+    std::printf("%-9s rms of the activation %.5f\n", skeleton_.muscles[m].name.c_str(), rms);
+    EXPECT_LT(rms, 0.03) << skeleton_.muscles[m].name;
   }
 }
 
