@@ -432,6 +432,7 @@ class OsimReader {
     pugi::xml_node pennation = node.child("pennation_angle_at_optimal");
     if (!pennation) pennation = node.child("pennation_angle");
     muscle.pennation = NumberOr(pennation, 0);
+    ReadHill(node, muscle.hill);
     if (muscle.name.empty() || IndexOf(skeleton_.muscles, muscle.name) >= 0) {
       xml_.Fail(node, muscle.name.empty() ? "has no name" : "this name is given twice");
     }
@@ -444,6 +445,21 @@ class OsimReader {
       ReadPathWrap(wrap, muscle);
     }
     skeleton_.muscles.push_back(std::move(muscle));
+  }
+
+  void ReadHill(pugi::xml_node node, HillCurves& hill) {
+    if (std::string_view(node.name()) != "Thelen2003Muscle") {
+      xml_.Remark(Notice::Kind::kChanged, node, "its curves are those of a Thelen2003Muscle");
+    }
+    hill.max_shortening_velocity = NumberOr(node.child("max_contraction_velocity"), hill.max_shortening_velocity);
+    hill.tendon_strain = NumberOr(node.child("FmaxTendonStrain"), hill.tendon_strain);
+    hill.passive_strain = NumberOr(node.child("FmaxMuscleStrain"), hill.passive_strain);
+    hill.active_width = NumberOr(node.child("KshapeActive"), hill.active_width);
+    hill.passive_shape = NumberOr(node.child("KshapePassive"), hill.passive_shape);
+    hill.velocity_shape = NumberOr(node.child("Af"), hill.velocity_shape);
+    hill.lengthening_force = NumberOr(node.child("Flen"), hill.lengthening_force);
+    hill.activation_time = NumberOr(node.child("activation_time_constant"), hill.activation_time);
+    hill.deactivation_time = NumberOr(node.child("deactivation_time_constant"), hill.deactivation_time);
   }
 
   void ReadPoint(pugi::xml_node node, LineMuscle& muscle) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/types.h"
+#include "core/skeleton/hill_muscle.h"
 #include "core/skeleton/scalar_function.h"
 
 namespace fascicle {
@@ -38,6 +39,7 @@ struct LineMuscle {
   double optimal_fibre_length = 0;  // [m]
   double tendon_slack_length = 0;   // [m]
   double pennation = 0;             // at the optimal fibre length [rad]
+  HillCurves hill = {};
 };
 
 }  // namespace fascicle

@@ -10,6 +10,7 @@
 #include "client/import/motion_table.h"
 #include "client/import/osim_reader.h"
 #include "core/skeleton/force_distribution.h"
+#include "core/skeleton/forward_dynamics.h"
 #include "core/skeleton/low_pass.h"
 #include "core/skeleton/muscle_path.h"
 #include "core/skeleton/skeleton_mechanics.h"
@@ -183,6 +184,80 @@ TEST_F(Arm26Test, ActivationsOfTheFlexion) {
     std::printf("%-9s rms of the activation %.5f\n", skeleton_.muscles[m].name.c_str(), rms);
     EXPECT_LT(rms, 0.03) << skeleton_.muscles[m].name;
   }
+}
+
+// The tendons' forces of the published states. Those of the long head of biceps depend on a wrap that the published
+// program approximates.
+TEST_F(Arm26Test, TendonForcesOfPublishedStates) {
+  const MotionTable states = Table("reference/arm26_CMC_states.sto");
+  const MotionTable forces = Table("reference/arm26_CMC_Actuation_force.sto");
+  // The published run is by an early version.
+  for (LineMuscle& muscle : skeleton_.muscles) muscle.hill.is_early = true;
+  SkeletonMechanics mechanics(skeleton_);
+  ForwardDynamics dynamics(mechanics, {});
+  std::vector<double> largest(6, 0);
+  for (std::size_t row = 0; row < states.times.size(); row += 10) {
+    SkeletonState state{states.times[row], Eigen::VectorXd(2), Eigen::VectorXd::Zero(2), Eigen::VectorXd(6),
+                        Eigen::VectorXd(6)};
+    for (std::size_t k = 0; k < 2; ++k) {
+      state.q[static_cast<Eigen::Index>(k)] = (*states.Find(skeleton_.coordinates[k].name))[row];
+    }
+    for (std::size_t m = 0; m < 6; ++m) {
+      state.fibre_lengths[static_cast<Eigen::Index>(m)] =
+          (*states.Find(skeleton_.muscles[m].name + ".fiber_length"))[row];
+    }
+    const Eigen::VectorXd computed = dynamics.TendonForces(state);
+    for (std::size_t m = 0; m < 6; ++m) {
+      const auto published = ScalarFunction::PiecewiseLinear(forces.times, *forces.Find(skeleton_.muscles[m].name));
+      const double force = published.At(state.time);
+      largest[m] = std::max(largest[m], std::abs(computed[static_cast<Eigen::Index>(m)] / force - 1));
+    }
+  }
+  for (std::size_t m = 0; m < 6; ++m) {
+    std::printf("%-9s force within %.3f %%\n", skeleton_.muscles[m].name.c_str(), 100 * largest[m]);
+    EXPECT_LT(largest[m], 0.01) << skeleton_.muscles[m].name;
+  }
+}
+
+// Without muscles, the arm swings as a double pendulum: its energy stays.
+TEST_F(Arm26Test, AFreeArmKeepsItsEnergy) {
+  skeleton_.muscles.clear();
+  SkeletonMechanics mechanics(skeleton_);
+  ForwardDynamics dynamics(
+      mechanics,
+      [](double) {
+        return SkeletonInput{Eigen::VectorXd(0), Eigen::VectorXd::Zero(2)};
+      },
+      1e-9);
+  SkeletonState state{0, Eigen::Vector2d(1, 0.5), Eigen::Vector2d::Zero(), Eigen::VectorXd(0), Eigen::VectorXd(0)};
+  const double start = mechanics.Energy(state.q, state.rates);
+  double swing = 0, drift = 0;
+  for (int k = 1; k <= 200; ++k) {
+    ASSERT_TRUE(dynamics.Advance(0.05 * k, state));
+    drift = std::max(drift, std::abs(mechanics.Energy(state.q, state.rates) - start));
+    swing = std::max(swing, mechanics.Energy(state.q, state.rates) - mechanics.Energy(state.q, 0 * state.rates));
+  }
+  std::printf("energy within %.1e of the largest kinetic energy over 10 s\n", drift / swing);
+  EXPECT_LT(drift, 1e-6 * swing);
+}
+
+// Torques that balance muscles and gravity hold the arm; inverse dynamics gives them.
+TEST_F(Arm26Test, HeldInEquilibriumNothingMoves) {
+  SkeletonMechanics mechanics(skeleton_);
+  const Eigen::VectorXd q = Eigen::Vector2d(0.3, 1.2), zero = Eigen::Vector2d::Zero();
+  const Eigen::VectorXd activations = Eigen::VectorXd::Constant(6, 0.2);
+  Eigen::VectorXd holding = zero;
+  ForwardDynamics dynamics(
+      mechanics,
+      [&](double) {
+        return SkeletonInput{activations, holding};
+      },
+      1e-8);
+  SkeletonState state = dynamics.Equilibrium(q, activations);
+  holding =
+      mechanics.InverseDynamics(q, zero, zero) - GeometryOf(mechanics, q).moment_arms * dynamics.TendonForces(state);
+  ASSERT_TRUE(dynamics.Advance(0.5, state));
+  EXPECT_LT((state.q - q).norm(), 1e-6);
 }
 
 }  // namespace
