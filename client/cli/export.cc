@@ -8,6 +8,7 @@
 
 #include "client/cli/command.h"
 #include "client/cli/follow.h"
+#include "client/cli/frame_options.h"
 #include "client/cli/job_source.h"
 #include "client/export/csv.h"
 #include "client/export/vtk_series.h"
@@ -24,6 +25,7 @@ constexpr const char* kExportExamples =
   fascicle export 3f2a --out results --format csv     only the table
   fascicle export out --out results                   the job of the run that wrote the folder out
   fascicle export 3f2a --out results --from 10 --to 20 --every 2
+  fascicle export 3f2a --out results --fields von_mises_stress --encoding quantized16 --compress   over a slow network
 )";
 
 struct ExportOptions {
@@ -33,17 +35,29 @@ struct ExportOptions {
   std::int64_t from = 0;
   std::optional<std::int64_t> to;
   std::int64_t every = 1;
+  FrameOptions frames;
 };
 
-int Export(const ExportOptions& options, const Context& context) {
+// Which frames to receive, and what of them.
+WatchOptions WatchOf(const ExportOptions& options, bool vtk) {
+  WatchOptions watch;
+  watch.start_index = options.from;
+  if (options.to) watch.end_index = *options.to + 1;
+  watch.stride = options.every;
+  FrameOptions frames = options.frames;
+  if (!vtk && frames.fields.empty()) frames.fields = {"series"};
+  SetFrameOptions(frames, vtk ? std::vector<std::string>{"positions", "series"} : std::vector<std::string>{"series"},
+                  watch);
+  return watch;
+}
+
+int ExportFrames(const ExportOptions& options, const Context& context) {
   const std::set<std::string> formats(options.formats.begin(), options.formats.end());
   JobSource source = OpenJob(context, options.job);
   std::optional<VtkSeriesWriter> writer;
   std::optional<SeriesTable> table;
   const auto on_frame = [&](const v1::Geometry& geometry, const v1::Frame& frame) {
-    if (options.to && frame.index() > *options.to) return false;
-    if ((frame.index() - options.from) % options.every != 0) return true;
-    CheckDigest(frame);
+    if (!frame.has_derivation()) CheckDigest(frame);
     if (!table) table.emplace(geometry);
     table->Add(frame);
     if (formats.contains("vtk")) {
@@ -52,7 +66,8 @@ int Export(const ExportOptions& options, const Context& context) {
     }
     return true;
   };
-  const Followed followed = ReadStored(source.client, source.job, options.from, on_frame);
+  const Followed followed =
+      ReadStored(source.client, source.job, WatchOf(options, formats.contains("vtk")), on_frame);
   if (!table) {
     throw CommandError::Invalid("there is no such frame; the job has " + std::to_string(followed.job.frame_count()));
   }
@@ -78,9 +93,10 @@ void AddExport(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"vtk", "csv"}));
   command->add_option("--from", options->from, "First frame")->check(CLI::NonNegativeNumber);
   command->add_option("--to", options->to, "Last frame")->check(CLI::NonNegativeNumber);
-  command->add_option("--every", options->every, "Only every n-th frame")->check(CLI::PositiveNumber);
+  command->add_option("--every", options->every, "Only every n-th frame")->check(CLI::Range(1, 1000000));
+  AddFrameOptions(*command, options->frames);
   command->callback(
-      [options, &context] { context.action = [options, &context] { return Export(*options, context); }; });
+      [options, &context] { context.action = [options, &context] { return ExportFrames(*options, context); }; });
 }
 
 }  // namespace fascicle::client

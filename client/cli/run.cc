@@ -129,7 +129,7 @@ CheckedRun RunChanged(Client& client, const ScenePackage& package, const v1::Sce
   std::cerr << "check: " << what << "\n";
   const v1::Job job = Take(client.Submit({changed, package.assets}, options.threads, stop));
   const std::stop_callback cancel(stop, [&] { (void)client.CancelJob(job.name()); });
-  const Followed followed = Follow(client, job.name(), 0, {}, {});
+  const Followed followed = Follow(client, job.name(), OnlySeries(), {}, {});
   Check(client.DeleteJob(job.name()));
   return {std::move(what), followed.job, ChangesBetween(before, followed.table)};
 }
@@ -184,7 +184,7 @@ int Run(const RunOptions& options, const Context& context) {
     frames->Add(frame);
     largest.Add(geometry, frame);
   };
-  const Followed followed = Follow(client, job.name(), 0, on_frame, {});
+  const Followed followed = Follow(client, job.name(), {}, on_frame, {});
   const std::vector<CheckedRun> checked = options.check
                                               ? CheckConvergence(client, package, followed, options, interrupts.token())
                                               : std::vector<CheckedRun>();

@@ -60,13 +60,22 @@ struct WatchOptions {
   std::int64_t start_index = 0;
   bool follow = true;
   v1::StreamFramesRequest::Mode mode = v1::StreamFramesRequest::MODE_ALL;
+  std::int64_t end_index = 0;  // one past the last frame; 0: no end
+  std::int64_t stride = 1;
+  // What to receive of each frame: `positions`, `series`, names of fields; all if empty. Poses and lines always come.
+  // Older servers send everything.
+  std::vector<std::string> fields = {};
+  v1::StreamFramesRequest::Encoding encoding = v1::StreamFramesRequest::ENCODING_STORED;
+  bool compress = false;
   // How long to retry after a lost connection; restarts after every frame.
   std::chrono::seconds patience = std::chrono::seconds(30);
 };
 
 // Callbacks of Watch, all on the thread that called Watch. Any may be empty.
 struct WatchEvents {
-  std::function<void(const v1::Frame& frame)> frame;  // complete, with correct checksums
+  // With correct checksums, and arrays of doubles whatever the encoding. Frames that are not as stored have a
+  // `derivation`.
+  std::function<void(const v1::Frame& frame)> frame;
   std::function<void(v1::Job::State state, const v1::Progress& progress)> progress;
   std::function<void(const std::string& message)> reconnecting;
 };
