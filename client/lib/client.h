@@ -103,6 +103,10 @@ class Client {
   Result<v1::Job> RestartJob(const std::string& name, bool from_start);
   // Lets the server compare everything that it has of a job with its checksums.
   Result<v1::VerifyJobResponse> VerifyJob(const std::string& name);
+  // Saves a job as one file that ImportJob takes: scene, geometry and frames. The file is complete or absent.
+  std::optional<Error> ExportJob(const std::string& name, const std::string& path, const std::stop_token& stop = {});
+  // Gives the server a job in such a file. It keeps its name if that is free there, unless `new_name` is set.
+  Result<v1::Job> ImportJob(const std::string& path, bool new_name, const std::stop_token& stop = {});
   // Waits until the job has been started; kStopped after a stop request.
   Result<v1::Geometry> GetGeometry(const std::string& name, std::stop_token stop = {});
   Result<std::vector<v1::FrameInfo>> ListFrames(const std::string& name, std::int64_t start_index);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "proto/frames/frame_digest.h"
+#include "proto/frames/frame_fits.h"
 
 namespace fascicle::client {
 namespace {
@@ -193,11 +194,7 @@ std::vector<LinePath> DecodeLines(const v1::Frame& frame, const std::vector<Line
 }
 
 void CheckFits(const v1::Frame& frame, const v1::Geometry& geometry) {
-  const auto& rigid = geometry.rigid_bodies();
-  const auto moving = std::count_if(rigid.begin(), rigid.end(), [](const auto& body) { return body.moves(); });
-  if (frame.bodies_size() != geometry.bodies_size() || frame.lines_size() != geometry.lines_size() ||
-      frame.poses().size() != static_cast<std::size_t>(moving) * sizeof(Pose) ||
-      frame.series_size() != geometry.series_size()) {
+  if (!FrameFits(frame, geometry)) {
     throw std::runtime_error("the server sent a frame that doesn't fit its geometry");
   }
 }
