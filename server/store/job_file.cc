@@ -38,17 +38,22 @@ constexpr std::array<Table, 5> kTables = {
       "CREATE TABLE geometry (chunk INTEGER PRIMARY KEY, bytes BLOB NOT NULL, checksum INTEGER NOT NULL) STRICT"},
      {"job", "CREATE TABLE job (part INTEGER PRIMARY KEY, bytes BLOB NOT NULL, checksum INTEGER NOT NULL) STRICT"}}};
 
+// A new file without rows.
+Database MakeTables(const std::string& path) {
+  Database database(path, Database::Mode::kCreate);
+  // It is of no use unless it is complete.
+  for (const char* sql : {"PRAGMA page_size = 8192", "PRAGMA journal_mode = OFF", "PRAGMA synchronous = OFF"}) {
+    database.Execute(sql);
+  }
+  database.Execute(("PRAGMA application_id = " + std::to_string(kJobFileApplicationId)).c_str());
+  database.Execute(("PRAGMA user_version = " + std::to_string(kJobFileFormat)).c_str());
+  for (const Table& table : kTables) database.Execute(table.sql);
+  return database;
+}
+
 class JobFileWriter {
  public:
-  explicit JobFileWriter(const std::string& path) : database_(path, Database::Mode::kCreate) {
-    // The file is new and of no use unless it is complete.
-    for (const char* sql : {"PRAGMA page_size = 8192", "PRAGMA journal_mode = OFF", "PRAGMA synchronous = OFF"}) {
-      database_.Execute(sql);
-    }
-    database_.Execute(("PRAGMA application_id = " + std::to_string(kJobFileApplicationId)).c_str());
-    database_.Execute(("PRAGMA user_version = " + std::to_string(kJobFileFormat)).c_str());
-    for (const Table& table : kTables) database_.Execute(table.sql);
-  }
+  explicit JobFileWriter(const std::string& path) : database_(MakeTables(path)) {}
 
   void Write(std::string_view job, FrameStore& frames, const std::function<bool()>& go_on) {
     Transaction transaction(database_);

@@ -35,7 +35,7 @@ grpc::Status Export(Stubs& stubs, const std::string& job, std::string& bytes) {
 }
 
 struct ImportWish {
-  std::string request_id;
+  std::string request_id = {};
   bool new_name = false;
   std::int64_t size = -1;  // announced; negative: that of the bytes
 };

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "core/base/stop.h"
 #include "server/store/database.h"
@@ -20,27 +21,36 @@ using testing::ReadFile;
 using testing::TemporaryFolder;
 using testing::WriteFile;
 
-constexpr int kFrames = 4;
-const std::string kJob = SampleBytes(5, 3000);
-const std::string kGeometry = SampleBytes(6, 1'200'000);  // two chunks
+constexpr int kFramesInFile = 4;
+const std::string kJobBytes = SampleBytes(5, 3000);
+const std::string kGeometryBytes = SampleBytes(6, 1'200'000);  // two chunks
 
-SampleFrame FrameOf(std::int64_t index) { return MakeSampleFrame(index, index == 2 ? 1'100'000 : 5000 * index + 1); }
+const SampleFrame& FrameOf(std::int64_t index) {
+  static const std::vector<SampleFrame> frames = [] {
+    std::vector<SampleFrame> made;
+    for (std::int64_t i = 0; i < kFramesInFile; ++i) {
+      made.push_back(MakeSampleFrame(i, i == 2 ? 1'100'000 : static_cast<std::size_t>(5000 * i + 1)));
+    }
+    return made;
+  }();
+  return frames[static_cast<std::size_t>(index)];
+}
 
 void WriteSample(const std::string& path) {
   const std::unique_ptr<Store> store = MakeMemoryStore();
   JobRecord existing;
   store->CreateJob(SampleJob(1), &existing);
   const std::shared_ptr<FrameStore> frames = store->OpenFrames(SampleJob(1).id);
-  frames->PutGeometry(kGeometry);
-  for (std::int64_t i = 0; i < kFrames; ++i) frames->PutFrame(FrameOf(i).record, FrameOf(i).bytes, "");
-  WriteJobFile(path, kJob, *frames, [] { return true; });
+  frames->PutGeometry(kGeometryBytes);
+  for (std::int64_t i = 0; i < kFramesInFile; ++i) frames->PutFrame(FrameOf(i).record, FrameOf(i).bytes, "");
+  WriteJobFile(path, kJobBytes, *frames, [] { return true; });
 }
 
 // Whether the file has what was written; throws JobFileError.
 bool IsSample(const std::string& path) {
   JobFileReader reader(path);
-  bool same = reader.ReadJob() == kJob && reader.ReadGeometry() == kGeometry && reader.frame_count() == kFrames;
-  for (std::int64_t i = 0; same && i < kFrames; ++i) {
+  bool same = reader.ReadJob() == kJobBytes && reader.ReadGeometry() == kGeometryBytes && reader.frame_count() == kFramesInFile;
+  for (std::int64_t i = 0; same && i < kFramesInFile; ++i) {
     const JobFileReader::StoredFrame frame = reader.ReadNextFrame();
     same = frame.record == FrameOf(i).record && frame.bytes == FrameOf(i).bytes;
   }
@@ -48,7 +58,7 @@ bool IsSample(const std::string& path) {
 }
 
 // The message of the error that reading ends with.
-std::string ErrorOf(const std::string& path) {
+std::string ReadingError(const std::string& path) {
   try {
     return IsSample(path) ? "none" : "wrong bytes";
   } catch (const JobFileError& error) {
@@ -66,7 +76,7 @@ class JobFileTest : public ::testing::Test {
   const std::string path_ = folder_ / "job.fascicle";
 };
 
-TEST_F(JobFileTest, WhatIsWrittenComesBack) { EXPECT_EQ(ErrorOf(path_), "none"); }
+TEST_F(JobFileTest, WhatIsWrittenComesBack) { EXPECT_EQ(ReadingError(path_), "none"); }
 
 TEST_F(JobFileTest, WritingStopsOnRequest) {
   const std::unique_ptr<Store> store = MakeMemoryStore();
@@ -74,7 +84,7 @@ TEST_F(JobFileTest, WritingStopsOnRequest) {
   store->CreateJob(SampleJob(1), &existing);
   const std::shared_ptr<FrameStore> frames = store->OpenFrames(SampleJob(1).id);
   frames->PutFrame(FrameOf(0).record, FrameOf(0).bytes, "");
-  EXPECT_THROW(WriteJobFile(folder_ / "other", kJob, *frames, [] { return false; }), Stopped);
+  EXPECT_THROW(WriteJobFile(folder_ / "other", kJobBytes, *frames, [] { return false; }), Stopped);
 }
 
 // 300 single flips, or FASCICLE_BIT_FLIPS.
@@ -91,7 +101,7 @@ TEST_F(JobFileTest, AFlippedBitGivesAnErrorOrTheSameBytes) {
     const int bit = static_cast<int>(random() % 8);
     bad[at] ^= static_cast<char>(1 << bit);
     WriteFile(path_, bad);
-    const std::string error = ErrorOf(path_);
+    const std::string error = ReadingError(path_);
     EXPECT_NE(error, "wrong bytes") << "bit " << bit << " of byte " << at;
     refused += error != "none";
   }
@@ -104,19 +114,21 @@ TEST_F(JobFileTest, EveryTruncationIsRefused) {
   for (const std::size_t size : {std::size_t{0}, std::size_t{50}, std::size_t{100}, std::size_t{8192},
                                  std::size_t{60'000}, good.size() / 2, good.size() - 8192, good.size() - 1}) {
     WriteFile(path_, good.substr(0, size));
-    EXPECT_NE(ErrorOf(path_), "wrong bytes") << size;
-    if (size + 1 < good.size()) EXPECT_NE(ErrorOf(path_), "none") << size;
+    EXPECT_NE(ReadingError(path_), "wrong bytes") << size;
+    if (size + 1 < good.size()) {
+      EXPECT_NE(ReadingError(path_), "none") << size;
+    }
   }
 }
 
 TEST_F(JobFileTest, OtherFilesAreRefusedInPlainWords) {
   WriteFile(path_, "a letter, not a job, and long enough for a header of a hundred bytes, which this one is by now.....");
-  EXPECT_NE(ErrorOf(path_).find("not a job that was exported"), std::string::npos);
+  EXPECT_NE(ReadingError(path_).find("not a job that was exported"), std::string::npos);
   WriteSample(folder_ / "second");
   Database(folder_ / "second", Database::Mode::kReadWrite).Execute("PRAGMA user_version = 7");
-  EXPECT_NE(ErrorOf(folder_ / "second").find("format 7"), std::string::npos);
+  EXPECT_NE(ReadingError(folder_ / "second").find("format 7"), std::string::npos);
   Database(folder_ / "second", Database::Mode::kReadWrite).Execute("PRAGMA application_id = 5");
-  EXPECT_NE(ErrorOf(folder_ / "second").find("another kind"), std::string::npos);
+  EXPECT_NE(ReadingError(folder_ / "second").find("another kind"), std::string::npos);
 }
 
 TEST_F(JobFileTest, MoreThanAJobIsRefused) {
@@ -131,7 +143,7 @@ TEST_F(JobFileTest, MoreThanAJobIsRefused) {
     std::filesystem::remove(path_);
     WriteSample(path_);
     Change(sql);
-    EXPECT_NE(ErrorOf(path_).find("job that was exported"), std::string::npos) << sql << ": " << ErrorOf(path_);
+    EXPECT_NE(ReadingError(path_).find("job that was exported"), std::string::npos) << sql << ": " << ReadingError(path_);
   }
 }
 
@@ -145,7 +157,7 @@ TEST_F(JobFileTest, RowsWithoutTheirChecksumAreRefused) {
     std::filesystem::remove(path_);
     WriteSample(path_);
     Change(sql);
-    EXPECT_NE(ErrorOf(path_).find("damaged"), std::string::npos) << sql << ": " << ErrorOf(path_);
+    EXPECT_NE(ReadingError(path_).find("damaged"), std::string::npos) << sql << ": " << ReadingError(path_);
   }
 }
 
@@ -154,20 +166,20 @@ TEST_F(JobFileTest, ExpensiveRowsAreRefused) {
   Change(
       "UPDATE frames SET size = 400000000000, checksum = row_checksum(idx, time, step, 400000000000, digest) WHERE "
       "idx = 0");
-  EXPECT_NE(ErrorOf(path_), "none");
+  EXPECT_NE(ReadingError(path_), "none");
   std::filesystem::remove(path_);
   WriteSample(path_);
   Change(
       "UPDATE chunks SET bytes = zeroblob(30000000), checksum = row_checksum(number, frame, chunk, zeroblob(30000000)) "
       "WHERE number = 0");
-  EXPECT_NE(ErrorOf(path_), "none");
+  EXPECT_NE(ReadingError(path_), "none");
   // Thousands of tables.
   std::filesystem::remove(path_);
   WriteSample(path_);
   std::string tables = "BEGIN;";
   for (int i = 0; i < 5000; ++i) tables += "CREATE TABLE t" + std::to_string(i) + " (x);";
   Change((tables + "COMMIT").c_str());
-  EXPECT_NE(ErrorOf(path_), "none");
+  EXPECT_NE(ReadingError(path_), "none");
 }
 
 }  // namespace
