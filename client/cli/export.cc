@@ -69,8 +69,7 @@ int ExportFrames(const ExportOptions& options, const Context& context) {
     }
     return true;
   };
-  const Followed followed =
-      ReadStored(source.client, source.job, WatchOf(options, formats.contains("vtk")), on_frame);
+  const Followed followed = ReadStored(source.client, source.job, WatchOf(options, formats.contains("vtk")), on_frame);
   if (!table) {
     throw CommandError::Invalid("there is no such frame; the job has " + std::to_string(followed.job.frame_count()));
   }

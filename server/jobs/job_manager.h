@@ -91,8 +91,8 @@ class JobManager {
     std::shared_ptr<FrameStore> frames;
   };
   Staged Stage(const std::string& wanted);
-  // Adds the job of a staged id. `record` is complete and in a final state. Returns it, or the earlier job with the same
-  // request id (then `*repeated` is true).
+  // Adds the job of a staged id. `record` is complete and in a final state. Returns it, or the earlier job with the
+  // same request id (then `*repeated` is true).
   JobView AddFinished(const JobRecord& record, bool* repeated);
   std::optional<JobView> Get(std::string_view id);
   std::vector<JobView> List(int limit, std::string_view before_id, const std::vector<JobState>& states);

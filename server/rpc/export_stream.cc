@@ -17,8 +17,8 @@ namespace fascicle::server {
 void ExportStream::Fill() {
   if (!file_ && !Open()) return;
   while (HasRoom()) {
-    auto bytes = std::make_shared<std::string>(static_cast<std::size_t>(std::min(size_ - sent_, FrameStore::kChunkSize)),
-                                               '\0');
+    auto bytes =
+        std::make_shared<std::string>(static_cast<std::size_t>(std::min(size_ - sent_, FrameStore::kChunkSize)), '\0');
     if (!in_.read(bytes->data(), static_cast<std::streamsize>(bytes->size()))) {
       throw StoreError(file_->path() + ": cannot be read");
     }

@@ -99,7 +99,8 @@ grpc::Status JobUpload::TakeOverFile() {
   writer_->Finish();
   try {
     JobFileReader reader(file_->path());
-    return TakeOver(context_, reader, begin_, [this] { return !IsFinished(); }, imported_);
+    return TakeOver(
+        context_, reader, begin_, [this] { return !IsFinished(); }, imported_);
   } catch (const JobFileError& error) {
     return InvalidArgument("NOT_A_JOB", "data", error.what());
   }

@@ -15,8 +15,7 @@ namespace fascicle::server {
 class FileWriter;
 
 // One call of ImportJob: writes what comes to a file, then takes the job over. Uploads that are idle or too slow end.
-class JobUpload : public grpc::ServerReadReactor<v1::ImportJobRequest>,
-                  public std::enable_shared_from_this<JobUpload> {
+class JobUpload : public grpc::ServerReadReactor<v1::ImportJobRequest>, public std::enable_shared_from_this<JobUpload> {
  public:
   JobUpload(RpcContext& context, OpenTransfers& transfers, v1::Job& response);
   ~JobUpload() override;

@@ -23,7 +23,8 @@ constexpr std::size_t kMostName = 1000, kMostFailure = std::size_t{16} << 10, kM
 
 v1::Job ReadJobMessage(JobFileReader& file) {
   v1::Job job;
-  if (!job.ParseFromString(file.ReadJob()) || !job.has_scene()) throw JobFileError("the file has no scene that can be read");
+  if (!job.ParseFromString(file.ReadJob()) || !job.has_scene())
+    throw JobFileError("the file has no scene that can be read");
   const bool short_enough = job.scene_name().size() <= kMostName && job.failure().ByteSizeLong() <= kMostFailure &&
                             job.profile().ByteSizeLong() <= kMostProfile;
   if (!short_enough || !v1::Job::State_IsValid(job.state()) || job.threads() < 0 || job.threads() > 256) {

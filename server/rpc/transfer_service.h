@@ -9,9 +9,8 @@
 
 namespace fascicle::server {
 
-using TransferServiceBase =
-    v1::TransferService::WithRawCallbackMethod_ExportJob<v1::TransferService::WithCallbackMethod_ImportJob<
-        v1::TransferService::Service>>;
+using TransferServiceBase = v1::TransferService::WithRawCallbackMethod_ExportJob<
+    v1::TransferService::WithCallbackMethod_ImportJob<v1::TransferService::Service>>;
 
 // Jobs as files. Everything runs on threads of its own: files may be large.
 class TransferServiceImpl : public TransferServiceBase {

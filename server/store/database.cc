@@ -55,13 +55,14 @@ void Restrict(sqlite3* handle) {
   }
   for (const Setting& limit :
        {Setting{SQLITE_LIMIT_LENGTH, 2 << 20}, Setting{SQLITE_LIMIT_SQL_LENGTH, 4096}, Setting{SQLITE_LIMIT_COLUMN, 32},
-        Setting{SQLITE_LIMIT_EXPR_DEPTH, 32}, Setting{SQLITE_LIMIT_ATTACHED, 0},
-        Setting{SQLITE_LIMIT_TRIGGER_DEPTH, 0}, Setting{SQLITE_LIMIT_VDBE_OP, 10'000}}) {
+        Setting{SQLITE_LIMIT_EXPR_DEPTH, 32}, Setting{SQLITE_LIMIT_ATTACHED, 0}, Setting{SQLITE_LIMIT_TRIGGER_DEPTH, 0},
+        Setting{SQLITE_LIMIT_VDBE_OP, 10'000}}) {
     sqlite3_limit(handle, limit.name, limit.value);
   }
   // A look-up by key takes some dozens of operations, an entry of the schema about ten.
   constexpr int kMostOperations = 2000;
-  sqlite3_progress_handler(handle, kMostOperations, [](void*) { return 1; }, nullptr);
+  sqlite3_progress_handler(
+      handle, kMostOperations, [](void*) { return 1; }, nullptr);
   Check(sqlite3_exec(handle, "PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0", nullptr, nullptr, nullptr), handle,
         "restrict");
 }

@@ -64,8 +64,7 @@ class JobFileWriter {
       if (!go_on()) throw Stopped();
       PutFrame(frames, index);
     }
-    database_
-        .Prepare("INSERT INTO contents VALUES (0, ?1, ?2, ?3, row_checksum(0, ?1, ?2, ?3))")
+    database_.Prepare("INSERT INTO contents VALUES (0, ?1, ?2, ?3, row_checksum(0, ?1, ?2, ?3))")
         .Run(parts, geometry, count);
     transaction.Commit();
   }
@@ -103,8 +102,7 @@ class JobFileWriter {
   Database database_;
   Statement put_frame_ =
       database_.Prepare("INSERT INTO frames VALUES (?1, ?2, ?3, ?4, ?5, row_checksum(?1, ?2, ?3, ?4, ?5))");
-  Statement put_chunk_ =
-      database_.Prepare("INSERT INTO chunks VALUES (?1, ?2, ?3, ?4, row_checksum(?1, ?2, ?3, ?4))");
+  Statement put_chunk_ = database_.Prepare("INSERT INTO chunks VALUES (?1, ?2, ?3, ?4, row_checksum(?1, ?2, ?3, ?4))");
   std::int64_t next_chunk_ = 0;
 };
 
@@ -176,8 +174,9 @@ void WriteJobFile(const std::string& path, std::string_view job, FrameStore& fra
 struct JobFileReader::Impl {
   explicit Impl(const std::string& path)
       : database(Open(path)), bytes_left(static_cast<std::int64_t>(std::filesystem::file_size(path))) {
-    Statement contents = Prepare("SELECT parts, geometry, frames, row_checksum(id, parts, geometry, frames) = checksum "
-                                 "FROM contents WHERE id = 0");
+    Statement contents = Prepare(
+        "SELECT parts, geometry, frames, row_checksum(id, parts, geometry, frames) = checksum "
+        "FROM contents WHERE id = 0");
     Rows rows = contents.Query();
     if (!Reading([&] { return rows.Next(); }) || rows.Int(3) != 1) throw Damaged();
     parts = rows.Int(0);

@@ -39,8 +39,8 @@ class JobFileError : public std::exception {
 // more is read than the file has bytes. All functions throw JobFileError. Not thread-safe.
 class JobFileReader {
  public:
-  static constexpr std::int64_t kMostJob = std::int64_t{8} << 20;         // description [byte]
-  static constexpr std::int64_t kMostFrame = std::int64_t{512} << 20;     // frame or geometry [byte]
+  static constexpr std::int64_t kMostJob = std::int64_t{8} << 20;      // description [byte]
+  static constexpr std::int64_t kMostFrame = std::int64_t{512} << 20;  // frame or geometry [byte]
 
   explicit JobFileReader(const std::string& path);
   ~JobFileReader();

@@ -97,8 +97,8 @@ double LargestDifference(const std::string& a, const std::string& b) {
 
 TEST(DerivedFrame, StatesTheErrorOfPositions) {
   const v1::Frame sample = Sample();
-  for (const auto& [encoding, most] :
-       {std::pair(Request::ENCODING_FLOAT32, 0.1 * 6e-8), std::pair(Request::ENCODING_QUANTIZED16, 0.1 / 65535 * 1.01)}) {
+  for (const auto& [encoding, most] : {std::pair(Request::ENCODING_FLOAT32, 0.1 * 6e-8),
+                                       std::pair(Request::ENCODING_QUANTIZED16, 0.1 / 65535 * 1.01)}) {
     const v1::Frame frame = ReadDerivedFrame(DeriveFrame(sample.SerializeAsString(), Ask({}, encoding, true)));
     const double error = LargestDifference(frame.bodies(0).positions(), sample.bodies(0).positions());
     EXPECT_GT(error, 0);
@@ -146,7 +146,8 @@ TEST(DerivedFrame, FlippedBitsAreNoticed) {
 TEST(DerivedFrame, FalseSizesAreRefused) {
   const std::string stored(1 << 20, '\0');  // compresses well
   v1::DerivedFrame derived = DeriveFrame(stored, Ask({}, Request::ENCODING_STORED, true));
-  for (const std::int64_t size : {std::int64_t{-1}, std::int64_t{0}, std::int64_t{100}, kLargestDerived, kLargestDerived + 1}) {
+  for (const std::int64_t size :
+       {std::int64_t{-1}, std::int64_t{0}, std::int64_t{100}, kLargestDerived, kLargestDerived + 1}) {
     derived.set_content_size(size);
     EXPECT_THROW(ReadDerivedFrame(derived), std::runtime_error) << size;
   }

@@ -70,7 +70,8 @@ TEST(PackArray, SinglePrecisionKeepsTheStatedBound) {
   ASSERT_TRUE(packed);
   EXPECT_EQ(packed->values().size(), 4 * numbers.size());
   const std::vector<double> back = NumbersOf(Unpack(*packed));
-  for (std::size_t i = 0; i < numbers.size(); ++i) EXPECT_EQ(back[i], static_cast<double>(static_cast<float>(numbers[i])));
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    EXPECT_EQ(back[i], static_cast<double>(static_cast<float>(numbers[i])));
   EXPECT_LE(LargestDifference(back, numbers), packed->max_error());
   EXPECT_LT(packed->max_error(), 8 * 6e-8);
   const auto tiny = PackFloat32(BytesOf({1e-320, 3e-46}), 1);

@@ -49,7 +49,8 @@ void WriteSample(const std::string& path) {
 // Whether the file has what was written; throws JobFileError.
 bool IsSample(const std::string& path) {
   JobFileReader reader(path);
-  bool same = reader.ReadJob() == kJobBytes && reader.ReadGeometry() == kGeometryBytes && reader.frame_count() == kFramesInFile;
+  bool same =
+      reader.ReadJob() == kJobBytes && reader.ReadGeometry() == kGeometryBytes && reader.frame_count() == kFramesInFile;
   for (std::int64_t i = 0; same && i < kFramesInFile; ++i) {
     const JobFileReader::StoredFrame frame = reader.ReadNextFrame();
     same = frame.record == FrameOf(i).record && frame.bytes == FrameOf(i).bytes;
@@ -122,7 +123,8 @@ TEST_F(JobFileTest, EveryTruncationIsRefused) {
 }
 
 TEST_F(JobFileTest, OtherFilesAreRefusedInPlainWords) {
-  WriteFile(path_, "a letter, not a job, and long enough for a header of a hundred bytes, which this one is by now.....");
+  WriteFile(path_,
+            "a letter, not a job, and long enough for a header of a hundred bytes, which this one is by now.....");
   EXPECT_NE(ReadingError(path_).find("not a job that was exported"), std::string::npos);
   WriteSample(folder_ / "second");
   Database(folder_ / "second", Database::Mode::kReadWrite).Execute("PRAGMA user_version = 7");
@@ -134,8 +136,7 @@ TEST_F(JobFileTest, OtherFilesAreRefusedInPlainWords) {
 TEST_F(JobFileTest, MoreThanAJobIsRefused) {
   for (const char* sql :
        {"CREATE VIEW more AS SELECT 1", "CREATE TABLE more (x)", "CREATE INDEX more ON frames (time)",
-        "CREATE TRIGGER more AFTER INSERT ON frames BEGIN SELECT 1; END",
-        "ALTER TABLE frames ADD COLUMN more INTEGER",
+        "CREATE TRIGGER more AFTER INSERT ON frames BEGIN SELECT 1; END", "ALTER TABLE frames ADD COLUMN more INTEGER",
         "DROP TABLE geometry; CREATE VIEW geometry AS SELECT 0 AS chunk, x'00' AS bytes, 0 AS checksum",
         "DROP TABLE geometry; CREATE TABLE geometry (chunk INTEGER PRIMARY KEY, bytes BLOB AS (zeroblob(1000000000)), "
         "checksum INTEGER)"}) {
@@ -143,7 +144,8 @@ TEST_F(JobFileTest, MoreThanAJobIsRefused) {
     std::filesystem::remove(path_);
     WriteSample(path_);
     Change(sql);
-    EXPECT_NE(ReadingError(path_).find("job that was exported"), std::string::npos) << sql << ": " << ReadingError(path_);
+    EXPECT_NE(ReadingError(path_).find("job that was exported"), std::string::npos)
+        << sql << ": " << ReadingError(path_);
   }
 }
 
