@@ -24,6 +24,7 @@
 #include "client/export/csv.h"
 #include "client/export/vtk_series.h"
 #include "client/lib/replace_file.h"
+#include "client/render/display.h"
 #include "server/embedded_server.h"
 
 namespace fascicle::client {
@@ -98,6 +99,7 @@ class NewFolders {
 
 void WriteResults(const Followed& followed, const LargestDisplacement& largest, const fs::path& folder) {
   if (followed.table.size() == 0) return;
+  const std::shared_ptr<Display> display = Display::Open();  // for all pictures
   ReplaceFile(folder / "series.csv", CsvOf(followed.table));
   ReplaceFile(folder / "summary.json", SummaryJson(followed).dump(2) + "\n");
   const std::vector<PlotPanel> panels = PanelsOf(followed.table, {});
