@@ -123,6 +123,7 @@ class Server : public EmbeddedServer {
     settings.job_memory = options.job_memory > 0 ? options.job_memory : MostMemory();
     settings.heartbeat_interval = options.heartbeat_interval;
     settings.progress_interval = options.progress_interval;
+    settings.transfer_idle = options.transfer_idle;
     return settings;
   }
 

@@ -28,6 +28,7 @@ struct ServerOptions {
   std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2);         // of running jobs
   std::chrono::milliseconds heartbeat_interval = std::chrono::seconds(10);         // of frame streams, at most
   std::chrono::milliseconds progress_interval = std::chrono::milliseconds(1'000);  // the same while a job progresses
+  std::chrono::milliseconds transfer_idle = std::chrono::seconds(60);              // of exports and imports, at most
   std::shared_ptr<spdlog::logger> log;  // null: warnings and errors to stderr
 };
 

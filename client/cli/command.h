@@ -84,6 +84,7 @@ void AddRun(CLI::App& app, Context& context);
 void AddSubmit(CLI::App& app, Context& context);
 void AddValidate(CLI::App& app, Context& context);
 void AddImport(CLI::App& app, Context& context);
+void AddImportJob(CLI::App& app, Context& context);
 void AddWatch(CLI::App& app, Context& context);
 void AddList(CLI::App& app, Context& context);
 void AddShow(CLI::App& app, Context& context);

@@ -67,7 +67,19 @@ bool IsFinal(v1::Job::State state) {
   return state == v1::Job::STATE_SUCCEEDED || state == v1::Job::STATE_FAILED || state == v1::Job::STATE_CANCELLED;
 }
 
-Followed Follow(Client& client, const std::string& name, std::int64_t start_index, const FrameHook& on_frame,
+WatchOptions FramesFrom(std::int64_t start_index) {
+  WatchOptions options;
+  options.start_index = start_index;
+  return options;
+}
+
+WatchOptions OnlySeries() {
+  WatchOptions options;
+  options.fields = {"series"};
+  return options;
+}
+
+Followed Follow(Client& client, const std::string& name, const WatchOptions& options, const FrameHook& on_frame,
                 const std::stop_token& stop) {
   ProgressBar bar;
   v1::Job job = AwaitStart(client, name, bar, stop);
@@ -76,8 +88,6 @@ Followed Follow(Client& client, const std::string& name, std::int64_t start_inde
   if (!geometry) return Nothing(std::move(job), false);
   Followed followed{{}, std::move(*geometry), SeriesTable({}), std::nullopt, false};
   followed.table = SeriesTable(followed.geometry);
-  WatchOptions options;
-  options.start_index = start_index;
   WatchEvents events;
   events.frame = [&](const v1::Frame& frame) {
     followed.table.Add(frame);
@@ -99,7 +109,7 @@ Followed Follow(Client& client, const std::string& name, std::int64_t start_inde
   return followed;
 }
 
-Followed ReadStored(Client& client, const std::string& name, std::int64_t start_index,
+Followed ReadStored(Client& client, const std::string& name, WatchOptions options,
                     const std::function<bool(const v1::Geometry&, const v1::Frame&)>& on_frame) {
   v1::Job job = Take(client.GetJob(name));
   if (job.frame_count() == 0) {
@@ -108,8 +118,6 @@ Followed ReadStored(Client& client, const std::string& name, std::int64_t start_
   Followed followed{std::move(job), Take(client.GetGeometry(name)), SeriesTable({}), std::nullopt, false};
   followed.table = SeriesTable(followed.geometry);
   std::stop_source enough;
-  WatchOptions options;
-  options.start_index = start_index;
   options.follow = false;
   WatchEvents events;
   events.frame = [&](const v1::Frame& frame) {

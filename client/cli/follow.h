@@ -24,13 +24,20 @@ struct Followed {
 using FrameHook = std::function<void(const v1::Geometry& geometry, const v1::Frame& frame)>;
 
 // Waits for the job to start and follows it to its end, with a progress bar on stderr. `on_frame` may be empty.
-// CommandError if the connection is lost or the job does not exist.
-Followed Follow(Client& client, const std::string& job, std::int64_t start_index, const FrameHook& on_frame,
+// `options` has the frames and what is received of them, the series at least. CommandError if the connection is lost or
+// the job does not exist.
+Followed Follow(Client& client, const std::string& job, const WatchOptions& options, const FrameHook& on_frame,
                 const std::stop_token& stop);
 
-// Reads the stored frames of a job from `start_index` on, until `on_frame` returns false. No progress bar.
-Followed ReadStored(Client& client, const std::string& job, std::int64_t start_index,
+// Reads stored frames of a job, until `on_frame` returns false. No progress bar.
+Followed ReadStored(Client& client, const std::string& job, WatchOptions options,
                     const std::function<bool(const v1::Geometry& geometry, const v1::Frame& frame)>& on_frame);
+
+// All frames from `start_index` on.
+WatchOptions FramesFrom(std::int64_t start_index);
+
+// All frames, but nothing of them except for series, poses and lines.
+WatchOptions OnlySeries();
 
 bool IsFinal(v1::Job::State state);
 

@@ -85,7 +85,7 @@ int List(const ListOptions& options, const Context& context) {
                 StateName(job.state()).c_str(), 100 * job.progress().fraction(),
                 static_cast<long long>(job.frame_count()), SizeText(job.stored_bytes()).c_str(),
                 TimeText(job.has_create_time(), job.create_time()).c_str(), WallText(job).c_str(),
-                job.scene_name().c_str());
+                (job.scene_name() + (job.has_imported() ? " (imported)" : "")).c_str());
   }
   return kDone;
 }

@@ -114,6 +114,7 @@ int Run(int argc, char** argv) {
   AddSubmit(app, context);
   AddValidate(app, context);
   AddImport(app, context);
+  AddImportJob(app, context);
   AddWatch(app, context);
   AddList(app, context);
   AddShow(app, context);

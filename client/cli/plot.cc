@@ -85,7 +85,7 @@ std::vector<PlotPanel> PanelsOfJobs(const PlotOptions& options, const Context& c
   for (const std::string& name : options.jobs) {
     JobSource source = OpenJob(context, name);
     const Followed job =
-        ReadStored(source.client, source.job, 0, [](const v1::Geometry&, const v1::Frame&) { return true; });
+        ReadStored(source.client, source.job, OnlySeries(), [](const v1::Geometry&, const v1::Frame&) { return true; });
     std::vector<PlotPanel> own = PanelsOf(job.table, options.series);
     SetAbscissa(job.table, options, own);
     if (options.jobs.size() == 1) return own;

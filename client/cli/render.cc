@@ -233,7 +233,7 @@ int Render(const RenderOptions& options, const Context& context) {
   v1::Geometry geometry;
   for (const std::int64_t index : indices) {
     const Followed followed =
-        ReadStored(source.client, name, index, [](const v1::Geometry&, const v1::Frame&) { return false; });
+        ReadStored(source.client, name, FramesFrom(index), [](const v1::Geometry&, const v1::Frame&) { return false; });
     if (!followed.last_frame) throw std::runtime_error("the server did not send frame " + std::to_string(index));
     geometry = followed.geometry;
     frames.push_back(*followed.last_frame);

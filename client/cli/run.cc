@@ -24,6 +24,7 @@
 #include "client/export/csv.h"
 #include "client/export/vtk_series.h"
 #include "client/lib/replace_file.h"
+#include "client/render/display.h"
 #include "server/embedded_server.h"
 
 namespace fascicle::client {
@@ -98,6 +99,7 @@ class NewFolders {
 
 void WriteResults(const Followed& followed, const LargestDisplacement& largest, const fs::path& folder) {
   if (followed.table.size() == 0) return;
+  const std::shared_ptr<Display> display = Display::Open();  // for all pictures
   ReplaceFile(folder / "series.csv", CsvOf(followed.table));
   ReplaceFile(folder / "summary.json", SummaryJson(followed).dump(2) + "\n");
   const std::vector<PlotPanel> panels = PanelsOf(followed.table, {});
@@ -129,7 +131,7 @@ CheckedRun RunChanged(Client& client, const ScenePackage& package, const v1::Sce
   std::cerr << "check: " << what << "\n";
   const v1::Job job = Take(client.Submit({changed, package.assets}, options.threads, stop));
   const std::stop_callback cancel(stop, [&] { (void)client.CancelJob(job.name()); });
-  const Followed followed = Follow(client, job.name(), 0, {}, {});
+  const Followed followed = Follow(client, job.name(), OnlySeries(), {}, {});
   Check(client.DeleteJob(job.name()));
   return {std::move(what), followed.job, ChangesBetween(before, followed.table)};
 }
@@ -184,7 +186,7 @@ int Run(const RunOptions& options, const Context& context) {
     frames->Add(frame);
     largest.Add(geometry, frame);
   };
-  const Followed followed = Follow(client, job.name(), 0, on_frame, {});
+  const Followed followed = Follow(client, job.name(), {}, on_frame, {});
   const std::vector<CheckedRun> checked = options.check
                                               ? CheckConvergence(client, package, followed, options, interrupts.token())
                                               : std::vector<CheckedRun>();

@@ -163,12 +163,13 @@ void ForSnapshots(const SampleOptions& options, const Context& context, const Ca
   const v1::Job job = Take(source.client.GetJob(name));
   if (job.frame_count() == 0) throw CommandError::Invalid(name + " has no frames yet");
   const std::vector<std::int64_t> frames = ChosenFrames(options.frames, job.frame_count());
-  ReadStored(source.client, name, frames.front(), [&](const v1::Geometry& geometry, const v1::Frame& frame) {
-    if (!std::binary_search(frames.begin(), frames.end(), frame.index())) return true;
-    CheckDigest(frame);
-    call(SnapshotOf(geometry, frame));
-    return frame.index() < frames.back();
-  });
+  ReadStored(source.client, name, FramesFrom(frames.front()),
+             [&](const v1::Geometry& geometry, const v1::Frame& frame) {
+               if (!std::binary_search(frames.begin(), frames.end(), frame.index())) return true;
+               CheckDigest(frame);
+               call(SnapshotOf(geometry, frame));
+               return frame.index() < frames.back();
+             });
 }
 
 bool IsWanted(const SampleOptions& options, const std::string& name) {

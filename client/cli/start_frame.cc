@@ -38,7 +38,7 @@ v1::FrameState Fetch(Client& client, const std::string& job, const v1::FrameStar
                                 (count == 0 ? "no frames yet" : std::to_string(count) + " frames, from 0 on"));
   }
   v1::FrameState state;
-  ReadStored(client, job, index, [&](const v1::Geometry& geometry, const v1::Frame& frame) {
+  ReadStored(client, job, FramesFrom(index), [&](const v1::Geometry& geometry, const v1::Frame& frame) {
     CheckDigest(frame);
     *state.mutable_geometry() = geometry;
     *state.mutable_frame() = frame;

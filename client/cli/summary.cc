@@ -142,6 +142,9 @@ Json JobJson(const v1::Job& job) {
   if (job.has_end_time()) json["ended"] = TimeUtil::ToString(job.end_time());
   if (job.has_failure()) json["failure"] = FailureJson(job.failure());
   if (job.warnings_size() > 0) json["warnings"] = WarningsJson(job);
+  if (job.has_imported()) {
+    json["imported"] = {{"job", job.imported().original_name()}, {"time", TimeUtil::ToString(job.imported().time())}};
+  }
   return json;
 }
 

@@ -35,11 +35,12 @@ int Watch(const WatchArguments& options, const Context& context) {
   const Interrupts interrupts([&] { interrupted.request_stop(); });
   Client client = Connect(context);
   FrameHook on_frame;
+  WatchOptions watch = options.digests ? WatchOptions() : OnlySeries();
+  watch.start_index = options.from;
   if (options.digests) {
     on_frame = [&](const v1::Geometry&, const v1::Frame& frame) { PrintDigest(frame, context.json); };
   }
-  const Followed followed =
-      Follow(client, FindJob(client, options.job), options.from, on_frame, interrupted.get_token());
+  const Followed followed = Follow(client, FindJob(client, options.job), watch, on_frame, interrupted.get_token());
   if (context.json) {
     Json summary = SummaryJson(followed);
     if (options.profile) summary["profile"] = ProfileJson(followed.job);

@@ -8,6 +8,7 @@
 
 #include "client/lib/connection.h"
 #include "client/lib/status_error.h"
+#include "client/lib/transfer.h"
 #include "client/lib/upload.h"
 #include "client/lib/watch.h"
 
@@ -157,6 +158,14 @@ std::optional<Error> Client::DeleteJob(const std::string& name) {
   });
   if (done.ok()) return std::nullopt;
   return done.error();
+}
+
+std::optional<Error> Client::ExportJob(const std::string& name, const std::string& path, const std::stop_token& stop) {
+  return DownloadJob(impl_->connection, name, path, stop);
+}
+
+Result<v1::Job> Client::ImportJob(const std::string& path, bool new_name, const std::stop_token& stop) {
+  return UploadJob(impl_->connection, path, new_name, RandomRequestId(), stop);
 }
 
 Result<v1::Geometry> Client::GetGeometry(const std::string& name, std::stop_token stop) {

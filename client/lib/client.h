@@ -60,13 +60,22 @@ struct WatchOptions {
   std::int64_t start_index = 0;
   bool follow = true;
   v1::StreamFramesRequest::Mode mode = v1::StreamFramesRequest::MODE_ALL;
+  std::int64_t end_index = 0;  // one past the last frame; 0: no end
+  std::int64_t stride = 1;
+  // What to receive of each frame: `positions`, `series`, names of fields; all if empty. Poses and lines always come.
+  // Older servers send everything.
+  std::vector<std::string> fields = {};
+  v1::StreamFramesRequest::Encoding encoding = v1::StreamFramesRequest::ENCODING_STORED;
+  bool compress = false;
   // How long to retry after a lost connection; restarts after every frame.
   std::chrono::seconds patience = std::chrono::seconds(30);
 };
 
 // Callbacks of Watch, all on the thread that called Watch. Any may be empty.
 struct WatchEvents {
-  std::function<void(const v1::Frame& frame)> frame;  // complete, with correct checksums
+  // With correct checksums, and arrays of doubles whatever the encoding. Frames that are not as stored have a
+  // `derivation`.
+  std::function<void(const v1::Frame& frame)> frame;
   std::function<void(v1::Job::State state, const v1::Progress& progress)> progress;
   std::function<void(const std::string& message)> reconnecting;
 };
@@ -94,6 +103,10 @@ class Client {
   Result<v1::Job> RestartJob(const std::string& name, bool from_start);
   // Lets the server compare everything that it has of a job with its checksums.
   Result<v1::VerifyJobResponse> VerifyJob(const std::string& name);
+  // Saves a job as one file that ImportJob takes: scene, geometry and frames. The file is complete or absent.
+  std::optional<Error> ExportJob(const std::string& name, const std::string& path, const std::stop_token& stop = {});
+  // Gives the server a job in such a file. It keeps its name if that is free there, unless `new_name` is set.
+  Result<v1::Job> ImportJob(const std::string& path, bool new_name, const std::stop_token& stop = {});
   // Waits until the job has been started; kStopped after a stop request.
   Result<v1::Geometry> GetGeometry(const std::string& name, std::stop_token stop = {});
   Result<std::vector<v1::FrameInfo>> ListFrames(const std::string& name, std::int64_t start_index);

@@ -12,6 +12,7 @@
 #include <grpcpp/client_context.h>
 
 #include "fascicle/v1/simulation_service.grpc.pb.h"
+#include "fascicle/v1/transfer_service.grpc.pb.h"
 
 namespace fascicle::client {
 
@@ -35,6 +36,7 @@ class Connection {
   v1::AssetService::Stub& assets() { return *assets_; }
   v1::FrameService::Stub& frames() { return *frames_; }
   v1::ServerService::Stub& server() { return *server_; }
+  v1::TransferService::Stub& transfers() { return *transfers_; }
 
  private:
   const std::string address_;
@@ -44,6 +46,7 @@ class Connection {
   const std::unique_ptr<v1::AssetService::Stub> assets_;
   const std::unique_ptr<v1::FrameService::Stub> frames_;
   const std::unique_ptr<v1::ServerService::Stub> server_;
+  const std::unique_ptr<v1::TransferService::Stub> transfers_;
 };
 
 // Allows the server to send long lists of problems.

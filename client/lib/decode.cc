@@ -4,10 +4,10 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <span>
 #include <stdexcept>
 
-#include "core/base/frame_digest.h"
+#include "proto/frames/frame_digest.h"
+#include "proto/frames/frame_fits.h"
 
 namespace fascicle::client {
 namespace {
@@ -94,12 +94,6 @@ RigidShape DecodeRigidBody(const v1::RigidBodyGeometry& body) {
   shape.moves = body.moves();
   shape.unbounded = body.unbounded();
   return shape;
-}
-
-FrameBytes::Bytes BytesOf(const std::string& text) { return std::as_bytes(std::span(text)); }
-
-FrameBytes::Bytes BytesOf(const google::protobuf::RepeatedField<double>& values) {
-  return std::as_bytes(std::span(values.data(), static_cast<std::size_t>(values.size())));
 }
 
 }  // namespace
@@ -200,34 +194,13 @@ std::vector<LinePath> DecodeLines(const v1::Frame& frame, const std::vector<Line
 }
 
 void CheckFits(const v1::Frame& frame, const v1::Geometry& geometry) {
-  const auto& rigid = geometry.rigid_bodies();
-  const auto moving = std::count_if(rigid.begin(), rigid.end(), [](const auto& body) { return body.moves(); });
-  if (frame.bodies_size() != geometry.bodies_size() || frame.lines_size() != geometry.lines_size() ||
-      frame.poses().size() != static_cast<std::size_t>(moving) * sizeof(Pose) ||
-      frame.series_size() != geometry.series_size()) {
+  if (!FrameFits(frame, geometry)) {
     throw std::runtime_error("the server sent a frame that doesn't fit its geometry");
   }
 }
 
 void CheckDigest(const v1::Frame& frame) {
-  FrameBytes bytes;
-  bytes.index = frame.index();
-  bytes.time = frame.time();
-  bytes.step = frame.step();
-  for (const v1::BodyFrame& body : frame.bodies()) {
-    FrameBytes::Body& of_body = bytes.bodies.emplace_back();
-    of_body.positions = BytesOf(body.positions());
-    of_body.higher_order_positions = BytesOf(body.higher_order_positions());
-    for (const v1::FieldValues& field : body.fields()) {
-      of_body.fields.push_back({field.name(), BytesOf(field.values()), BytesOf(field.all_values())});
-    }
-  }
-  bytes.series = BytesOf(frame.series());
-  bytes.poses = BytesOf(frame.poses());
-  for (const v1::LineFrame& line : frame.lines())
-    bytes.lines.push_back({BytesOf(line.points()), BytesOf(line.values())});
-  const Digest digest = DigestOf(bytes);
-  if (frame.digest() != std::string(digest.begin(), digest.end())) {
+  if (frame.digest() != DigestOfNumbers(frame)) {
     throw std::runtime_error("frame " + std::to_string(frame.index()) +
                              " is damaged: its digest is not that of its numbers");
   }

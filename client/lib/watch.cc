@@ -3,12 +3,14 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "client/lib/backoff.h"
 #include "client/lib/message_assembler.h"
 #include "client/lib/message_stream.h"
 #include "client/lib/status_error.h"
+#include "proto/frames/derived_frame.h"
 
 namespace fascicle::client {
 namespace {
@@ -61,6 +63,11 @@ class Watcher {
     request_.set_start_index(options.start_index);
     request_.set_mode(options.mode);
     request_.set_follow(options.follow);
+    request_.set_end_index(options.end_index);
+    request_.set_stride(options.stride);
+    for (const std::string& field : options.fields) request_.add_fields(field);
+    request_.set_encoding(options.encoding);
+    if (options.compress) request_.set_compression(v1::DerivedFrame::COMPRESSION_ZSTD);
   }
 
   Result<v1::Job> Run() {
@@ -117,6 +124,7 @@ class Watcher {
     switch (message.part_case()) {
       case Response::kHeader:
         request_.set_generation(message.header().generation());
+        derived_ = message.header().derived();
         return grpc::Status::OK;
       case Response::kChunk:
         return TakeChunk(*message.mutable_chunk());
@@ -146,13 +154,26 @@ class Watcher {
       case MessageAssembler::State::kComplete:
         break;
     }
-    if (!frame_.ParseFromString(assembler_.Take()) || frame_.index() != index || frame_.digest().size() != 32) {
+    if (!ReadFrame(assembler_.Take()) || frame_.index() != index) {
       return Damaged("frame " + std::to_string(index) + " cannot be read");
     }
     if (events_.frame) events_.frame(frame_);
-    request_.set_start_index(index + 1);
+    request_.set_start_index(index + options_.stride);
     patience_.Succeeded();
     return grpc::Status::OK;
+  }
+
+  bool ReadFrame(const std::string& bytes) {
+    if (!derived_) return frame_.ParseFromString(bytes) && frame_.digest().size() == 32;
+    v1::DerivedFrame derived;
+    if (!derived.ParseFromString(bytes)) return false;
+    try {
+      frame_ = ReadDerivedFrame(derived);
+    } catch (const std::runtime_error&) {
+      return false;
+    }
+    const std::string& digest = frame_.has_derivation() ? frame_.derivation().stored_digest() : frame_.digest();
+    return digest.size() == 32;
   }
 
   Connection& connection_;
@@ -161,6 +182,7 @@ class Watcher {
   const std::stop_token stop_;
   Patience patience_;
   v1::StreamFramesRequest request_;  // start_index is the next frame to read
+  bool derived_ = false;             // whether chunks are those of a v1::DerivedFrame
   MessageAssembler assembler_;
   v1::Frame frame_;
   std::optional<v1::Job> job_;

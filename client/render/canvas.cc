@@ -55,9 +55,11 @@ vtkSmartPointer<vtkImageData> Canvas::Grab() {
   return average->GetOutput();
 }
 
-void Canvas::Save(const std::filesystem::path& path) {
+void Canvas::Save(const std::filesystem::path& path) { SavePng(*Grab(), path); }
+
+void Canvas::SavePng(vtkImageData& picture, const std::filesystem::path& path) {
   vtkNew<vtkPNGWriter> writer;
-  writer->SetInputData(Grab());
+  writer->SetInputData(&picture);
   writer->WriteToMemoryOn();
   writer->SetCompressionLevel(2);  // much faster than the default, with hardly larger files
   writer->Write();

@@ -35,6 +35,8 @@ class Canvas {
 
   // Draws and writes the file atomically. Throws std::runtime_error with a message for users.
   void Save(const std::filesystem::path& path);
+  // Writes a picture as Grab returns it, likewise.
+  static void SavePng(vtkImageData& picture, const std::filesystem::path& path);
   // Draws and returns the picture: red, green and blue of each pixel, lowest row first.
   vtkSmartPointer<vtkImageData> Grab();
   // Removes everything, for the next picture.
@@ -42,7 +44,7 @@ class Canvas {
 
  private:
   PictureSize size_;
-  std::unique_ptr<Display> display_;  // outlives the window
+  std::shared_ptr<Display> display_;  // outlives the window
   vtkNew<vtkRenderWindow> window_;
 };
 

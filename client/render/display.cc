@@ -108,8 +108,10 @@ class OpenDisplay final : public Display {
 
 }  // namespace
 
-std::unique_ptr<Display> Display::Open() {
-  auto display = std::make_unique<OpenDisplay>();
+std::shared_ptr<Display> Display::Open() {
+  static std::weak_ptr<Display> open;
+  if (std::shared_ptr<Display> display = open.lock()) return display;
+  auto display = std::make_shared<OpenDisplay>();
   const char* wanted = std::getenv("DISPLAY");
   if (wanted != nullptr && *wanted != '\0') display->connection = XOpenDisplay(wanted);
   if (display->connection == nullptr) {
@@ -117,6 +119,7 @@ std::unique_ptr<Display> Display::Open() {
     display->connection = XOpenDisplay(display->xvfb->name().c_str());
   }
   if (display->connection == nullptr) throw std::runtime_error("the virtual display (Xvfb) does not answer");
+  open = display;
   return display;
 }
 

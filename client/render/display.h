@@ -6,11 +6,12 @@
 namespace fascicle::client {
 
 // A connection to an X display for off-screen drawing: the one given by $DISPLAY if it responds, otherwise a virtual
-// one (Xvfb) that this process starts. Xvfb does not listen on any network and ends with this process.
+// one (Xvfb) that this process starts. Xvfb does not listen on any network and ends with the display, or this process.
 class Display {
  public:
-  // Throws std::runtime_error with a message for users, such as that Xvfb is missing.
-  static std::unique_ptr<Display> Open();
+  // The one that is open, if any: keep it for several pictures. Throws std::runtime_error with a message for users, such
+  // as that Xvfb is missing. From one thread.
+  static std::shared_ptr<Display> Open();
   virtual ~Display() = default;
   // Xlib's `Display*`.
   virtual void* native() const = 0;

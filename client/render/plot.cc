@@ -6,6 +6,7 @@
 #include <vtkContextActor.h>
 #include <vtkContextScene.h>
 #include <vtkDoubleArray.h>
+#include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPen.h>
 #include <vtkPlot.h>
@@ -18,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 #include "client/render/ticks.h"
@@ -145,11 +147,29 @@ vtkSmartPointer<vtkChartXY> MakeChart(const PlotPanel& panel) {
   return chart;
 }
 
+vtkSmartPointer<vtkImageData> WhitePicture(PictureSize size) {
+  auto picture = vtkSmartPointer<vtkImageData>::New();
+  picture->SetDimensions(size.width, size.height, 1);
+  picture->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  std::memset(picture->GetScalarPointer(), 255,
+              static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height) * 3);
+  return picture;
+}
+
+// Copies a picture of the same width into the rows from `bottom` on.
+void Paste(vtkImageData& band, int bottom, vtkImageData& picture) {
+  const std::size_t row = static_cast<std::size_t>(picture.GetDimensions()[0]) * 3;
+  std::memcpy(picture.GetScalarPointer(0, bottom, 0), band.GetScalarPointer(),
+              row * static_cast<std::size_t>(band.GetDimensions()[1]));
+}
+
 }  // namespace
 
 void DrawPlot(const std::vector<PlotPanel>& panels, PictureSize size, const std::filesystem::path& path) {
   if (panels.empty()) throw std::runtime_error("there is nothing to plot");
-  Canvas canvas(size);
+  // One panel after another: a canvas of the whole height would need much memory, and time to get it.
+  const PictureSize band = {size.width, size.height / static_cast<int>(panels.size())};
+  Canvas canvas(band);
   vtkNew<vtkRenderer> renderer;
   renderer->SetBackground(1, 1, 1);
   canvas.window().AddRenderer(renderer);
@@ -157,23 +177,32 @@ void DrawPlot(const std::vector<PlotPanel>& panels, PictureSize size, const std:
   renderer->AddActor(actor);
   vtkContextScene& scene = *actor->GetScene();
   scene.SetRenderer(renderer);
+  const auto show = [&scene](vtkChartXY& chart) {
+    scene.ClearItems();
+    scene.AddItem(&chart);
+  };
   const float margin = 8 * Canvas::kSampling;
-  const float height = static_cast<float>(canvas.height()) / static_cast<float>(panels.size());
   std::vector<vtkSmartPointer<vtkChartXY>> charts;
-  for (std::size_t i = 0; i < panels.size(); ++i) {
-    const auto chart = MakeChart(panels[i]);
-    const float bottom = height * static_cast<float>(panels.size() - 1 - i);
-    chart->SetSize(
-        vtkRectf(margin, bottom + margin, static_cast<float>(canvas.width()) - 2 * margin, height - 2 * margin));
-    scene.AddItem(chart);
-    charts.push_back(chart);
-  }
   // The first drawing finds the shift that preserves precision where values differ little; the second one applies it to
   // the lines.
-  canvas.window().Render();
+  for (const PlotPanel& panel : panels) {
+    const auto chart = MakeChart(panel);
+    chart->SetSize(vtkRectf(margin, margin, static_cast<float>(canvas.width()) - 2 * margin,
+                            static_cast<float>(canvas.height()) - 2 * margin));
+    show(*chart);
+    canvas.window().Render();
+    charts.push_back(chart);
+  }
   Align(charts);
-  for (const auto& chart : charts) chart->RecalculateBounds();
-  canvas.Save(path);
+  const vtkSmartPointer<vtkImageData> picture = WhitePicture(size);
+  int bottom = size.height;
+  for (const auto& chart : charts) {
+    show(*chart);
+    chart->RecalculateBounds();
+    bottom -= band.height;
+    Paste(*canvas.Grab(), bottom, *picture);
+  }
+  Canvas::SavePng(*picture, path);
 }
 
 }  // namespace fascicle::client

@@ -7,7 +7,18 @@ namespace {
 
 constexpr std::string_view kAlphabet = "0123456789abcdefghjkmnpqrstvwxyz";
 
+constexpr std::size_t kIdLength = 26, kTimeLength = 10;
+
 }  // namespace
+
+bool IsPastJobId(std::string_view id, std::int64_t unix_time_ms) {
+  if (id.size() != kIdLength || id.find_first_not_of(kAlphabet) != std::string_view::npos) return false;
+  std::int64_t time = 0;
+  for (const char digit : id.substr(0, kTimeLength)) {
+    time = time << 5 | static_cast<std::int64_t>(kAlphabet.find(digit));
+  }
+  return time <= unix_time_ms;
+}
 
 JobIdGenerator::JobIdGenerator(std::string_view newest) {
   if (newest.size() != kDigits || newest.find_first_not_of(kAlphabet) != std::string_view::npos) return;

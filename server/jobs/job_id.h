@@ -10,6 +10,9 @@
 
 namespace fascicle::server {
 
+// Whether `id` is of the form that JobIdGenerator gives, and made at or before this time.
+bool IsPastJobId(std::string_view id, std::int64_t unix_time_ms);
+
 // Generates identifiers that sort by creation time: 26 digits of Crockford's base 32 (0-9a-z without i, l, o, u), 10
 // for the milliseconds since the Unix epoch and 16 random ones, like a lower-case ULID. Each id is greater than the one
 // before, within a millisecond and after the clock was set back, too. Thread-safe.

@@ -210,6 +210,27 @@ JobView JobManager::Submit(JobRecord record, bool* repeated, std::shared_ptr<con
   return impl_->View(impl_->FindActive(record.id), std::move(record));
 }
 
+JobManager::Staged JobManager::Stage(const std::string& wanted) {
+  const std::int64_t now_ms = UnixTimeUs() / 1000;
+  // A later id would come before all that this server will make.
+  std::string id = IsPastJobId(wanted, now_ms) ? wanted : impl_->ids.Next(now_ms);
+  std::shared_ptr<FrameStore> frames = impl_->store.StageFrames(id);
+  while (frames == nullptr) {
+    id = impl_->ids.Next(now_ms);
+    frames = impl_->store.StageFrames(id);
+  }
+  return {std::move(id), std::move(frames)};
+}
+
+JobView JobManager::AddFinished(const JobRecord& record, bool* repeated) {
+  JobRecord existing;
+  *repeated = !impl_->store.CreateJob(record, &existing);
+  if (*repeated) return impl_->View(impl_->FindActive(existing.id), std::move(existing));
+  impl_->options.on_event(record, "imported");
+  impl_->notifier.Notify(record.id);
+  return impl_->View(nullptr, record);
+}
+
 std::optional<JobView> JobManager::Get(std::string_view id) {
   const std::shared_ptr<ActiveJob> job = impl_->FindActive(id);
   std::optional<JobRecord> record = impl_->store.GetJob(id);

@@ -42,7 +42,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::StreamFrames(grpc:
                                                                            const grpc::ByteBuffer* request) {
   auto parsed = Parse<v1::StreamFramesRequest>(*request);
   if (!parsed) return new EndedStream(NotAMessage());
-  return OutStream::Launch(std::make_shared<FrameStream>(context_, std::move(*parsed)));
+  return OutStream::Launch(std::make_shared<FrameStream>(context_, deriver_, std::move(*parsed)));
 }
 
 grpc::ServerUnaryReactor* FrameServiceImpl::ListFrames(grpc::CallbackServerContext* call,

@@ -4,6 +4,7 @@
 #include <grpcpp/support/byte_buffer.h>
 
 #include "fascicle/v1/simulation_service.grpc.pb.h"
+#include "server/rpc/frame_deriver.h"
 #include "server/rpc/rpc_context.h"
 
 namespace fascicle::server {
@@ -15,7 +16,7 @@ using FrameServiceBase =
 // The results of jobs. The streams are raw, so that frames are sent from the store without a copy.
 class FrameServiceImpl : public FrameServiceBase {
  public:
-  explicit FrameServiceImpl(RpcContext& context) : context_(context) {}
+  explicit FrameServiceImpl(RpcContext& context) : context_(context), deriver_(context.log, kMostKept) {}
 
   grpc::ServerWriteReactor<grpc::ByteBuffer>* GetGeometry(grpc::CallbackServerContext* call,
                                                           const grpc::ByteBuffer* request) override;
@@ -27,7 +28,10 @@ class FrameServiceImpl : public FrameServiceBase {
  private:
   grpc::Status List(const v1::ListFramesRequest& request, v1::ListFramesResponse& response);
 
+  static constexpr std::size_t kMostKept = std::size_t{64} << 20;  // derived frames [byte]
+
   RpcContext& context_;
+  FrameDeriver deriver_;
 };
 
 }  // namespace fascicle::server

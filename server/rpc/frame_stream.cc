@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/rpc/chunk_message.h"
+#include "proto/rules/enum_names.h"
 #include "server/rpc/job_messages.h"
 #include "server/rpc/names.h"
 
@@ -16,12 +16,43 @@ using Response = v1::StreamFramesResponse;
 // accepts them, they would reach the viewer long after they were new.
 constexpr std::chrono::milliseconds kLatestInterval(33);
 
+// Largest stored frame that is derived from [byte]. Meanwhile it needs about four times its size.
+constexpr std::int64_t kMostToDerive = std::int64_t{128} << 20;
+static_assert(kMostToDerive <= kLargestDerived);
+
+// The names that a request may select from the frames of a job.
+std::vector<std::string> PartsOf(const v1::Scene& scene) {
+  std::vector<std::string> parts = {kPositionsPart, kSeriesPart};
+  for (const int field : scene.output().fields()) {
+    if (const auto* value = v1::Field_descriptor()->FindValueByNumber(field)) parts.push_back(NameOf(*value));
+  }
+  return parts;
+}
+
+// `spec`: that of the job.
+void CheckFields(const v1::StreamFramesRequest& request, const std::string& spec, Problems& problems) {
+  v1::Job job;
+  if (!job.ParseFromString(spec)) throw DamageError("the scene of " + request.name() + " can't be read");
+  const std::vector<std::string> parts = PartsOf(job.scene());
+  std::string known;
+  for (const std::string& part : parts) known += (known.empty() ? "" : ", ") + part;
+  for (int i = 0; i < request.fields_size(); ++i) {
+    if (std::find(parts.begin(), parts.end(), request.fields(i)) != parts.end()) continue;
+    problems.Add(IndexPath("fields", static_cast<std::size_t>(i)),
+                 request.fields(i).substr(0, 64) + " is not in the frames of this job", "they have: " + known);
+  }
+}
+
 void CheckRequest(const v1::StreamFramesRequest& request, Problems& problems) {
+  constexpr int kMostFields = 100;
   if (!ParseJobName(request.name())) problems.Add("name", "must be jobs/{id}");
   if (request.start_index() < 0) problems.Add("start_index", "must not be negative");
   if (request.end_index() < 0) problems.Add("end_index", "must not be negative");
   if (request.stride() < 0 || request.stride() > 1'000'000) problems.Add("stride", "must be in [0, 1000000]");
   if (!v1::StreamFramesRequest::Mode_IsValid(request.mode())) problems.Add("mode", "is not known");
+  if (request.fields_size() > kMostFields) problems.Add("fields", "must be at most 100");
+  if (!v1::StreamFramesRequest::Encoding_IsValid(request.encoding())) problems.Add("encoding", "is not known");
+  if (!v1::DerivedFrame::Compression_IsValid(request.compression())) problems.Add("compression", "is not known");
 }
 
 }  // namespace
@@ -41,6 +72,9 @@ void FrameStream::Fill() {
 bool FrameStream::Open() {
   Problems problems;
   CheckRequest(request_, problems);
+  if (const auto id = ParseJobName(request_.name()); id && request_.fields_size() > 0) {
+    if (const std::optional<JobView> view = context_.jobs.Get(*id)) CheckFields(request_, view->record.spec, problems);
+  }
   if (!problems.empty()) {
     Complete(InvalidArgument(problems));
     return false;
@@ -71,6 +105,7 @@ bool FrameStream::Open() {
   message.mutable_header()->set_generation(generation_);
   message.mutable_header()->set_next_index(next_index_);
   message.mutable_header()->set_frame_count(known_count_);
+  message.mutable_header()->set_derived(derives_);
   Push(Serialize(message));
   last_message_ = Clock::now();
   return true;
@@ -138,24 +173,63 @@ void FrameStream::BeginFrame(std::int64_t index) {
   last_frame_ = Clock::now();
 }
 
-void FrameStream::PushChunk() {
-  std::optional<std::string> bytes = frames_->ReadChunk(current_->index, offset_ / FrameStore::kChunkSize);
+ChunkSource FrameStream::StoredChunk(std::int64_t offset) {
+  std::optional<std::string> bytes = frames_->ReadChunk(current_->index, offset / FrameStore::kChunkSize);
   if (!bytes)
     throw DamageError("frame " + std::to_string(current_->index) + " of " + request_.name() + " is incomplete");
   ChunkSource source;
+  source.size = bytes->size();
+  source.last = offset + static_cast<std::int64_t>(source.size) >= current_->size;
+  source.bytes = std::make_shared<const std::string>(std::move(*bytes));
+  return source;
+}
+
+std::string FrameStream::Derive() {
+  std::string bytes;
+  while (static_cast<std::int64_t>(bytes.size()) < current_->size) {
+    bytes += *StoredChunk(static_cast<std::int64_t>(bytes.size())).bytes;
+  }
+  return DeriveFrame(std::move(bytes), request_).SerializeAsString();
+}
+
+ChunkSource FrameStream::DerivedChunk(std::int64_t offset) {
+  v1::StreamFramesRequest form;
+  *form.mutable_fields() = request_.fields();
+  form.set_encoding(request_.encoding());
+  form.set_compression(request_.compression());
+  const std::string key =
+      job_id_ + ' ' + std::to_string(current_->index) + ' ' + current_->digest + form.SerializeAsString();
+  const FrameDeriver::Bytes whole = deriver_.Get(key, [this] { return Derive(); });
+  // A copy: what waits for a slow reader must not keep the whole frame.
+  ChunkSource source;
+  source.bytes = std::make_shared<const std::string>(
+      whole->substr(static_cast<std::size_t>(offset), static_cast<std::size_t>(FrameStore::kChunkSize)));
+  source.size = source.bytes->size();
+  source.last = static_cast<std::size_t>(offset) + source.size >= whole->size();
+  return source;
+}
+
+bool FrameStream::IsUnchanged() {
+  const std::vector<FrameRecord> now = frames_->ListFrames(current_->index, 1);
+  return !now.empty() && now.front().digest == current_->digest;
+}
+
+void FrameStream::PushChunk() {
+  if (derives_ && current_->size > kMostToDerive) {
+    Complete(ResourceExhausted("FRAME_TOO_LARGE", request_.name(),
+                               "frame " + std::to_string(current_->index) + " has " + std::to_string(current_->size) +
+                                   " bytes; selected, rounded or compressed are frames of at most " +
+                                   std::to_string(kMostToDerive) + ": read it as it is stored"));
+    return;
+  }
+  ChunkSource source = derives_ ? DerivedChunk(offset_) : StoredChunk(offset_);
   source.frame_index = current_->index;
   source.offset = offset_;
-  source.size = bytes->size();
-  offset_ += static_cast<std::int64_t>(bytes->size());
-  source.last = offset_ >= current_->size;
-  source.bytes = std::make_shared<const std::string>(std::move(*bytes));
-  if (source.last && offset_ > FrameStore::kChunkSize) {
-    // The frame may have been replaced between two of its chunks.
-    const std::vector<FrameRecord> now = frames_->ListFrames(current_->index, 1);
-    if (now.empty() || now.front().digest != current_->digest) {
-      Complete(Aborted("GENERATION_CHANGED", "the frames of " + request_.name() + " were rewritten: start again"));
-      return;
-    }
+  offset_ += static_cast<std::int64_t>(source.size);
+  // The frame may have been replaced between two of its chunks.
+  if (source.last && (derives_ || offset_ > FrameStore::kChunkSize) && !IsUnchanged()) {
+    Complete(Aborted("GENERATION_CHANGED", "the frames of " + request_.name() + " were rewritten: start again"));
+    return;
   }
   if (source.last) {
     next_index_ = current_->index + stride_;

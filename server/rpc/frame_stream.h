@@ -9,6 +9,9 @@
 #include <vector>
 
 #include "fascicle/v1/simulation_service.pb.h"
+#include "proto/frames/derived_frame.h"
+#include "server/rpc/chunk_message.h"
+#include "server/rpc/frame_deriver.h"
 #include "server/rpc/out_stream.h"
 
 namespace fascicle::server {
@@ -17,11 +20,15 @@ namespace fascicle::server {
 // reconnect and a finished job: it reads from the requested index on and then waits for more.
 class FrameStream : public OutStream {
  public:
-  FrameStream(RpcContext& context, v1::StreamFramesRequest request)
-      : OutStream(context, "StreamFrames"), request_(std::move(request)) {}
+  FrameStream(RpcContext& context, FrameDeriver& deriver, v1::StreamFramesRequest request)
+      : OutStream(context, "StreamFrames"),
+        deriver_(deriver),
+        request_(std::move(request)),
+        derives_(AsksForDerived(request_)) {}
 
  protected:
   void Fill() override;
+  Executor& executor() override { return derives_ ? deriver_.executor() : OutStream::executor(); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -36,11 +43,20 @@ class FrameStream : public OutStream {
   std::int64_t NewestIndex() const;
   void BeginFrame(std::int64_t index);
   void PushChunk();
+  // The chunk of the current frame that begins at `offset` [byte], as stored or derived.
+  ChunkSource StoredChunk(std::int64_t offset);
+  ChunkSource DerivedChunk(std::int64_t offset);
+  // The derived form of the current frame.
+  std::string Derive();
+  // Whether the current frame is still the stored one.
+  bool IsUnchanged();
   // Sends a heartbeat if the progress has changed, or if nothing was sent for long.
   void Beat();
   void PushEnd();
 
+  FrameDeriver& deriver_;
   const v1::StreamFramesRequest request_;
+  const bool derives_;
   bool open_ = false;
   std::string job_id_;
   std::shared_ptr<FrameStore> frames_;

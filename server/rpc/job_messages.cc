@@ -61,7 +61,10 @@ v1::Job ToMessage(const JobView& view) {
   if (record.state == JobState::kFailed) job.mutable_failure()->ParseFromString(record.failure);
   if (!record.profile.empty()) job.mutable_profile()->ParseFromString(record.profile);
   v1::Warnings warnings;
-  if (warnings.ParseFromString(record.warnings)) job.mutable_warnings()->Swap(warnings.mutable_warnings());
+  if (warnings.ParseFromString(record.warnings)) {
+    job.mutable_warnings()->Swap(warnings.mutable_warnings());
+    if (warnings.has_imported()) job.mutable_imported()->Swap(warnings.mutable_imported());
+  }
   *job.mutable_progress() = ProgressOf(view);
   job.set_queue_position(view.queue_position);
   job.set_attempt(static_cast<int>(record.attempt));

@@ -192,6 +192,12 @@ grpc::ServerUnaryReactor* JobServiceImpl::RestartJob(grpc::CallbackServerContext
   return RunUnary(context_, context_.quick, call, "RestartJob", [this, request, response] {
     const std::optional<std::string> id = ParseJobName(request->name());
     if (!id) return BadJobName();
+    // Of a job that was imported, perhaps.
+    v1::Job spec;
+    if (const auto view = context_.jobs.Get(*id)) spec.ParseFromString(view->record.spec);
+    if (const std::vector<std::string> missing = MissingAssets(spec.scene()); !missing.empty()) {
+      return FailedPrecondition("MISSING_ASSET", missing, "files of the scene are not on this server: submit it again");
+    }
     switch (context_.jobs.Restart(*id, request->from_start())) {
       case JobManager::RestartResult::kNotFound:
         return NotFound("job", request->name());

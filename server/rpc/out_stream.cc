@@ -29,7 +29,7 @@ void OutStream::Wake() {
     }
     filling_ = true;
   }
-  context_.quick.Post([stream = shared_from_this()] { stream->RunFill(); });
+  executor().Post([stream = shared_from_this()] { stream->RunFill(); });
 }
 
 void OutStream::RunFill() {

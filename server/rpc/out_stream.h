@@ -38,6 +38,8 @@ class OutStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std:
   // Creates messages while HasRoom(), until Complete or until there is nothing to send at present. Runs on an executor,
   // never concurrently with itself; called again after Wake, after each write, and by `subscription`.
   virtual void Fill() = 0;
+  // Where Fill runs.
+  virtual Executor& executor() { return context_.quick; }
 
   // The functions below are called from Fill only.
   bool HasRoom() const;

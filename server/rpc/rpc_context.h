@@ -28,6 +28,7 @@ struct RpcSettings {
   std::int64_t job_memory = std::numeric_limits<std::int64_t>::max();              // most memory of a job [byte]
   std::chrono::milliseconds heartbeat_interval = std::chrono::seconds(10);         // at most
   std::chrono::milliseconds progress_interval = std::chrono::milliseconds(1'000);  // while a job progresses
+  std::chrono::milliseconds transfer_idle = std::chrono::seconds(60);  // exports and imports end that pause for longer
 };
 
 // Objects shared by all services. Outlives all calls.

@@ -14,6 +14,7 @@
 #include "server/rpc/frame_service.h"
 #include "server/rpc/job_service.h"
 #include "server/rpc/server_service.h"
+#include "server/rpc/transfer_service.h"
 
 namespace fascicle::server {
 namespace {
@@ -82,6 +83,7 @@ struct RpcServer::Impl {
   AssetServiceImpl asset_service{context};
   FrameServiceImpl frame_service{context};
   ServerServiceImpl server_service{context};
+  TransferServiceImpl transfer_service{context};
   // Destroyed in reverse order: every call ends, then the last tasks of the executors, then the objects they use.
   Executor quick;
   Executor slow;
@@ -104,6 +106,7 @@ RpcServer::RpcServer(const std::string& listen, Store& store, JobManager& jobs, 
   builder.RegisterService(&impl_->asset_service);
   builder.RegisterService(&impl_->frame_service);
   builder.RegisterService(&impl_->server_service);
+  builder.RegisterService(&impl_->transfer_service);
   impl_->server = builder.BuildAndStart();
   if (!impl_->server || impl_->port == 0) {
     throw std::runtime_error("cannot listen on " + listen +
@@ -111,7 +114,8 @@ RpcServer::RpcServer(const std::string& listen, Store& store, JobManager& jobs, 
   }
   grpc::HealthCheckServiceInterface* health = impl_->server->GetHealthCheckService();
   for (const char* service : {v1::JobService::service_full_name(), v1::AssetService::service_full_name(),
-                              v1::FrameService::service_full_name(), v1::ServerService::service_full_name()}) {
+                              v1::FrameService::service_full_name(), v1::ServerService::service_full_name(),
+                              v1::TransferService::service_full_name()}) {
     health->SetServingStatus(service, true);
   }
   impl_->quick.Post([impl = impl_.get()] { impl->WatchStore(); });

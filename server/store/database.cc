@@ -41,6 +41,32 @@ void Check(int code, sqlite3_stmt* statement) {
   if (code != SQLITE_OK) Throw(sqlite3_db_handle(statement), "bind");
 }
 
+// Lets nothing in a file run, and bounds what reading it may cost.
+void Restrict(sqlite3* handle) {
+  struct Setting {
+    int name;
+    int value;
+  };
+  for (const Setting& setting :
+       {Setting{SQLITE_DBCONFIG_DEFENSIVE, 1}, Setting{SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0},
+        Setting{SQLITE_DBCONFIG_ENABLE_TRIGGER, 0}, Setting{SQLITE_DBCONFIG_ENABLE_VIEW, 0},
+        Setting{SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, 0}, Setting{SQLITE_DBCONFIG_WRITABLE_SCHEMA, 0}}) {
+    Check(sqlite3_db_config(handle, setting.name, setting.value, nullptr), handle, "restrict");
+  }
+  for (const Setting& limit :
+       {Setting{SQLITE_LIMIT_LENGTH, 2 << 20}, Setting{SQLITE_LIMIT_SQL_LENGTH, 4096}, Setting{SQLITE_LIMIT_COLUMN, 32},
+        Setting{SQLITE_LIMIT_EXPR_DEPTH, 32}, Setting{SQLITE_LIMIT_ATTACHED, 0}, Setting{SQLITE_LIMIT_TRIGGER_DEPTH, 0},
+        Setting{SQLITE_LIMIT_VDBE_OP, 10'000}}) {
+    sqlite3_limit(handle, limit.name, limit.value);
+  }
+  // A look-up by key takes some dozens of operations, an entry of the schema about ten.
+  constexpr int kMostOperations = 2000;
+  sqlite3_progress_handler(
+      handle, kMostOperations, [](void*) { return 1; }, nullptr);
+  Check(sqlite3_exec(handle, "PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0", nullptr, nullptr, nullptr), handle,
+        "restrict");
+}
+
 }  // namespace
 
 Rows::~Rows() {
@@ -87,7 +113,7 @@ void Statement::Bind(int index, Blob blob) {
 void Statement::Bind(int index, std::nullptr_t) { Check(sqlite3_bind_null(statement_, index), statement_); }
 
 Database::Database(const std::string& path, Mode mode) : path_(path) {
-  int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX;
+  int flags = SQLITE_OPEN_NOMUTEX | (mode == Mode::kUntrusted ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE);
   if (mode == Mode::kCreate) flags |= SQLITE_OPEN_CREATE;
   const int code = sqlite3_open_v2(path.c_str(), &handle_, flags, nullptr);
   if (code != SQLITE_OK) {
@@ -97,6 +123,7 @@ Database::Database(const std::string& path, Mode mode) : path_(path) {
   sqlite3_extended_result_codes(handle_, 1);
   sqlite3_busy_timeout(handle_, kBusyTimeoutMs);
   try {
+    if (mode == Mode::kUntrusted) Restrict(handle_);
     AddRowChecksum(handle_);
     Execute("PRAGMA foreign_keys = ON");
     if (mode == Mode::kReadOnly) Execute("PRAGMA query_only = ON");

@@ -74,9 +74,11 @@ class Statement {
 
 class Database {
  public:
-  enum class Mode { kCreate, kReadWrite, kReadOnly };
+  enum class Mode { kCreate, kReadWrite, kReadOnly, kUntrusted };
 
-  // kReadOnly still opens the file for writing, as a WAL requires, but refuses all changes.
+  // kReadOnly still opens the file for writing, as a WAL requires, but refuses all changes. kUntrusted is for files
+  // from anyone: they are not written; views, triggers, functions and extensions named in them do not run; schemas of
+  // more than some hundred entries and rows of more than 2 MiB are errors, and so are statements of many operations.
   Database(const std::string& path, Mode mode);
   Database(Database&& other) noexcept;
   Database& operator=(Database&&) = delete;

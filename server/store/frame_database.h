@@ -33,8 +33,8 @@ class FrameDatabase final : public FrameStore {
   std::int64_t stored_bytes() override { return stored_bytes_; }
   std::optional<std::string> ReadChunk(std::int64_t index, std::int64_t chunk) override;
 
-  // Removes the file with this object: its job has been deleted.
-  void RemoveWhenClosed() { remove_ = true; }
+  // Whether the file is removed with this object: its job has been deleted, or is not there yet.
+  void RemoveWhenClosed(bool remove = true) { remove_ = remove; }
 
   // Removes the file of a job and SQLite's files beside it.
   static void Remove(const std::string& path);

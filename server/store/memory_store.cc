@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -130,7 +132,12 @@ class MemoryStore final : public Store {
         return false;
       }
     }
-    jobs_[job.id].record = job;
+    StoredJob& stored = jobs_[job.id];
+    stored.record = job;
+    if (const auto staged = staged_.find(job.id); staged != staged_.end()) {
+      if (auto frames = staged->second.lock()) stored.frames = std::move(frames);
+      staged_.erase(staged);
+    }
     return true;
   }
 
@@ -187,6 +194,21 @@ class MemoryStore final : public Store {
     return found == jobs_.end() ? nullptr : found->second.frames;
   }
 
+  std::shared_ptr<FrameStore> StageFrames(std::string_view job_id) override {
+    const std::unique_lock lock(mutex_);
+    std::erase_if(staged_, [](const auto& entry) { return entry.second.expired(); });
+    if (jobs_.contains(job_id) || staged_.contains(job_id)) return nullptr;
+    auto frames = std::make_shared<MemoryFrameStore>();
+    staged_.emplace(job_id, frames);
+    return frames;
+  }
+
+  std::string NewTransferPath() override {
+    const std::unique_lock lock(mutex_);
+    if (!transfers_) transfers_.emplace();
+    return transfers_->path + "/" + std::to_string(next_transfer_++);
+  }
+
   bool HasAsset(std::string_view sha256_hex) override {
     const std::shared_lock lock(mutex_);
     return assets_.contains(sha256_hex);
@@ -207,6 +229,18 @@ class MemoryStore final : public Store {
   struct StoredJob {
     JobRecord record;
     std::shared_ptr<MemoryFrameStore> frames = std::make_shared<MemoryFrameStore>();
+  };
+
+  // A temporary folder of its own.
+  struct Transfers {
+    Transfers() : path((std::filesystem::temp_directory_path() / "fascicle-XXXXXX").string()) {
+      if (mkdtemp(path.data()) == nullptr) throw StoreError("can't make a temporary folder " + path);
+    }
+    ~Transfers() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+    std::string path;
   };
 
   class MemoryUpload final : public Upload {
@@ -239,6 +273,9 @@ class MemoryStore final : public Store {
   std::map<std::string, StoredJob, std::less<>> jobs_;
   std::map<std::string, std::string> ids_by_request_;
   std::map<std::string, std::string, std::less<>> assets_;
+  std::map<std::string, std::weak_ptr<MemoryFrameStore>, std::less<>> staged_;  // of jobs that are not there yet
+  std::optional<Transfers> transfers_;
+  std::int64_t next_transfer_ = 0;
 };
 
 }  // namespace

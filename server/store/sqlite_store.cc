@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <mutex>
 #include <system_error>
@@ -42,11 +43,21 @@ class SqliteStore final : public Store {
         jobs_({directory_ + "/control.db", directory_ + "/control.copy.db"}),
         assets_(directory_ + "/assets") {
     RemoveOrphans();
+    RenewTransfers();
   }
 
   bool CreateJob(const JobRecord& job, JobRecord* existing) override {
     if (const std::string problem = Problem(); !problem.empty()) throw NoSpaceError(problem);
-    return jobs_.CreateJob(job, existing);
+    if (!jobs_.CreateJob(job, existing)) return false;
+    const std::lock_guard lock(mutex_);
+    if (const auto staged = staged_.find(job.id); staged != staged_.end()) {
+      if (const std::shared_ptr<FrameDatabase> frames = staged->second.lock()) {
+        frames->RemoveWhenClosed(false);
+        open_frames_[job.id] = frames;
+      }
+      staged_.erase(staged);
+    }
+    return true;
   }
   std::optional<JobRecord> GetJob(std::string_view id) override { return jobs_.GetJob(id); }
   std::vector<JobRecord> ListJobs(int limit, std::string_view before_id, const std::vector<JobState>& states) override {
@@ -86,6 +97,18 @@ class SqliteStore final : public Store {
     open_frames_[std::string(job_id)] = frames;
     return frames;
   }
+
+  std::shared_ptr<FrameStore> StageFrames(std::string_view job_id) override {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(staged_, [](const auto& entry) { return entry.second.expired(); });
+    if (jobs_.HasJob(job_id) || fs::exists(FramesPath(job_id))) return nullptr;
+    auto frames = std::make_shared<FrameDatabase>(FramesPath(job_id), lock_);
+    frames->RemoveWhenClosed();
+    staged_[std::string(job_id)] = frames;
+    return frames;
+  }
+
+  std::string NewTransferPath() override { return directory_ + "/transfers/" + std::to_string(next_transfer_++); }
 
   bool HasAsset(std::string_view sha256_hex) override { return assets_.HasAsset(sha256_hex); }
   std::unique_ptr<Upload> BeginUpload(std::string_view sha256_hex, std::int64_t size) override {
@@ -134,13 +157,23 @@ class SqliteStore final : public Store {
     if (error) throw StoreError(directory_ + "/jobs: " + error.message());
   }
 
+  // Removes the files of interrupted exports and imports.
+  void RenewTransfers() {
+    std::error_code error;
+    fs::remove_all(directory_ + "/transfers", error);
+    if (!error) fs::create_directory(directory_ + "/transfers", error);
+    if (error) throw StoreError(directory_ + "/transfers: " + error.message());
+  }
+
   const std::string directory_;
   const std::shared_ptr<DirectoryLock> lock_;
   DiskReserve reserve_;
   ControlDatabase jobs_;
   AssetDirectory assets_;
-  std::mutex mutex_;  // guards open_frames_; no job is deleted while its frames are being opened
+  std::mutex mutex_;  // guards open_frames_ and staged_; no job is deleted while its frames are being opened
   std::unordered_map<std::string, std::weak_ptr<FrameDatabase>> open_frames_;
+  std::unordered_map<std::string, std::weak_ptr<FrameDatabase>> staged_;  // of jobs that are not there yet
+  std::atomic<std::int64_t> next_transfer_ = 0;
 };
 
 }  // namespace

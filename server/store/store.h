@@ -166,6 +166,11 @@ class Store : public JobStore, public AssetStore {
  public:
   // Opens the frame store, and creates it for a job without frames. Null if there is no such job.
   virtual std::shared_ptr<FrameStore> OpenFrames(std::string_view job_id) = 0;
+  // Frames of a job that is not there yet: CreateJob with this id takes them over. Until then nobody else sees them,
+  // and they are removed with the last reference. Null if the id is taken.
+  virtual std::shared_ptr<FrameStore> StageFrames(std::string_view job_id) = 0;
+  // Path of a new file for a job that is exported or imported. The caller removes the file.
+  virtual std::string NewTransferPath() = 0;
   // Why nothing new should be stored, for users, such as a disk that is almost full; empty if all is well. Deleting
   // jobs and updating their records may still be possible. Cheap.
   virtual std::string Problem() = 0;

@@ -144,8 +144,9 @@ TEST(IncludeDirection, LibrariesStayInTheirRooms) {
   const std::vector<Rule> rules = {
       {"gRPC", std::regex("^(grpc|grpcpp)/"), std::regex("^(server/rpc|server|client/lib|client/cli)$")},
       {"Protobuf", std::regex("^google/protobuf/|\\.pb\\.h$"),
-       std::regex("^(proto/rules|server/translate|server/rpc|server|client/.*)$")},
+       std::regex("^(proto/(rules|frames)|server/translate|server/rpc|server|client/.*)$")},
       {"SQLite", std::regex("^sqlite3\\.h$"), std::regex("^server/store$")},
+      {"zstd", std::regex("^zstd"), std::regex("^proto/frames$")},
       {"ITK", std::regex("^(itk[A-Z]|vnl/)"), std::regex("^core/imaging$")},
       {"VTK", std::regex("^vtk[A-Z]"), std::regex("^client/(exodus|export|image|render|vtk)$")},
       {"CLI11", std::regex("^CLI/"), std::regex("^(client/cli|server)$")},

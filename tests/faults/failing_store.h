@@ -79,6 +79,8 @@ class FailingStore final : public Store {
     std::shared_ptr<FrameStore> frames = behind_->OpenFrames(job_id);
     return frames == nullptr ? nullptr : std::make_shared<Frames>(std::move(frames), faults_);
   }
+  std::shared_ptr<FrameStore> StageFrames(std::string_view job_id) override { return behind_->StageFrames(job_id); }
+  std::string NewTransferPath() override { return behind_->NewTransferPath(); }
   bool HasAsset(std::string_view sha256_hex) override { return behind_->HasAsset(sha256_hex); }
   std::unique_ptr<Upload> BeginUpload(std::string_view sha256_hex, std::int64_t size) override {
     return behind_->BeginUpload(sha256_hex, size);

@@ -1,0 +1,1 @@
+fascicle_fuzz(frames_fuzz SOURCES frames_fuzz.cc DEPS proto/frames core/base)
