@@ -11,7 +11,9 @@
 #include <grpcpp/channel.h>
 #include <grpcpp/client_context.h>
 
+#include "fascicle/v1/log_service.grpc.pb.h"
 #include "fascicle/v1/simulation_service.grpc.pb.h"
+#include "fascicle/v1/steering_service.grpc.pb.h"
 
 namespace fascicle::client {
 
@@ -35,6 +37,8 @@ class Connection {
   v1::AssetService::Stub& assets() { return *assets_; }
   v1::FrameService::Stub& frames() { return *frames_; }
   v1::ServerService::Stub& server() { return *server_; }
+  v1::SteeringService::Stub& steering() { return *steering_; }
+  v1::LogService::Stub& logs() { return *logs_; }
 
  private:
   const std::string address_;
@@ -44,6 +48,8 @@ class Connection {
   const std::unique_ptr<v1::AssetService::Stub> assets_;
   const std::unique_ptr<v1::FrameService::Stub> frames_;
   const std::unique_ptr<v1::ServerService::Stub> server_;
+  const std::unique_ptr<v1::SteeringService::Stub> steering_;
+  const std::unique_ptr<v1::LogService::Stub> logs_;
 };
 
 // Allows the server to send long lists of problems.
