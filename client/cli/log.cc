@@ -121,9 +121,9 @@ int Log(const LogArguments& arguments, const Context& context) {
   const Interrupts interrupts([&] { interrupted.request_stop(); });
   JobSource source = OpenJob(context, arguments.job);
   LinePrinter printer(context.json);
-  Result<v1::Job> end =
-      source.client.WatchLog(source.job, {arguments.tail, arguments.follow},
-                             [&](const v1::LogLine& line) { printer.Print(line); }, interrupted.get_token());
+  Result<v1::Job> end = source.client.WatchLog(
+      source.job, {arguments.tail, arguments.follow}, [&](const v1::LogLine& line) { printer.Print(line); },
+      interrupted.get_token());
   if (!end.ok() && end.error().kind == Error::Kind::kStopped) return kCancelled;
   const v1::Job job = Take(std::move(end));
   if (!arguments.follow) return kDone;

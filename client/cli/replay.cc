@@ -135,7 +135,8 @@ int RunReplay(const ReplayArguments& arguments, const Context& context) {
 }  // namespace
 
 void AddReplay(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "replay", "Run a job again with its inputs and compare the frames", kReplayExamples);
+  CLI::App* command =
+      AddCommand(app, "replay", "Run a job again with its inputs and compare the frames", kReplayExamples);
   const auto arguments = std::make_shared<ReplayArguments>();
   command->add_option("JOB", arguments->job, "The job")->required();
   command->add_flag("--keep", arguments->keep, "Keep the new job");

@@ -130,7 +130,7 @@ void PrintNames(const char* kind, const google::protobuf::RepeatedPtrField<std::
   for (const std::string& name : names) std::cout << "  " << kind << '=' << name << ":VALUE\n";
 }
 
-int List(const std::string& given, const Context& context) {
+int ListInputs(const std::string& given, const Context& context) {
   JobSource source = OpenJob(context, given);
   const v1::ListSteeringResponse list = Take(source.client.ListSteering(source.job));
   if (context.json) {
@@ -164,7 +164,7 @@ v1::SteeringInput Apply(Client& client, const std::string& job, v1::SteeringInpu
 }
 
 int Steer(const SteerArguments& arguments, const Context& context) {
-  if (arguments.list) return List(arguments.job, context);
+  if (arguments.list) return ListInputs(arguments.job, context);
   v1::SteeringInput input;
   std::map<std::string, std::string> of_path;
   Problems problems;
@@ -192,7 +192,8 @@ int Steer(const SteerArguments& arguments, const Context& context) {
 }  // namespace
 
 void AddSteer(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "steer", "Change activations, loads and motions of a running job", kSteerExamples);
+  CLI::App* command =
+      AddCommand(app, "steer", "Change activations, loads and motions of a running job", kSteerExamples);
   const auto arguments = std::make_shared<SteerArguments>();
   command->add_option("JOB", arguments->job, "The job")->required();
   CLI::Option* changes = command->add_option("CHANGE", arguments->changes,
@@ -206,10 +207,12 @@ void AddSteer(CLI::App& app, Context& context) {
   command->add_option("--ramp", arguments->ramp, "Go to the new values over this time; by default the frame interval")
       ->type_name("SECONDS")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--sequence", arguments->sequence,
-                      "Number of the input, so that it can be repeated; by default the next one")
+  command
+      ->add_option("--sequence", arguments->sequence,
+                   "Number of the input, so that it can be repeated; by default the next one")
       ->check(CLI::PositiveNumber);
-  CLI::Option* list = command->add_flag("--list", arguments->list, "List the inputs of the job and what can be changed");
+  CLI::Option* list =
+      command->add_flag("--list", arguments->list, "List the inputs of the job and what can be changed");
   list->excludes(changes);
   command->callback([arguments, &context] {
     if (arguments->changes.empty() && !arguments->list) throw CLI::RequiredError("CHANGE or --list");

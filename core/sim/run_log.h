@@ -52,7 +52,7 @@ class RunLog {
   std::int64_t next_number_ = 0;
   std::int64_t iterations_ = 0;  // of the clock, as counted so far
   Sums since_line_, since_frame_;
-  int cut_lines_ = 0;  // in this frame
+  int cut_lines_ = 0;                                     // in this frame
   std::set<std::pair<std::string, std::string>> warned_;  // reason and body
 };
 

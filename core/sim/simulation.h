@@ -53,15 +53,15 @@ struct LogLine {
   // Steps; a step that failed and is made shorter; a frame; an input that takes effect; a warning; the run's failure.
   enum class Kind { kStep, kCut, kFrame, kInput, kWarning, kFailure };
   Kind kind = Kind::kStep;
-  std::int64_t step = 0;       // number of steps made; of an input: the step with which it takes effect
-  double time = 0;             // [s]
-  std::int64_t steps = 0;      // number of steps that it sums up
-  double time_step = 0;        // of the last step, or of the one that failed [s]
+  std::int64_t step = 0;                  // number of steps made; of an input: the step with which it takes effect
+  double time = 0;                        // [s]
+  std::int64_t steps = 0;                 // number of steps that it sums up
+  double time_step = 0;                   // of the last step, or of the one that failed [s]
   std::int64_t iterations = 0, cuts = 0;  // in these steps
-  double residual = -1;        // of the last step, relative as its tolerance; negative: none
-  std::int64_t frame = -1;     // its index, in lines of frames
-  std::int64_t sequence = 0;   // of the input
-  std::string text;            // for users, in the last three kinds and of cuts
+  double residual = -1;                   // of the last step, relative as its tolerance; negative: none
+  std::int64_t frame = -1;                // its index, in lines of frames
+  std::int64_t sequence = 0;              // of the input
+  std::string text;                       // for users, in the last three kinds and of cuts
 };
 
 // Receives the results of a run. Called from the thread that runs the simulation.

@@ -80,9 +80,9 @@ struct JobCheck {
 // An input of a client. Without a step and a time it takes effect with the next step.
 struct SteeringRequest {
   std::int64_t sequence = 0;
-  std::string input;                    // serialized contents, opaque here
-  std::vector<SteeredControl> controls; // the same for the run
-  double ramp = 0;                      // [s]
+  std::string input;                     // serialized contents, opaque here
+  std::vector<SteeredControl> controls;  // the same for the run
+  double ramp = 0;                       // [s]
   std::optional<std::int64_t> at_step;
   std::optional<double> at_time;  // [s]
 };
@@ -129,8 +129,8 @@ class JobManager {
   // Reads everything that is stored of a job, and describes what is damaged. Throws Stopped. Nothing if there is no
   // such job.
   std::optional<JobCheck> Verify(std::string_view id, const std::stop_token& stop);
-  // Adds an input to a job that has not ended; `check_only`: only says what is wrong with it. Durable on return. Nothing
-  // if there is no such job.
+  // Adds an input to a job that has not ended; `check_only`: only says what is wrong with it. Durable on return.
+  // Nothing if there is no such job.
   std::optional<SteeringAnswer> Steer(std::string_view id, const SteeringRequest& request, bool check_only);
   // Inputs with sequence >= start, at most `limit`. Nothing if there is no such job.
   std::optional<SteeringList> ListSteering(std::string_view id, std::int64_t start, int limit);

@@ -51,8 +51,9 @@ void JobSteering::CheckSequence(const SteeringRequest& request, SteeringAnswer& 
              "the next input is number " + next);
     }
   } else if (request.sequence > count_ + 1) {
-    Refuse(answer, "input.sequence", "SEQUENCE_GAP", "the inputs " + next + " to " +
-           std::to_string(request.sequence - 1) + " are missing", "the next input is number " + next);
+    Refuse(answer, "input.sequence", "SEQUENCE_GAP",
+           "the inputs " + next + " to " + std::to_string(request.sequence - 1) + " are missing",
+           "the next input is number " + next);
   } else if (count_ >= kMostInputs) {
     Refuse(answer, "input", "TOO_MANY_INPUTS", "a job has at most " + std::to_string(kMostInputs) + " inputs");
   }

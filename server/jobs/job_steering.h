@@ -60,9 +60,9 @@ class JobSteering final : public SteeringSource {
 
   std::mutex mutex_;  // guards the members below; never held during disk access
   std::condition_variable changed_;
-  std::int64_t begun_step_ = 0;  // no input takes effect with this step or an earlier one any more
-  double begun_time_ = -1;       // when it began, or a later time [s]
-  std::optional<SteeringRecord> reserved_;                          // being stored
+  std::int64_t begun_step_ = 0;             // no input takes effect with this step or an earlier one any more
+  double begun_time_ = -1;                  // when it began, or a later time [s]
+  std::optional<SteeringRecord> reserved_;  // being stored
   std::map<std::pair<std::int64_t, std::int64_t>, Waiting> by_step_;  // by step and sequence
   std::map<std::pair<double, std::int64_t>, Waiting> by_time_;        // by time and sequence
   bool is_closed_ = false;

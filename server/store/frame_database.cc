@@ -103,7 +103,8 @@ struct FrameDatabase::Reader {
   Statement chunk = database.Prepare(
       "SELECT bytes, row_checksum(frame, chunk, bytes) = checksum FROM chunks WHERE frame = ? AND chunk = ?");
   Statement log = database.Prepare(
-      "SELECT number, bytes, row_checksum(number, bytes) = checksum FROM log WHERE number >= ? ORDER BY number LIMIT ?");
+      "SELECT number, bytes, row_checksum(number, bytes) = checksum FROM log WHERE number >= ? ORDER BY number LIMIT "
+      "?");
   Statement steering = database.Prepare(
       "SELECT sequence, step, time, accept_time_us, input, step IS NOT NULL, time IS NOT NULL, row_checksum(sequence, "
       "step, time, accept_time_us, input) = checksum FROM steering WHERE sequence >= ? ORDER BY sequence LIMIT ?");

@@ -125,8 +125,8 @@ struct SteeringRecord {
   std::string input;                 // serialized contents, opaque here
 };
 
-// The frames of one job, its inputs and its log, in a file of their own. Writers wait for each other; readers do not wait. What is read is
-// compared with the checksum stored with it: DamageError.
+// The frames of one job, its inputs and its log, in a file of their own. Writers wait for each other; readers do not
+// wait. What is read is compared with the checksum stored with it: DamageError.
 class FrameStore {
  public:
   static constexpr std::int64_t kChunkSize = 1 << 20;  // size of the chunks in which frames and geometry are stored
@@ -139,11 +139,12 @@ class FrameStore {
   // Chunk number `chunk` of the geometry; nothing if it does not exist.
   virtual std::optional<std::string> ReadGeometryChunk(std::int64_t chunk) = 0;
   // Appends a frame and, if `checkpoint` is not empty, stores that, and the lines of `log` as by PutLog, in one
-  // transaction. The last two checkpoints are kept. If a frame with this index and digest is already stored, it is left as it is (a restart repeats frames after
-  // its checkpoint), but written anew if its bytes are damaged. If the digest differs, this frame and all later ones
-  // are replaced, checkpoints that belong to them are removed, and true is returned. The caller must increment the
-  // job's generation before such a call, so that no reader sees the new frame under the old generation. Throws
-  // std::invalid_argument unless 0 <= index <= frame_count(). `frame.size` is ignored; the size of `bytes` is stored.
+  // transaction. The last two checkpoints are kept. If a frame with this index and digest is already stored, it is left
+  // as it is (a restart repeats frames after its checkpoint), but written anew if its bytes are damaged. If the digest
+  // differs, this frame and all later ones are replaced, checkpoints that belong to them are removed, and true is
+  // returned. The caller must increment the job's generation before such a call, so that no reader sees the new frame
+  // under the old generation. Throws std::invalid_argument unless 0 <= index <= frame_count(). `frame.size` is ignored;
+  // the size of `bytes` is stored.
   virtual bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint,
                         std::span<const LogRow> log) = 0;
   bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) {

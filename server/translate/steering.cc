@@ -13,7 +13,7 @@ namespace fascicle::server {
 namespace {
 
 constexpr int kMostInputs = 10'000;   // of a job
-constexpr int kMostSteered = 64;     // of an input
+constexpr int kMostSteered = 64;      // of an input
 constexpr double kMostFactor = 1000;  // and least: -kMostFactor
 constexpr double kLongestRamp = 1e6;  // [s]
 
@@ -89,8 +89,9 @@ class ControlReader {
     const double least = target == targets_.end() ? -kMostFactor : target->least;
     const double most = target == targets_.end() ? kMostFactor : target->most;
     if (!(control.value() >= least && control.value() <= most)) {
-      problems_.Add(JoinPath(path, "value"), "must be in [" + Text(least) + ", " + Text(most) + "], is " +
-                    Text(control.value()), what_ == "activation" ? "" : "it is a factor on what the scene gives");
+      problems_.Add(JoinPath(path, "value"),
+                    "must be in [" + Text(least) + ", " + Text(most) + "], is " + Text(control.value()),
+                    what_ == "activation" ? "" : "it is a factor on what the scene gives");
     }
     if (target == targets_.end()) return;
     input_.controls.push_back(target->control);
@@ -101,7 +102,8 @@ class ControlReader {
     if (targets_.empty()) return "it has none that can be steered";
     constexpr std::size_t kMostNamed = 10;
     std::string names = "it has ";
-    for (std::size_t k = 0; k < targets_.size() && k < kMostNamed; ++k) names += (k == 0 ? "" : ", ") + targets_[k].name;
+    for (std::size_t k = 0; k < targets_.size() && k < kMostNamed; ++k)
+      names += (k == 0 ? "" : ", ") + targets_[k].name;
     return targets_.size() > kMostNamed ? names + ", ..." : names;
   }
 

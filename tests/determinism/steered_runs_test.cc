@@ -55,7 +55,9 @@ struct LoggingSink : CollectingSink {
 SteeredRun RunSteered(const Scene& scene, const std::map<std::int64_t, SteeringInput>& inputs,
                       const std::string& checkpoint = {}) {
   Simulation simulation(std::make_shared<Scene>(scene), 2);
-  if (!checkpoint.empty()) EXPECT_TRUE(simulation.Restore(checkpoint));
+  if (!checkpoint.empty()) {
+    EXPECT_TRUE(simulation.Restore(checkpoint));
+  }
   Script script(inputs, simulation.step());
   LoggingSink sink;
   SteeredRun run;
@@ -81,8 +83,8 @@ std::map<std::int64_t, SteeringInput> InputsFor(const Scene& scene, std::int64_t
     input.ramp = k % 3 == 0 ? 0 : scene.output.frame_interval;
     input.controls.push_back({ControlKind::kGravity, 0, 1 + part(random)});
     if (scene.method != Method::kVoxel) {
-      input.controls.push_back({ControlKind::kActivation, scene.bodies.size() > 1 && scene.method == Method::kEulerian,
-                                0.3 * part(random)});
+      input.controls.push_back(
+          {ControlKind::kActivation, scene.bodies.size() > 1 && scene.method == Method::kEulerian, 0.3 * part(random)});
     }
     if (loads > 0) input.controls.push_back({ControlKind::kLoad, 0, 1 - part(random)});
     if (motions > 0) input.controls.push_back({ControlKind::kMotion, motions - 1, 1 + 0.1 * part(random)});
@@ -104,6 +106,7 @@ bool IsTried(const NamedScene& named) {
 std::vector<NamedScene> TriedScenes() {
   std::vector<NamedScene> scenes = SmallScenes();
   std::erase_if(scenes, [](const NamedScene& named) { return !IsTried(named); });
+  for (NamedScene& named : scenes) named.scene.duration /= 2;
   return scenes;
 }
 
@@ -114,12 +117,12 @@ TEST_P(SteeredRunsTest, TheSameBitsAfterAnyInterruption) {
   const SteeredRun plain = RunSteered(scene, {});
   ASSERT_EQ(plain.outcome.kind, Outcome::Kind::kSucceeded) << plain.outcome.failure.message;
   std::mt19937 random(7);
-  const std::map<std::int64_t, SteeringInput> inputs = InputsFor(scene, plain.frames[6].step, random);
+  const std::map<std::int64_t, SteeringInput> inputs = InputsFor(scene, plain.frames[3].step, random);
   const SteeredRun steered = RunSteered(scene, inputs);
   ASSERT_EQ(steered.outcome.kind, Outcome::Kind::kSucceeded) << steered.outcome.failure.message;
   ASSERT_EQ(steered.frames.size(), plain.frames.size());
   EXPECT_NE(steered.frames.back().digest, plain.frames.back().digest);
-  for (std::size_t frame = 0; frame + 1 < steered.frames.size(); frame += 2) {
+  for (const std::size_t frame : {1, 3}) {
     const SteeredRun again = RunSteered(scene, inputs, steered.checkpoints[frame]);
     ASSERT_EQ(again.frames.size(), steered.frames.size() - frame - 1);
     for (std::size_t k = 0; k < again.frames.size(); ++k) {
@@ -136,18 +139,14 @@ TEST_P(SteeredRunsTest, TheSameBitsAfterAnyInterruption) {
   for (std::size_t k = 0; plain.frames[k].step < inputs.begin()->first; ++k) {
     EXPECT_EQ(plain.frames[k].digest, steered.frames[k].digest) << k;
   }
-}
-
-// An input that takes effect a step late is seen in the frames.
-TEST_P(SteeredRunsTest, AStepMakesADifference) {
-  const Scene& scene = GetParam().scene;
-  const SteeringInput input = {1, {{ControlKind::kGravity, 0, 1.5}}, 0};
-  const SteeredRun early = RunSteered(scene, {{2, input}}), late = RunSteered(scene, {{3, input}});
-  EXPECT_NE(early.frames.back().digest, late.frames.back().digest);
+  // An input that takes effect a step late would be seen.
+  std::map<std::int64_t, SteeringInput> late = inputs;
+  late[inputs.begin()->first + 1] = late.extract(late.begin()).mapped();
+  EXPECT_NE(RunSteered(scene, late).frames.back().digest, steered.frames.back().digest);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, SteeredRunsTest, ::testing::ValuesIn(TriedScenes()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& test) { return test.param.name; });
 
 }  // namespace
 }  // namespace fascicle

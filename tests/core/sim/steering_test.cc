@@ -13,42 +13,42 @@ namespace {
 
 using namespace fascicle::testing;
 
-constexpr ControlKind kLoad = ControlKind::kLoad;
+constexpr ControlKind kLoadControl = ControlKind::kLoad;
 
-double FactorAt(const SteeringTable& table, double time) { return table.At(kLoad, 0, time, {1, 0}).value; }
+double FactorAt(const SteeringTable& table, double time) { return table.At(kLoadControl, 0, time, {1, 0}).value; }
 
 TEST(SteeringTest, ControlsGoToTheirNewValuesInProportionToTheTime) {
   SteeringTable table;
-  table.Add({1, {{kLoad, 0, 3}}, 0.5}, 1);
+  table.Add({1, {{kLoadControl, 0, 3}}, 0.5}, 1);
   EXPECT_EQ(FactorAt(table, 1), 1);
   EXPECT_EQ(FactorAt(table, 1.25), 2);
-  EXPECT_EQ(table.At(kLoad, 0, 1.25, {1, 0}).rate, 4);
+  EXPECT_EQ(table.At(kLoadControl, 0, 1.25, {1, 0}).rate, 4);
   EXPECT_EQ(FactorAt(table, 1.5), 3);
-  EXPECT_EQ(table.At(kLoad, 0, 1.5, {1, 0}).rate, 0);
-  EXPECT_EQ(table.At(kLoad, 1, 1.5, {1, 0}).value, 1) << "another load";
+  EXPECT_EQ(table.At(kLoadControl, 0, 1.5, {1, 0}).rate, 0);
+  EXPECT_EQ(table.At(kLoadControl, 1, 1.5, {1, 0}).value, 1) << "another load";
   EXPECT_FALSE(table.RestsAt(1.4));
   EXPECT_TRUE(table.RestsAt(1.5));
 }
 
 TEST(SteeringTest, AnInputMayComeBeforeTheLastOneIsComplete) {
   SteeringTable table;
-  table.Add({1, {{kLoad, 0, 3}}, 1}, 0);
-  table.Add({2, {{kLoad, 0, 0}}, 1}, 0.5);
+  table.Add({1, {{kLoadControl, 0, 3}}, 1}, 0);
+  table.Add({2, {{kLoadControl, 0, 0}}, 1}, 0.5);
   EXPECT_EQ(FactorAt(table, 0.5), 2);
   EXPECT_EQ(FactorAt(table, 0.75), 0.75 * 2.5);
-  const double rate = table.At(kLoad, 0, 0.75, {1, 0}).rate;
+  const double rate = table.At(kLoadControl, 0, 0.75, {1, 0}).rate;
   EXPECT_NEAR(rate, (FactorAt(table, 0.7501) - FactorAt(table, 0.7499)) / 2e-4, 1e-6);
   EXPECT_EQ(FactorAt(table, 1.5), 0);
-  table.Add({3, {{kLoad, 0, 5}}, 0}, 0.6);
+  table.Add({3, {{kLoadControl, 0, 5}}, 0}, 0.6);
   EXPECT_EQ(FactorAt(table, 0.6), 5) << "at once";
 }
 
 TEST(SteeringTest, WhatIsOverIsForgottenAndTheRestIsSaved) {
   SteeringTable table, kept;
   for (int k = 0; k < 100; ++k) {
-    table.Add({k + 1, {{kLoad, 0, 0.1 * k}, {ControlKind::kMotion, 2, 0.2 * k}}, 0.05}, 0.02 * k);
+    table.Add({k + 1, {{kLoadControl, 0, 0.1 * k}, {ControlKind::kMotion, 2, 0.2 * k}}, 0.05}, 0.02 * k);
     table.DiscardBefore(0.02 * k);
-    kept.Add({k + 1, {{kLoad, 0, 0.1 * k}, {ControlKind::kMotion, 2, 0.2 * k}}, 0.05}, 0.02 * k);
+    kept.Add({k + 1, {{kLoadControl, 0, 0.1 * k}, {ControlKind::kMotion, 2, 0.2 * k}}, 0.05}, 0.02 * k);
   }
   ArchiveWriter writer("table", 1);
   table.Save(writer);
@@ -60,7 +60,8 @@ TEST(SteeringTest, WhatIsOverIsForgottenAndTheRestIsSaved) {
   EXPECT_TRUE(reader.AtEnd());
   for (double time = 0.02 * 99; time < 2.2; time += 0.001) {
     EXPECT_EQ(FactorAt(loaded, time), FactorAt(kept, time)) << time;
-    EXPECT_EQ(loaded.At(ControlKind::kMotion, 2, time, {1, 0}).rate, kept.At(ControlKind::kMotion, 2, time, {1, 0}).rate);
+    EXPECT_EQ(loaded.At(ControlKind::kMotion, 2, time, {1, 0}).rate,
+              kept.At(ControlKind::kMotion, 2, time, {1, 0}).rate);
   }
 }
 
@@ -82,7 +83,7 @@ TEST(SteeringTest, EveryControlOfASceneCanBeChanged) {
   ControlSource source(scene);
   source.Steer({1,
                 {{ControlKind::kActivation, 0, 0.75},
-                 {kLoad, 0, 0.5},
+                 {kLoadControl, 0, 0.5},
                  {ControlKind::kGravity, 0, 2},
                  {ControlKind::kMotion, 1, 3}},
                 0.5},
