@@ -19,8 +19,8 @@ namespace {
 constexpr const char* kSteerExamples =
     R"(  fascicle steer jobs/3f2a activation=muscle:0.7            from the next step on
   fascicle steer 3f2a activation=muscle:0.2 --ramp 0        at once, not over a frame interval
-  fascicle steer 3f2a load=muscle/tip:2 motion=muscle/insertion:0.5 --at 0.15
-  fascicle steer 3f2a load=gravity:0 --at-step 2000
+  fascicle steer 3f2a load=muscle/tip:2 motion=muscle/insertion:0.5 --at 60
+  fascicle steer 3f2a load=gravity:0 --at-step 500000
   fascicle steer 3f2a --list                                its inputs, and what can be changed
 
 An activation replaces that of the scene; loads and motions of supports are multiplied by a factor. An input

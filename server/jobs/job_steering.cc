@@ -135,6 +135,7 @@ void JobSteering::BeginRun(std::int64_t step, const std::string& spec, const Job
     by_step_.clear();
     by_time_.clear();
     begun_step_ = std::max(begun_step_, step);
+    is_closed_ = false;
   }
   write_ = std::move(write);
   is_running_ = true;
