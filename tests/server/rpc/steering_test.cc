@@ -1,10 +1,10 @@
 // Steering and logs of jobs, over the service.
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "fascicle/v1/log_service.grpc.pb.h"
 #include "fascicle/v1/steering_service.grpc.pb.h"
-#include "server/store/store.h"
 #include "tests/support/files.h"
 #include "tests/support/service_fixture.h"
 #include "tests/support/steered_scenes.h"
