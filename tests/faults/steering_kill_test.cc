@@ -76,8 +76,7 @@ class Sender {
   Sender(std::vector<SteeredJob>& jobs, int inputs) : jobs_(jobs), inputs_(inputs) {}
 
   // Until `end` inputs are acknowledged, or the server is gone; with pauses of up to `pause`.
-  void Send(const std::string& address, int end, std::chrono::microseconds pause) {
-    Client client(address);
+  void Send(Client& client, int end, std::chrono::microseconds pause) {
     while (acknowledged_ < std::min(end, inputs_)) {
       SteeredJob& job = jobs_[random_() % jobs_.size()];
       if (!job.next.has_changes()) job.next = RandomInput(client, job);
@@ -211,14 +210,14 @@ TEST(SteeringKillTest, SteeredJobsAreReplayedToTheLastBit) {
       for (SteeredJob& job : jobs) job.name = stubs.Submit(job.steered.scene);
       for (const SteeredJob& job : jobs) ASSERT_TRUE(stubs.AwaitFrames(job.name, 2)) << job.steered.name;
     }
+    Client client(address);
     // A job that makes no progress between twenty kills is taken for their cause.
-    if (round % 8 == 7) {
-      Stubs stubs(address);
-      for (const SteeredJob& job : jobs) {
-        ASSERT_TRUE(stubs.AwaitFrames(job.name, stubs.Get(job.name).frame_count() + 1)) << job.steered.name;
-      }
+    for (const SteeredJob& job : jobs) {
+      if (round % 8 != 7) break;
+      const std::int64_t frames = client.stubs().Get(job.name).frame_count();
+      ASSERT_TRUE(client.stubs().AwaitFrames(job.name, frames + 1)) << job.steered.name;
     }
-    std::thread steering([&] { sender.Send(address, inputs * (round + 1) / (kills + 1), 10ms); });
+    std::thread steering([&] { sender.Send(client, inputs * (round + 1) / (kills + 1), 10ms); });
     std::this_thread::sleep_for(std::chrono::milliseconds(50 + random() % 500));
     server.Signal(SIGKILL);
     steering.join();
@@ -229,8 +228,8 @@ TEST(SteeringKillTest, SteeredJobsAreReplayedToTheLastBit) {
   ServerProcess server(ServerOptions(data));
   const std::string address = server.AwaitAddress();
   ASSERT_FALSE(address.empty());
-  sender.Send(address, inputs, 2ms);
   Client client(address);
+  sender.Send(client, inputs, 2ms);
   for (const SteeredJob& job : jobs) {
     const auto count = static_cast<std::int64_t>(job.acknowledged.size());
     // Until the last ones have taken effect.
