@@ -45,8 +45,8 @@ std::optional<std::string> UnknownCommand(const CLI::App& app, int argc, char** 
 std::string NearCommand(const CLI::App& app, const std::string& wrong) {
   static const std::map<std::string, const char*> kOtherNames = {{"status", "show` or `list"},
                                                                  {"info", "show"},
-                                                                 {"log", "show"},
-                                                                 {"logs", "show"},
+                                                                 {"tail", "log"},
+                                                                 {"logs", "log"},
                                                                  {"jobs", "list"},
                                                                  {"ls", "list"},
                                                                  {"ps", "list"},
@@ -78,7 +78,9 @@ std::string NearCommand(const CLI::App& app, const std::string& wrong) {
                                                                  {"fields", "schema"},
                                                                  {"example", "examples"},
                                                                  {"send", "submit"},
-                                                                 {"voxels", "voxelize"}};
+                                                                 {"voxels", "voxelize"},
+                                                                 {"control", "steer"},
+                                                                 {"repeat", "replay"}};
   if (const auto known = kOtherNames.find(wrong); known != kOtherNames.end()) return known->second;
   std::string nearest;
   std::size_t best = std::max<std::size_t>(2, wrong.size() / 3) + 1;
@@ -121,6 +123,9 @@ int Run(int argc, char** argv) {
   AddCancel(app, context);
   AddRestart(app, context);
   AddVerify(app, context);
+  AddSteer(app, context);
+  AddReplay(app, context);
+  AddLog(app, context);
   AddDelete(app, context);
   AddExport(app, context);
   AddRender(app, context);

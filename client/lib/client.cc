@@ -11,6 +11,7 @@
 #include "client/lib/transfer.h"
 #include "client/lib/upload.h"
 #include "client/lib/watch.h"
+#include "client/lib/watch_log.h"
 
 namespace fascicle::client {
 namespace {
@@ -166,6 +167,63 @@ std::optional<Error> Client::ExportJob(const std::string& name, const std::strin
 
 Result<v1::Job> Client::ImportJob(const std::string& path, bool new_name, const std::stop_token& stop) {
   return UploadJob(impl_->connection, path, new_name, RandomRequestId(), stop);
+}
+
+Result<v1::SteeringInput> Client::ApplySteering(const std::string& name, const v1::SteeringInput& input) {
+  v1::ApplySteeringRequest request;
+  request.set_name(name);
+  *request.mutable_input() = input;
+  auto answer = impl_->Ask<v1::ApplySteeringResponse>(kTimeout, [&](grpc::ClientContext& context, auto& response) {
+    return impl_->connection.steering().ApplySteering(&context, request, &response);
+  });
+  if (!answer.ok()) return answer.error();
+  return std::move(*answer.value().mutable_input());
+}
+
+Result<v1::ListSteeringResponse> Client::ListSteering(const std::string& name) {
+  v1::ListSteeringRequest request;
+  request.set_name(name);
+  request.set_start_sequence(1);
+  google::protobuf::RepeatedPtrField<v1::SteeringInput> inputs;
+  while (true) {
+    auto page = impl_->Ask<v1::ListSteeringResponse>(kTimeout, [&](grpc::ClientContext& context, auto& response) {
+      return impl_->connection.steering().ListSteering(&context, request, &response);
+    });
+    if (!page.ok()) return page.error();
+    const bool is_last = page.value().inputs_size() == 0;
+    if (!is_last) request.set_start_sequence(page.value().inputs().rbegin()->sequence() + 1);
+    for (v1::SteeringInput& input : *page.value().mutable_inputs()) inputs.Add(std::move(input));
+    if (!is_last) continue;
+    page.value().mutable_inputs()->Swap(&inputs);
+    return page;
+  }
+}
+
+Result<v1::Job> Client::SubmitAgain(const std::string& name) {
+  Result<v1::Job> job = GetJob(name);
+  if (!job.ok()) return job.error();
+  Result<v1::ListSteeringResponse> steering = ListSteering(name);
+  if (!steering.ok()) return steering.error();
+  v1::CreateJobRequest request;
+  request.mutable_job()->mutable_scene()->Swap(job.value().mutable_scene());
+  request.mutable_job()->set_threads(job.value().threads());
+  request.set_request_id(RandomRequestId());
+  for (v1::SteeringInput& input : *steering.value().mutable_inputs()) {
+    if (input.has_step()) {
+      input.clear_at_time();
+      input.set_at_step(input.step());
+    }
+    input.clear_step();
+    input.clear_applied();
+    input.clear_accept_time();
+    *request.mutable_job()->add_inputs() = std::move(input);
+  }
+  return impl_->Create({}, request, {});
+}
+
+Result<v1::Job> Client::WatchLog(const std::string& name, const LogOptions& options,
+                                 const std::function<void(const v1::LogLine&)>& on_line, const std::stop_token& stop) {
+  return fascicle::client::WatchLog(impl_->connection, name, options, on_line, stop);
 }
 
 Result<v1::Geometry> Client::GetGeometry(const std::string& name, std::stop_token stop) {

@@ -13,8 +13,10 @@
 #include "core/base/problems.h"
 #include "fascicle/v1/frame.pb.h"
 #include "fascicle/v1/job.pb.h"
+#include "fascicle/v1/log.pb.h"
 #include "fascicle/v1/scene.pb.h"
 #include "fascicle/v1/simulation_service.pb.h"
+#include "fascicle/v1/steering_service.pb.h"
 
 namespace fascicle::client {
 
@@ -80,6 +82,11 @@ struct WatchEvents {
   std::function<void(const std::string& message)> reconnecting;
 };
 
+struct LogOptions {
+  int tail = 0;         // only so many of the stored lines; 0: all
+  bool follow = false;  // until the job is final
+};
+
 // A connection to a server ("HOST:PORT"). Thread-safe. The first call fails with kNoServer after some seconds without a
 // response. Calls are repeated on UNAVAILABLE with backoff; CreateJob only with its request id, so that a job is never
 // created twice.
@@ -107,6 +114,16 @@ class Client {
   std::optional<Error> ExportJob(const std::string& name, const std::string& path, const std::stop_token& stop = {});
   // Gives the server a job in such a file. It keeps its name if that is free there, unless `new_name` is set.
   Result<v1::Job> ImportJob(const std::string& path, bool new_name, const std::stop_token& stop = {});
+  // Adds an input to a job; the answer has the step with which it takes effect.
+  Result<v1::SteeringInput> ApplySteering(const std::string& name, const v1::SteeringInput& input);
+  // All inputs of a job, and what can be changed.
+  Result<v1::ListSteeringResponse> ListSteering(const std::string& name);
+  // Creates a job with the scene and the inputs of another one.
+  Result<v1::Job> SubmitAgain(const std::string& name);
+  // Delivers the lines of a job's log, each once and in order, and resumes after lost connections. Returns the job when
+  // the log is complete; kStopped after a stop request.
+  Result<v1::Job> WatchLog(const std::string& name, const LogOptions& options,
+                           const std::function<void(const v1::LogLine&)>& on_line, const std::stop_token& stop = {});
   // Waits until the job has been started; kStopped after a stop request.
   Result<v1::Geometry> GetGeometry(const std::string& name, std::stop_token stop = {});
   Result<std::vector<v1::FrameInfo>> ListFrames(const std::string& name, std::int64_t start_index);

@@ -44,7 +44,9 @@ Connection::Connection(const std::string& address)
       assets_(v1::AssetService::NewStub(channel_)),
       frames_(v1::FrameService::NewStub(channel_)),
       server_(v1::ServerService::NewStub(channel_)),
-      transfers_(v1::TransferService::NewStub(channel_)) {}
+      transfers_(v1::TransferService::NewStub(channel_)),
+      steering_(v1::SteeringService::NewStub(channel_)),
+      logs_(v1::LogService::NewStub(channel_)) {}
 
 grpc::Status Connection::Connect() {
   if (connected_) return grpc::Status::OK;

@@ -11,8 +11,10 @@
 #include <grpcpp/channel.h>
 #include <grpcpp/client_context.h>
 
+#include "fascicle/v1/log_service.grpc.pb.h"
 #include "fascicle/v1/simulation_service.grpc.pb.h"
 #include "fascicle/v1/transfer_service.grpc.pb.h"
+#include "fascicle/v1/steering_service.grpc.pb.h"
 
 namespace fascicle::client {
 
@@ -37,6 +39,8 @@ class Connection {
   v1::FrameService::Stub& frames() { return *frames_; }
   v1::ServerService::Stub& server() { return *server_; }
   v1::TransferService::Stub& transfers() { return *transfers_; }
+  v1::SteeringService::Stub& steering() { return *steering_; }
+  v1::LogService::Stub& logs() { return *logs_; }
 
  private:
   const std::string address_;
@@ -47,6 +51,8 @@ class Connection {
   const std::unique_ptr<v1::FrameService::Stub> frames_;
   const std::unique_ptr<v1::ServerService::Stub> server_;
   const std::unique_ptr<v1::TransferService::Stub> transfers_;
+  const std::unique_ptr<v1::SteeringService::Stub> steering_;
+  const std::unique_ptr<v1::LogService::Stub> logs_;
 };
 
 // Allows the server to send long lists of problems.

@@ -233,10 +233,13 @@ QpStatus VelocityProgram::Solve() {
   SetStiffness(problem);
   const QpReport report = SolveQp(problem, {.tolerance = kTolerance, .team = &team_}, solution_);
   iterations_ = report.minres_iterations.empty() ? 0 : report.minres_iterations.back();
+  residual_ = std::max({report.stationarity, report.feasibility, report.complementarity});
   return report.status;
 }
 
 int VelocityProgram::iterations() const { return iterations_; }
+
+double VelocityProgram::residual() const { return residual_; }
 
 void VelocityProgram::SetMasses(QuadraticProgram& problem) const {
   problem.p.resize(3 * nodes_);

@@ -40,6 +40,8 @@ class VelocityProgram {
   // Call once, after all bodies. iterations() counts those of MINRES.
   QpStatus Solve();
   int iterations() const;
+  // The largest residual of QpReport [1].
+  double residual() const;
 
   // Call after QpStatus::kSolved.
   //   velocity  set for free nodes; others are unchanged
@@ -63,6 +65,7 @@ class VelocityProgram {
   int nodes_ = 0, rows_ = 0;  // of all bodies: free nodes, rows of volumes
   QpSolution solution_;
   int iterations_ = 0;
+  double residual_ = 0;
 };
 
 }  // namespace fascicle

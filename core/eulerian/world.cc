@@ -57,12 +57,13 @@ EulerianReport EulerianWorld::Step(EulerianWorldState& state, const Controls& co
   };
   for (std::size_t b = 0; b < steppers_.size(); ++b) steppers_[b].AdvectVelocities(state.bodies[b], dt);
   int iterations = 0;
+  double residual = -1;
   {
     const StageTimer timer(profile_, "constraints");
     for (std::size_t b = 0; b < steppers_.size(); ++b) {
       steppers_[b].Accelerate(state.bodies[b], now[b], next[b], dt);
     }
-    if (fails(FindVelocities(state, now, dt, iterations), 0)) return report;
+    if (fails(FindVelocities(state, now, dt, iterations, residual), 0)) return report;
     for (std::size_t b = 0; b < steppers_.size(); ++b) {
       if (fails(steppers_[b].FinishVelocities(dt), b)) return report;
     }
@@ -75,12 +76,13 @@ EulerianReport EulerianWorld::Step(EulerianWorldState& state, const Controls& co
   state.time_step = dt;
   state.iterations += iterations;
   ++state.step;
+  report.residual = residual;
   return report;
 }
 
 // Solves for volumes, supports and implicit elasticity of all bodies together.
 StepProblem EulerianWorld::FindVelocities(const EulerianWorldState& state, const std::vector<BodyControls>& now,
-                                          double dt, int& iterations) {
+                                          double dt, int& iterations, double& residual) {
   VelocityProgram program(dt, team_);
   std::vector<std::size_t> added;
   for (std::size_t b = 0; b < steppers_.size(); ++b) {
@@ -91,6 +93,7 @@ StepProblem EulerianWorld::FindVelocities(const EulerianWorldState& state, const
   if (added.empty()) return StepProblem::kNone;
   if (program.Solve() != QpStatus::kSolved) return StepProblem::kVelocitiesNotFound;
   iterations = program.iterations();
+  residual = program.residual();
   for (std::size_t k = 0; k < added.size(); ++k) steppers_[added[k]].TakeVelocities(program, k);
   return StepProblem::kNone;
 }

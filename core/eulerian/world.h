@@ -11,6 +11,8 @@ namespace fascicle {
 struct EulerianReport {
   StepProblem problem = StepProblem::kNone;
   BadElements bad;  // the cells of a body's grid at which it failed
+  // Of the program of volumes and supports, relative as its tolerance; negative if there was none [1].
+  double residual = -1;
 };
 
 // Steps solids on their grids together, with a common time step [Fan 2013, algorithm 1]: forces; advection of
@@ -43,7 +45,7 @@ class EulerianWorld {
   // The controls of each body.
   std::vector<BodyControls> ControlsOfBodies(const Controls& controls) const;
   StepProblem FindVelocities(const EulerianWorldState& state, const std::vector<BodyControls>& now, double dt,
-                             int& iterations);
+                             int& iterations, double& residual);
 
   const Scene& scene_;
   ThreadTeam& team_;

@@ -18,4 +18,17 @@ RigidMotion MotionAt(const Motion& motion, double time) {
   return at;
 }
 
+RigidMotion ScaledMotionAt(const Motion& motion, double time, double factor, double rate) {
+  RigidMotion at = MotionAt(motion, time);
+  at.velocity = factor * at.velocity + rate * at.translation;
+  at.translation *= factor;
+  if (motion.rotation) {
+    const Rotation& rotation = *motion.rotation;
+    const double angle = rotation.angle.At(time);
+    at.rotation = Eigen::AngleAxisd(factor * angle, rotation.axis).toRotationMatrix();
+    at.angular_velocity = (factor * rotation.angle.RateAt(time) + rate * angle) * rotation.axis;
+  }
+  return at;
+}
+
 }  // namespace fascicle

@@ -21,6 +21,8 @@ struct RigidMotion {
 
 // Motion of a constraint at a time.
 RigidMotion MotionAt(const Motion& motion, double time);
+// The same with translations and angle times a factor that changes at `rate` [1/s].
+RigidMotion ScaledMotionAt(const Motion& motion, double time, double factor, double rate);
 
 }  // namespace fascicle
 

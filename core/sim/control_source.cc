@@ -64,6 +64,30 @@ void ControlSource::Evaluate(double time, Controls& controls) {
     }
     for (const Constraint& constraint : body.constraints) controls.motions.push_back(MotionAt(constraint.motion, time));
   }
+  if (!steering_.empty()) ApplySteering(time, controls);
+}
+
+void ControlSource::ApplySteering(double time, Controls& controls) const {
+  constexpr SteeringTable::Value kOne = {1, 0};
+  const auto scale = [&](ControlKind kind, std::vector<double>& values) {
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] *= steering_.At(kind, k, time, kOne).value;
+  };
+  for (std::size_t k = 0; k < controls.activations.size(); ++k) {
+    controls.activations[k] = steering_.At(ControlKind::kActivation, k, time, {controls.activations[k], 0}).value;
+  }
+  scale(ControlKind::kLoad, controls.load_scales);
+  scale(ControlKind::kForceField, controls.force_field_scales);
+  controls.gravity_scale *= steering_.At(ControlKind::kGravity, 0, time, kOne).value;
+  std::size_t motion = 0;
+  for (const Body& body : scene_->bodies) {
+    for (const Constraint& constraint : body.constraints) {
+      const SteeringTable::Value factor = steering_.At(ControlKind::kMotion, motion, time, kOne);
+      if (factor.value != 1 || factor.rate != 0) {
+        controls.motions[motion] = ScaledMotionAt(constraint.motion, time, factor.value, factor.rate);
+      }
+      ++motion;
+    }
+  }
 }
 
 Controls ControlSource::At(double time) {
@@ -83,21 +107,24 @@ void ControlSource::ForLazy(Self& self, const Call& call) {
 }
 
 bool ControlSource::RestsAt(double time) {
-  bool rests = time >= curves_end_;
+  bool rests = time >= curves_end_ && steering_.RestsAt(time);
   ForLazy(*this, [&](auto& curve) { rests = rests && curve.RestsAt(time); });
   return rests;
 }
 
 void ControlSource::DiscardBefore(double time) {
   ForLazy(*this, [&](auto& curve) { curve.DiscardBefore(time); });
+  steering_.DiscardBefore(time);
 }
 
 void ControlSource::Save(ArchiveWriter& archive) const {
   ForLazy(*this, [&](const auto& curve) { curve.Save(archive); });
+  steering_.Save(archive);
 }
 
 void ControlSource::Load(ArchiveReader& archive) {
   ForLazy(*this, [&](auto& curve) { curve.Load(archive); });
+  steering_.Load(archive);
 }
 
 }  // namespace fascicle

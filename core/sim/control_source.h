@@ -6,11 +6,12 @@
 
 #include "core/base/archive.h"
 #include "core/scene/controls.h"
+#include "core/sim/steering.h"
 
 namespace fascicle {
 
-// Evaluates the controls of a scene: its curves, and the dynamics of its muscles, which are integrated with the run and
-// are part of its checkpoints. Not thread-safe.
+// Evaluates the controls of a scene: its curves, the dynamics of its muscles, which are integrated with the run, and
+// what inputs change. The latter two are part of its checkpoints. Not thread-safe.
 class ControlSource {
  public:
   // CheckScene must have accepted the scene, which must outlive the source.
@@ -20,6 +21,9 @@ class ControlSource {
   // allocate if `controls` already has the scene's sizes and no muscle has dynamics.
   void Evaluate(double time, Controls& controls);
   Controls At(double time);
+
+  // Changes controls from a time on [s], which must not precede that of the last step.
+  void Steer(const SteeringInput& input, double time) { steering_.Add(input, time); }
 
   // Whether all controls are constant from a time on [s].
   bool RestsAt(double time);
@@ -34,11 +38,13 @@ class ControlSource {
   // Calls call(curve) for all activations and forces that are integrated.
   template <class Self, class Call>
   static void ForLazy(Self& self, const Call& call);
+  void ApplySteering(double time, Controls& controls) const;
 
   const Scene* scene_;
   double curves_end_;
   std::vector<std::optional<IntegratedActivation>> activations_;  // of each body with an excitation
   std::vector<std::optional<SternForce>> pulls_;                  // of each load that is a muscle's force
+  SteeringTable steering_;
 };
 
 }  // namespace fascicle

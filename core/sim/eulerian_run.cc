@@ -42,7 +42,9 @@ class EulerianRun : public MethodRun {
   StepProposal ProposeStep(const Controls& now, double end) override { return world_.ProposeStep(state_, now, end); }
   StepOutcome Step(const Controls& now, const Controls& next, double dt) override {
     EulerianReport report = world_.Step(state_, now, next, dt);
-    return {report.problem, std::move(report.bad)};
+    StepOutcome outcome = {report.problem, std::move(report.bad)};
+    outcome.residual = report.residual;
+    return outcome;
   }
 
   double LargestSpeed() const override {

@@ -32,6 +32,8 @@ struct StepOutcome {
   double largest_strain = 0;
   std::size_t strained_body = 0;
   std::int64_t strained_element = -1;
+  // What is left of the forces, relative as the method's tolerance; negative if it has none.
+  double residual = -1;
 };
 
 // The interface of a method for Simulation: its model of a scene, its solver, and the state of the run. Simulation

@@ -10,13 +10,14 @@
 #include "core/sim/fingerprint.h"
 #include "core/sim/floor_bodies.h"
 #include "core/sim/method_run.h"
+#include "core/sim/run_log.h"
 #include "core/sim/run_warnings.h"
 
 namespace fascicle {
 namespace {
 
 constexpr const char* kCheckpointKind = "fascicle checkpoint";
-constexpr std::uint32_t kCheckpointVersion = 5;
+constexpr std::uint32_t kCheckpointVersion = 6;
 
 struct ProblemText {
   const char* reason;
@@ -114,6 +115,7 @@ struct Simulation::Impl {
     next_frame = 0;
     iterations_at_frame = 0;
     settled = false;
+    log = {};
   }
 
   double TimeOfFrame(std::int64_t frame) const {
@@ -125,7 +127,7 @@ struct Simulation::Impl {
   bool IsSettled() {
     const RunClock clock = method->clock();
     return scene->output.settle_speed && clock.step > 0 && source.RestsAt(clock.time) &&
-           method->LargestSpeed() <= *scene->output.settle_speed;
+           method->LargestSpeed() <= *scene->output.settle_speed && (steering == nullptr || steering->TryClose());
   }
 
   Frame TakeFrame() {
@@ -155,6 +157,8 @@ struct Simulation::Impl {
       const StageTimer warning_timer(profile, "warnings");
       warnings.ObserveFrame(frame, *method, now, next);
     }
+    log.AddWarnings(clock, warnings.List());
+    log.AddFrame(clock, frame.index);
     ++next_frame;
     iterations_at_frame = clock.iterations;
     settled = IsSettled();
@@ -171,6 +175,7 @@ struct Simulation::Impl {
     archive.PutInt("settled", settled ? 1 : 0);
     source.Save(archive);
     warnings.Save(archive);
+    log.Save(archive);
     method->Save(archive);
     return archive.Finish();
   }
@@ -183,8 +188,10 @@ struct Simulation::Impl {
     settled = archive.GetInt("settled") != 0;
     source.Load(archive);
     warnings.Load(archive);
+    const std::int64_t log_lines = archive.GetInt("log lines");
     method->Load(archive);
     if (!archive.AtEnd()) return false;
+    log.Restore(log_lines, method->clock(), warnings.List());
     source.Evaluate(method->clock().time, now);
     return true;
   }
@@ -193,7 +200,7 @@ struct Simulation::Impl {
   StepOutcome Step(double end) {
     const StageTimer timer(profile, "step");
     team.ThrowIfStopped();
-    for (;;) {
+    for (int cuts = 0;; ++cuts) {
       const StepProposal step = method->ProposeStep(now, end);
       if (step.problem != StepProblem::kNone) return {step.problem, step.bad};
       {
@@ -204,9 +211,20 @@ struct Simulation::Impl {
       if (outcome.problem == StepProblem::kNone) {
         std::swap(now, next);
         warnings.ObserveStep(outcome, step.time);
+        log.AddStep(method->clock(), outcome, cuts);
       }
       if (!outcome.try_shorter) return outcome;
+      log.AddCut(method->clock(), step.dt, TextOf(outcome.problem, scene->method).reason);
     }
+  }
+
+  // Lets the inputs take effect that belong to the next step.
+  void TakeInputs() {
+    if (steering == nullptr) return;
+    const RunClock clock = method->clock();
+    const std::vector<SteeringInput> inputs = steering->Take(clock.step + 1, clock.time);
+    for (const SteeringInput& input : inputs) source.Steer(input, clock.time);
+    log.AddInputs(clock, inputs);
   }
 
   // Runs from the current time to the end.
@@ -221,6 +239,7 @@ struct Simulation::Impl {
     while (!AtEnd()) {
       const double frame_time = TimeOfFrame(next_frame);
       while (method->clock().time < frame_time) {
+        TakeInputs();
         const StepOutcome step = Step(frame_time);
         if (step.problem != StepProblem::kNone) return Failed(FailureOf(step));
         sink.PutProgress(ProgressNow());
@@ -279,6 +298,9 @@ struct Simulation::Impl {
   Digest fingerprint = FingerprintOf(*scene);
   std::int64_t last_frame = 0;
 
+  SteeringSource* steering = nullptr;  // of the present Run
+  RunLog log;
+
   Controls now, next;  // at the current time; scratch memory
   std::int64_t next_frame = 0;
   std::int64_t iterations_at_frame = 0;
@@ -302,12 +324,21 @@ bool Simulation::Restore(std::string_view checkpoint) {
 
 std::int64_t Simulation::next_frame() const { return impl_->next_frame; }
 
-Outcome Simulation::Run(FrameSink& sink, std::stop_token stop, std::chrono::milliseconds checkpoint_interval) {
+std::int64_t Simulation::step() const { return impl_->method->clock().step; }
+
+Outcome Simulation::Run(FrameSink& sink, std::stop_token stop, std::chrono::milliseconds checkpoint_interval,
+                        SteeringSource* steering) {
   Outcome outcome = {Outcome::Kind::kCancelled, {}};
+  impl_->steering = steering;
+  impl_->log.WriteTo(sink);
   impl_->team.HeedStop(std::move(stop));
   try {
     outcome = impl_->Run(sink, checkpoint_interval);
   } catch (const Stopped&) {
+  }
+  if (outcome.kind == Outcome::Kind::kFailed) {
+    impl_->log.AddWarnings(impl_->method->clock(), impl_->warnings.List());
+    impl_->log.AddFailure(outcome.failure);
   }
   outcome.warnings = impl_->warnings.List();
   impl_->team.HeedStop({});

@@ -12,6 +12,7 @@
 #include "core/base/profile.h"
 #include "core/scene/scene.h"
 #include "core/sim/frame.h"
+#include "core/sim/steering.h"
 #include "core/sim/warning.h"
 
 namespace fascicle {
@@ -47,6 +48,22 @@ struct Outcome {
   std::vector<Warning> warnings = {};
 };
 
+// A line of a run's log. Plain data, without wall times: a repeated run writes the same.
+struct LogLine {
+  // Steps; a step that failed and is made shorter; a frame; an input that takes effect; a warning; the run's failure.
+  enum class Kind { kStep, kCut, kFrame, kInput, kWarning, kFailure };
+  Kind kind = Kind::kStep;
+  std::int64_t step = 0;                  // number of steps made; of an input: the step with which it takes effect
+  double time = 0;                        // [s]
+  std::int64_t steps = 0;                 // number of steps that it sums up
+  double time_step = 0;                   // of the last step, or of the one that failed [s]
+  std::int64_t iterations = 0, cuts = 0;  // in these steps
+  double residual = -1;                   // of the last step, relative as its tolerance; negative: none
+  std::int64_t frame = -1;                // its index, in lines of frames
+  std::int64_t sequence = 0;              // of the input
+  std::string text;                       // for users, in the last three kinds and of cuts
+};
+
 // Receives the results of a run. Called from the thread that runs the simulation.
 class FrameSink {
  public:
@@ -56,6 +73,8 @@ class FrameSink {
   virtual bool PutFrame(Frame frame, std::string checkpoint) = 0;
   // Called after every step; must be cheap.
   virtual void PutProgress(const Progress& progress) = 0;
+  // A line of the log. Numbers count from 0, or from where the log was at the restored checkpoint.
+  virtual void PutLine(std::int64_t /*number*/, LogLine /*line*/) {}
 };
 
 // Runs a scene: clock, controls, output policy, cancel, checkpoints, digests. The frames do not depend on the number of
@@ -76,12 +95,15 @@ class Simulation {
 
   // Index of the next frame of Run: 0, or the one after the restored checkpoint.
   std::int64_t next_frame() const;
+  // Number of steps made.
+  std::int64_t step() const;
 
   // Steps to the end of the scene. A stop request ends it with kCancelled, also within a step or a frame, which is then
   // discarded; Run can be called again. A checkpoint is written with the first frame after each `checkpoint_interval`
-  // of wall time, and with the last frame.
+  // of wall time, and with the last frame. `steering` gives the inputs of the run; null: there are none.
   Outcome Run(FrameSink& sink, std::stop_token stop,
-              std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2));
+              std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2),
+              SteeringSource* steering = nullptr);
 
  private:
   struct Impl;

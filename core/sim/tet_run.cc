@@ -55,6 +55,7 @@ class TetRun : public MethodRun {
  private:
   static StepOutcome OutcomeOf(StepReport report) {
     StepOutcome outcome = {report.problem, std::move(report.bad), report.try_shorter};
+    outcome.residual = report.residual;
     outcome.largest_strain = report.strain.value;
     outcome.strained_body = report.strain.body;
     outcome.strained_element = report.strain.element;

@@ -61,7 +61,11 @@ class VoxelMethodRun : public MethodRun {
   void Load(ArchiveReader& archive) override { state_.Load(archive); }
 
  private:
-  static StepOutcome OutcomeOf(const VoxelSolveReport& report) { return {report.problem, {report.body, {}, false}}; }
+  static StepOutcome OutcomeOf(const VoxelSolveReport& report) {
+    StepOutcome outcome = {report.problem, {report.body, {}, false}};
+    outcome.residual = report.residual;
+    return outcome;
+  }
 
   const Scene& scene_;
   VoxelSolver solver_;

@@ -196,6 +196,7 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
   StepReport report;
   report.iterations = result.iterations;
   report.solves = result.solves;
+  report.residual = result.residual;
   report.problem = ProblemOf(result);
   if (report.problem == StepProblem::kNoEquilibrium) report.bad = FindElementsAt(model_, result.node);
   next.iterations = now.iterations + result.iterations;

@@ -23,6 +23,7 @@ struct StepReport {
   bool try_shorter = false;  // the step failed, and ProposeStep has a shorter one
   int iterations = 0;        // of linear solves, or of Newton's method
   LinearSolves solves;       // of Newton's method
+  double residual = -1;      // at its end, relative as its tolerance; negative without it
   // Kinetic energy of the free components at the half step [J].
   double kinetic = 0;
   // Curvature of the energy along this step's motion times dt^2: a Rayleigh quotient of M^-1 K. The central difference

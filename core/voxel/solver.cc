@@ -134,6 +134,7 @@ VoxelSolveReport VoxelSolver::SolveStart(VoxelSceneState& state, const Controls&
 
 VoxelSolveReport VoxelSolver::SolveStatic(VoxelSceneState& state, const Controls& next) {
   VoxelSceneState made = state;
+  VoxelSolveReport total;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const VoxelSceneBody& body = *bodies_[b];
     const auto [force, prescribed] = ActingOn(body, ControlsOf(scene_, b, next));
@@ -142,6 +143,7 @@ VoxelSolveReport VoxelSolver::SolveStatic(VoxelSceneState& state, const Controls
     StaticSolution solution =
         solver.Solve(force, prescribed, {.tolerance = scene_.voxel.tolerance}, &state.bodies[b].displacement);
     if (const StepProblem problem = ProblemOf(solution.iterations); problem != StepProblem::kNone) return {problem, b};
+    total.residual = std::max(total.residual, solution.iterations.residual);
     made.reactions[b] = body.SumOverSupports(solution.reaction, solution.displacement);
     made.elastic[b] = solution.energy;
     made.iterations += solution.iterations.iterations;
@@ -149,17 +151,19 @@ VoxelSolveReport VoxelSolver::SolveStatic(VoxelSceneState& state, const Controls
     made.bodies[b].previous = made.bodies[b].displacement;
   }
   state = std::move(made);
-  return {};
+  return total;
 }
 
 VoxelSolveReport VoxelSolver::StepDynamic(VoxelSceneState& state, const Controls& next) {
   VoxelSceneState made = state;
+  VoxelSolveReport total;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const VoxelSceneBody& body = *bodies_[b];
     const auto [force, prescribed] = ActingOn(body, ControlsOf(scene_, b, next));
     const StageTimer timer(profile_, "dynamic solve");
     const VoxelStepReport report = dynamic_solvers_[b]->Step(force, prescribed, made.bodies[b]);
     if (const StepProblem problem = ProblemOf(report.iterations); problem != StepProblem::kNone) return {problem, b};
+    total.residual = std::max(total.residual, report.iterations.residual);
     made.elastic[b] = report.elastic;
     made.kinetic[b] = report.kinetic;
     made.iterations += report.iterations.iterations;
@@ -167,7 +171,7 @@ VoxelSolveReport VoxelSolver::StepDynamic(VoxelSceneState& state, const Controls
                                              made.bodies[b].displacement);
   }
   state = std::move(made);
-  return {};
+  return total;
 }
 
 StepProposal VoxelSolver::ProposeStep(const VoxelSceneState& state, double end) const {

@@ -32,6 +32,7 @@ struct VoxelSceneState {
 struct VoxelSolveReport {
   StepProblem problem = StepProblem::kNone;
   std::size_t body = 0;  // the body with the problem
+  double residual = 0;   // the largest of all bodies at the end, relative as the tolerance [1]
 };
 
 // Steps the bodies of a scene by the voxel method [Zhu, Chen & Kaufman 1998]. Not thread-safe. All functions may throw

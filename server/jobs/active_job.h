@@ -12,6 +12,7 @@
 #include "core/sim/simulation.h"
 #include "server/jobs/eta.h"
 #include "server/jobs/job_manager.h"
+#include "server/jobs/job_steering.h"
 #include "server/store/store.h"
 
 namespace fascicle::server {
@@ -40,6 +41,9 @@ class ActiveJob {
   void SetScene(std::shared_ptr<const Scene> scene);
   std::shared_ptr<const Scene> TakeScene();
 
+  // The inputs of the job.
+  JobSteering& steering() { return steering_; }
+
   // `stored` completed by the data in memory; queue_position stays 0.
   JobView View(JobRecord stored) const;
 
@@ -60,6 +64,7 @@ class ActiveJob {
   std::string waiting_;
   std::shared_ptr<FrameStore> frames_;
   std::shared_ptr<const Scene> scene_;
+  JobSteering steering_;
 };
 
 // The view of a record whose job is not active.

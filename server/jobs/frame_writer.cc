@@ -29,9 +29,14 @@ bool FrameWriter::PutFrame(Frame frame, std::string checkpoint) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return waiting_.size() < kMaxWaiting || error_; });
   if (error_) return false;
-  waiting_.push_back({std::move(frame), std::move(checkpoint)});
+  waiting_.push_back({std::move(frame), std::move(checkpoint), std::exchange(lines_, {})});
   changed_.notify_all();
   return true;
+}
+
+void FrameWriter::PutLine(std::int64_t number, LogLine line) {
+  const std::lock_guard lock(mutex_);
+  lines_.push_back({number, std::move(line)});
 }
 
 void FrameWriter::Finish() {
@@ -53,7 +58,11 @@ void FrameWriter::Loop() {
   std::unique_lock lock(mutex_);
   while (!error_) {
     changed_.wait_until(lock, next_progress_, [this] { return !waiting_.empty() || is_closed_; });
-    if (waiting_.empty() && is_closed_) return;
+    if (waiting_.empty() && is_closed_) {
+      lock.unlock();
+      StoreLines();  // those of the run's end
+      return;
+    }
     std::exception_ptr error;
     if (!waiting_.empty()) {
       const Item item = std::move(waiting_.front());
@@ -86,7 +95,9 @@ void FrameWriter::StoreFrame(const Item& item) {
   if (IsStoredDifferently(record)) job_.Update([](JobRecord& job) { return ++job.generation > 0; });
   {
     const StageTimer timer(&profile_.storing, "commit");
-    WriteWhenRoom(store_, job_, [&] { frames_->PutFrame(record, bytes, item.checkpoint); });
+    Encode(item.lines);
+    WriteWhenRoom(store_, job_, [&] { frames_->PutFrame(record, bytes, item.checkpoint, rows_); });
+    rows_.clear();
   }
   profile_.storing.NoteCpu();
   notify_();
@@ -108,10 +119,33 @@ std::string FrameWriter::Encode(const Frame& frame) {
   return codec_.encode_frame(frame);
 }
 
+void FrameWriter::Encode(const std::vector<NumberedLine>& lines) {
+  for (const NumberedLine& line : lines) rows_.push_back({line.number, codec_.encode_line(line.line)});
+}
+
+// Stores the lines since the last frame, unless frames are waiting, with which earlier lines are stored.
+void FrameWriter::StoreLines() {
+  std::vector<NumberedLine> lines;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!waiting_.empty() || lines_.empty()) return;
+    lines.swap(lines_);
+  }
+  try {
+    Encode(lines);
+    frames_->PutLog(rows_);
+    rows_.clear();
+    notify_();
+  } catch (const std::exception&) {
+    // They are stored with the next frame; if the storage has failed, that reports it.
+  }
+}
+
 void FrameWriter::StoreProgressRarely() {
   const auto now = std::chrono::steady_clock::now();
   if (now < next_progress_) return;
   next_progress_ = now + kProgressInterval;
+  StoreLines();
   const StageTimer timer(&profile_.storing, "progress");
   try {
     job_.Update([this](JobRecord& record) {

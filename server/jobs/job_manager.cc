@@ -157,6 +157,29 @@ struct JobManager::Impl {
     }
   }
 
+  // Calls use(inputs of the job) and returns its result; nothing if there is no such job. Those of a job that has ended
+  // are closed.
+  template <class Use>
+  auto WithSteering(std::string_view id, const Use& use) -> std::optional<decltype(use(std::declval<JobSteering&>()))> {
+    while (true) {
+      const std::shared_ptr<ActiveJob> job = FindActive(id);
+      const std::optional<JobRecord> record = store.GetJob(id);
+      if (!record) return std::nullopt;
+      if (job == nullptr && !IsFinal(record->state)) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));  // about to be queued by Submit, or ended just now
+        continue;
+      }
+      JobSteering ended;
+      JobSteering& steering = job == nullptr ? ended : job->steering();
+      if (job == nullptr) ended.Close();
+      std::shared_ptr<FrameStore> frames = job == nullptr ? nullptr : job->frames();
+      if (frames == nullptr) frames = store.OpenFrames(id);
+      if (frames == nullptr) return std::nullopt;
+      steering.Open(std::move(frames), record->spec, codec);
+      return use(steering);
+    }
+  }
+
   void Drain() {
     const std::lock_guard drain_lock(drain_mutex);
     {
@@ -267,6 +290,7 @@ std::optional<JobView> JobManager::Cancel(std::string_view id) {
     return true;
   });
   job->RequestStop();
+  job->steering().Close();
   std::optional<JobView> view = Get(id);
   impl_->options.on_event(job->record(), EventOf(job->record().state));
   if (job->record().state == JobState::kCancelled) impl_->Forget(id);
@@ -325,6 +349,14 @@ std::optional<JobCheck> JobManager::Verify(std::string_view id, const std::stop_
   JobCheck check = VerifyFrames(impl_->store, id, frames, stop);
   check.damages.insert(check.damages.begin(), damages.begin(), damages.end());
   return check;
+}
+
+std::optional<SteeringAnswer> JobManager::Steer(std::string_view id, const SteeringRequest& request, bool check_only) {
+  return impl_->WithSteering(id, [&](JobSteering& steering) { return steering.Apply(request, check_only); });
+}
+
+std::optional<SteeringList> JobManager::ListSteering(std::string_view id, std::int64_t start, int limit) {
+  return impl_->WithSteering(id, [&](JobSteering& steering) { return steering.List(start, limit); });
 }
 
 std::shared_ptr<FrameStore> JobManager::Frames(std::string_view id) {

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/problems.h"
 #include "core/base/profile.h"
 #include "core/scene/scene.h"
 #include "core/sim/simulation.h"
@@ -39,6 +40,12 @@ struct JobCodec {
   std::function<std::string(const std::vector<Warning>&)> encode_warnings;  // empty if there are none
   // The sum of this run and the earlier ones.
   std::function<std::string(const RunProfile&)> encode_profile;
+  std::function<std::string(const LogLine&)> encode_line;
+  // The inputs that a job's spec has already, with the sequence numbers 1, 2, ...
+  std::function<std::vector<SteeringRecord>(const std::string& spec)> inputs_of_spec;
+  // What the inputs of a job change in its scene.
+  std::function<std::vector<SteeringInput>(const std::string& spec, const std::vector<SteeringRecord>& inputs)>
+      decode_inputs;
 };
 
 struct JobManagerOptions {
@@ -68,6 +75,31 @@ struct JobCheck {
   std::int64_t frames = 0;
   std::int64_t bytes = 0;  // of frames and geometry
   std::vector<std::string> damages;
+};
+
+// An input of a client. Without a step and a time it takes effect with the next step.
+struct SteeringRequest {
+  std::int64_t sequence = 0;
+  std::string input;                     // serialized contents, opaque here
+  std::vector<SteeredControl> controls;  // the same for the run
+  double ramp = 0;                       // [s]
+  std::optional<std::int64_t> at_step;
+  std::optional<double> at_time;  // [s]
+};
+
+// What became of it.
+struct SteeringAnswer {
+  std::optional<SteeringRecord> record;  // as it is stored; nothing if it was refused, or only checked
+  // Why it was refused: each with its field, and the reason of the first, for programs.
+  Problems problems;
+  std::string reason;  // SEQUENCE_REUSED, SEQUENCE_GAP, STEP_PASSED, JOB_ENDED, TOO_MANY_INPUTS
+};
+
+// The inputs of a job.
+struct SteeringList {
+  std::vector<SteeringRecord> inputs;
+  std::int64_t next_sequence = 1;
+  std::int64_t reached_step = 0;  // the last step that the run has begun or made
 };
 
 // The queue and its workers. Resumes jobs that were queued or running when the last process ended. Thread-safe; all
@@ -107,6 +139,11 @@ class JobManager {
   // Reads everything that is stored of a job, and describes what is damaged. Throws Stopped. Nothing if there is no
   // such job.
   std::optional<JobCheck> Verify(std::string_view id, const std::stop_token& stop);
+  // Adds an input to a job that has not ended; `check_only`: only says what is wrong with it. Durable on return.
+  // Nothing if there is no such job.
+  std::optional<SteeringAnswer> Steer(std::string_view id, const SteeringRequest& request, bool check_only);
+  // Inputs with sequence >= start, at most `limit`. Nothing if there is no such job.
+  std::optional<SteeringList> ListSteering(std::string_view id, std::int64_t start, int limit);
   // The frames of a job; null if there is no such job.
   std::shared_ptr<FrameStore> Frames(std::string_view id);
 

@@ -86,6 +86,9 @@ std::unique_ptr<Simulation> SetUp(const RunContext& context, ActiveJob& job, Pro
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const int threads = std::min(record->threads > 0 ? record->threads : context.options.default_threads, cores);
   std::unique_ptr<Simulation> simulation = MakeSimulation(scene, threads, *frames, profile, job.stop_token());
+  const auto write = [&context, &job](const std::function<void()>& store) { WriteWhenRoom(context.store, job, store); };
+  write([&] { job.steering().Open(frames, record->spec, context.codec); });
+  job.steering().BeginRun(simulation->step(), record->spec, context.codec, write);
   StoreGeometry(context, job, *scene, simulation->layout(), profile);
   SetRunning(job);
   return simulation;
@@ -95,7 +98,8 @@ Outcome Simulate(const RunContext& context, ActiveJob& job, RunProfile& profile,
   const std::unique_ptr<Simulation> simulation = SetUp(context, job, profile.working);
   notify();
   FrameWriter writer(context.store, job, context.codec, profile, notify);
-  const Outcome outcome = simulation->Run(writer, job.stop_token(), context.options.checkpoint_interval);
+  const Outcome outcome =
+      simulation->Run(writer, job.stop_token(), context.options.checkpoint_interval, &job.steering());
   const StageTimer timer(&profile.working, "waiting for storage");
   writer.Finish();
   return outcome;
@@ -209,6 +213,7 @@ void RunJob(const RunContext& context, ActiveJob& job, const std::function<void(
   } catch (const std::exception& error) {
     outcome = Failed("STORAGE", error.what(), "check the free space and the health of the server's disk", job);
   }
+  if (outcome.kind != Outcome::Kind::kCancelled) job.steering().Close();
   End(context, job, profile, outcome);
   notify();
 }

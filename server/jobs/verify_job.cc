@@ -1,5 +1,6 @@
 #include "server/jobs/verify_job.h"
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -46,6 +47,14 @@ void VerifyFrame(FrameStore& frames, std::int64_t index, JobCheck& check, const 
   ++check.frames;
 }
 
+void VerifyLog(FrameStore& frames, const std::stop_token& stop) {
+  constexpr int kPage = 1000;
+  std::vector<LogRow> lines;
+  for (std::int64_t start = 0; !(lines = frames.ReadLog(start, kPage)).empty(); start = lines.back().number + 1) {
+    ThrowIfStopped(stop);
+  }
+}
+
 }  // namespace
 
 JobCheck VerifyFrames(Store& store, std::string_view id, std::int64_t expected_frames, const std::stop_token& stop) {
@@ -54,6 +63,8 @@ JobCheck VerifyFrames(Store& store, std::string_view id, std::int64_t expected_f
   Note(check, [&] { frames = store.OpenFrames(id); });
   if (frames == nullptr) return check;
   Note(check, [&] { VerifyGeometry(*frames, check, stop); });
+  Note(check, [&] { frames->ListSteering(1, std::numeric_limits<int>::max()); });
+  Note(check, [&] { VerifyLog(*frames, stop); });
   const std::int64_t count = std::max(frames->frame_count(), expected_frames);
   for (std::int64_t index = 0; index < count; ++index) {
     Note(check, [&] { VerifyFrame(*frames, index, check, stop); });

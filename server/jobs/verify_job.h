@@ -9,9 +9,9 @@
 
 namespace fascicle::server {
 
-// Reads all frames and the geometry of a job, and describes what is damaged, at most kMostDamages of it.
-// `expected_frames`: the number of frames that must be there. Throws Stopped, and StoreError for failures other than
-// damage.
+// Reads all frames, the geometry, the inputs and the log of a job, and describes what is damaged, at most kMostDamages
+// of it. `expected_frames`: the number of frames that must be there. Throws Stopped, and StoreError for failures other
+// than damage.
 inline constexpr std::size_t kMostDamages = 100;
 JobCheck VerifyFrames(Store& store, std::string_view id, std::int64_t expected_frames, const std::stop_token& stop);
 

@@ -8,39 +8,20 @@
 #include "server/rpc/frame_stream.h"
 #include "server/rpc/geometry_stream.h"
 #include "server/rpc/names.h"
+#include "server/rpc/raw_request.h"
 
 namespace fascicle::server {
-namespace {
-
-// A stream that ends at once with a status.
-class EndedStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
- public:
-  explicit EndedStream(const grpc::Status& status) { Finish(status); }
-  void OnDone() override { delete this; }
-};
-
-template <class Message>
-std::optional<Message> Parse(const grpc::ByteBuffer& bytes) {
-  grpc::ByteBuffer copy(bytes);  // shares the bytes; parsing consumes it
-  Message message;
-  if (!grpc::SerializationTraits<Message>::Deserialize(&copy, &message).ok()) return std::nullopt;
-  return message;
-}
-
-grpc::Status NotAMessage() { return InvalidArgument("", "the request is not the message type of this call"); }
-
-}  // namespace
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::GetGeometry(grpc::CallbackServerContext*,
                                                                           const grpc::ByteBuffer* request) {
-  const auto parsed = Parse<v1::GetGeometryRequest>(*request);
+  const auto parsed = ParseRequest<v1::GetGeometryRequest>(*request);
   if (!parsed) return new EndedStream(NotAMessage());
   return OutStream::Launch(std::make_shared<GeometryStream>(context_, parsed->name()));
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::StreamFrames(grpc::CallbackServerContext*,
                                                                            const grpc::ByteBuffer* request) {
-  auto parsed = Parse<v1::StreamFramesRequest>(*request);
+  auto parsed = ParseRequest<v1::StreamFramesRequest>(*request);
   if (!parsed) return new EndedStream(NotAMessage());
   return OutStream::Launch(std::make_shared<FrameStream>(context_, deriver_, std::move(*parsed)));
 }

@@ -9,7 +9,6 @@
 #include "server/rpc/names.h"
 
 namespace fascicle::server {
-namespace {
 
 google::protobuf::Timestamp TimestampOf(std::int64_t microseconds) {
   google::protobuf::Timestamp timestamp;
@@ -18,12 +17,11 @@ google::protobuf::Timestamp TimestampOf(std::int64_t microseconds) {
   return timestamp;
 }
 
-}  // namespace
-
 std::string SpecOf(const v1::Job& requested) {
   v1::Job spec;
   *spec.mutable_scene() = requested.scene();
   spec.set_threads(requested.threads());
+  *spec.mutable_inputs() = requested.inputs();
   std::string bytes;
   {
     google::protobuf::io::StringOutputStream stream(&bytes);

@@ -8,13 +8,16 @@
 
 namespace fascicle::server {
 
-// The spec of a job as it is stored: a v1::Job with scene and threads only. Equal jobs have equal bytes.
+// The spec of a job as it is stored: a v1::Job with scene, threads and inputs only. Equal jobs have equal bytes.
 std::string SpecOf(const v1::Job& requested);
 
 // The message of a job, without its scene.
 v1::Job ToMessage(const JobView& view);
 // The message of a job with its scene, as GetJob gives it.
 v1::Job ToMessageWithScene(const JobView& view);
+
+// From the time since the Unix epoch [us].
+google::protobuf::Timestamp TimestampOf(std::int64_t microseconds);
 
 v1::Progress ProgressOf(const JobView& view);
 v1::Job::State StateOf(const JobView& view);

@@ -10,6 +10,7 @@
 #include "server/rpc/job_messages.h"
 #include "server/rpc/names.h"
 #include "server/rpc/start_state.h"
+#include "server/translate/steering.h"
 #include "server/translate/translate.h"
 
 namespace fascicle::server {
@@ -57,6 +58,7 @@ grpc::Status JobServiceImpl::Create(const v1::CreateJobRequest& request, v1::Job
     return FailedPrecondition("MISSING_ASSET", missing, "an asset of the scene was not uploaded", details_limit);
   }
   CheckRequest(request, problems);
+  CheckInputs(job, "job.inputs", problems);
   Profile profile;
   std::shared_ptr<const Scene> scene;
   if (job.has_scene()) scene = Translate(job.scene(), profile, stop, problems);

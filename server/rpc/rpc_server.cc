@@ -13,8 +13,10 @@
 #include "server/rpc/asset_service.h"
 #include "server/rpc/frame_service.h"
 #include "server/rpc/job_service.h"
+#include "server/rpc/log_service.h"
 #include "server/rpc/server_service.h"
 #include "server/rpc/transfer_service.h"
+#include "server/rpc/steering_service.h"
 
 namespace fascicle::server {
 namespace {
@@ -84,6 +86,8 @@ struct RpcServer::Impl {
   FrameServiceImpl frame_service{context};
   ServerServiceImpl server_service{context};
   TransferServiceImpl transfer_service{context};
+  SteeringServiceImpl steering_service{context};
+  LogServiceImpl log_service{context};
   // Destroyed in reverse order: every call ends, then the last tasks of the executors, then the objects they use.
   Executor quick;
   Executor slow;
@@ -107,6 +111,8 @@ RpcServer::RpcServer(const std::string& listen, Store& store, JobManager& jobs, 
   builder.RegisterService(&impl_->frame_service);
   builder.RegisterService(&impl_->server_service);
   builder.RegisterService(&impl_->transfer_service);
+  builder.RegisterService(&impl_->steering_service);
+  builder.RegisterService(&impl_->log_service);
   impl_->server = builder.BuildAndStart();
   if (!impl_->server || impl_->port == 0) {
     throw std::runtime_error("cannot listen on " + listen +
@@ -115,7 +121,8 @@ RpcServer::RpcServer(const std::string& listen, Store& store, JobManager& jobs, 
   grpc::HealthCheckServiceInterface* health = impl_->server->GetHealthCheckService();
   for (const char* service : {v1::JobService::service_full_name(), v1::AssetService::service_full_name(),
                               v1::FrameService::service_full_name(), v1::ServerService::service_full_name(),
-                              v1::TransferService::service_full_name()}) {
+                              v1::TransferService::service_full_name(),
+                              v1::SteeringService::service_full_name(), v1::LogService::service_full_name()}) {
     health->SetServingStatus(service, true);
   }
   impl_->quick.Post([impl = impl_.get()] { impl->WatchStore(); });

@@ -2,6 +2,7 @@
 #define FASCICLE_SERVER_STORE_DATABASE_H_
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -68,6 +69,15 @@ class Statement {
   void Bind(int index, std::string_view text);
   void Bind(int index, Blob blob);
   void Bind(int index, std::nullptr_t);
+  // NULL if there is none.
+  template <class Value>
+  void Bind(int index, const std::optional<Value>& value) {
+    if (value) {
+      Bind(index, *value);
+    } else {
+      Bind(index, nullptr);
+    }
+  }
 
   sqlite3_stmt* statement_;
 };

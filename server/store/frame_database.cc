@@ -14,7 +14,7 @@ constexpr int kFrameApplicationId = 0x46534346;  // "FSCF"
 // A chunk of a frame fills 32 pages. Larger pages make large blobs faster, but small frames larger.
 constexpr int kPageSize = 32768;
 
-constexpr std::array<const char*, 2> kFrameFormats = {
+constexpr std::array<const char*, 3> kFrameFormats = {
     // Format 1.
     R"(CREATE TABLE frames (
          idx INTEGER PRIMARY KEY,
@@ -51,7 +51,21 @@ constexpr std::array<const char*, 2> kFrameFormats = {
          checksum INTEGER NOT NULL
        ) STRICT;
        INSERT INTO checkpoints SELECT frame, bytes, row_checksum(frame, bytes) FROM checkpoint;
-       DROP TABLE checkpoint;)"};
+       DROP TABLE checkpoint;)",
+    // Format 3: inputs and the log.
+    R"(CREATE TABLE steering (
+         sequence INTEGER PRIMARY KEY,
+         step INTEGER,
+         time REAL,
+         accept_time_us INTEGER NOT NULL,
+         input BLOB NOT NULL,
+         checksum INTEGER NOT NULL
+       ) STRICT;
+       CREATE TABLE log (
+         number INTEGER PRIMARY KEY,
+         bytes BLOB NOT NULL,
+         checksum INTEGER NOT NULL
+       ) STRICT;)"};
 
 // Calls put(number, bytes) for each chunk; empty data has one empty chunk.
 template <class Put>
@@ -88,6 +102,12 @@ struct FrameDatabase::Reader {
       "WHERE idx >= ? ORDER BY idx LIMIT ?");
   Statement chunk = database.Prepare(
       "SELECT bytes, row_checksum(frame, chunk, bytes) = checksum FROM chunks WHERE frame = ? AND chunk = ?");
+  Statement log = database.Prepare(
+      "SELECT number, bytes, row_checksum(number, bytes) = checksum FROM log WHERE number >= ? ORDER BY number LIMIT "
+      "?");
+  Statement steering = database.Prepare(
+      "SELECT sequence, step, time, accept_time_us, input, step IS NOT NULL, time IS NOT NULL, row_checksum(sequence, "
+      "step, time, accept_time_us, input) = checksum FROM steering WHERE sequence >= ? ORDER BY sequence LIMIT ?");
 };
 
 struct FrameDatabase::Connections {
@@ -116,6 +136,13 @@ struct FrameDatabase::Connections {
       "DELETE FROM checkpoints WHERE frame NOT IN (SELECT frame FROM checkpoints ORDER BY frame DESC LIMIT 2)");
   Statement insert_geometry =
       database.Prepare("INSERT INTO geometry (chunk, bytes, checksum) VALUES (?1, ?2, row_checksum(?1, ?2))");
+  Statement line = database.Prepare("SELECT bytes FROM log WHERE number = ?");
+  Statement insert_line =
+      database.Prepare("INSERT INTO log (number, bytes, checksum) VALUES (?1, ?2, row_checksum(?1, ?2))");
+  Statement delete_lines = database.Prepare("DELETE FROM log WHERE number >= ?1 AND number < ?2");
+  Statement put_steering = database.Prepare(
+      "REPLACE INTO steering (sequence, step, time, accept_time_us, input, checksum) VALUES (?1, ?2, ?3, ?4, ?5, "
+      "row_checksum(?1, ?2, ?3, ?4, ?5))");
   ReaderPool<Reader> readers;
 };
 
@@ -139,6 +166,7 @@ void FrameDatabase::Count() {
   frame_count_ = database.QueryInt("SELECT count(*) FROM frames");
   stored_bytes_ = database.QueryInt(
       "SELECT (SELECT ifnull(sum(size), 0) FROM frames) + (SELECT ifnull(sum(length(bytes)), 0) FROM geometry)");
+  log_end_ = database.QueryInt("SELECT ifnull(max(number) + 1, 0) FROM log");
 }
 
 bool FrameDatabase::HasGeometry(std::string_view bytes) {
@@ -193,20 +221,24 @@ FrameDatabase::Stored FrameDatabase::Find(const FrameRecord& frame) {
   return rows.Next() && rows.Int(0) == 1 ? Stored::kSame : Stored::kDamaged;
 }
 
-bool FrameDatabase::PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) {
+bool FrameDatabase::PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint,
+                             std::span<const LogRow> log) {
   const std::lock_guard lock(write_mutex_);
   if (frame.index < 0 || frame.index > frame_count_) {
     throw std::invalid_argument("frame " + std::to_string(frame.index) + " does not follow the stored ones");
   }
   const Stored stored = Find(frame);
-  if (stored == Stored::kSame && checkpoint.empty()) return false;
+  const std::span<const LogRow> lines = NewLines(log);
+  if (stored == Stored::kSame && checkpoint.empty() && lines.empty()) return false;
 
   Transaction transaction(connections_->database);
   if (stored == Stored::kDifferent) DeleteFramesFrom(frame.index);
   if (stored == Stored::kDamaged) connections_->delete_frame.Run(frame.index);
   if (stored != Stored::kSame) InsertFrame(frame, bytes);
   if (!checkpoint.empty()) InsertCheckpoint(frame.index, checkpoint);
+  const std::int64_t log_end = InsertLog(lines);
   transaction.Commit();
+  log_end_ = log_end;
   if (stored == Stored::kNot) {
     stored_bytes_ += static_cast<std::int64_t>(bytes.size());
     ++frame_count_;
@@ -265,6 +297,70 @@ std::optional<std::string> FrameDatabase::ReadChunk(std::int64_t index, std::int
     if (!rows.Next()) return std::nullopt;
     CheckIntact(rows, 1, reader.database, "frame " + std::to_string(index));
     return rows.String(0);
+  });
+}
+
+std::span<const LogRow> FrameDatabase::NewLines(std::span<const LogRow> lines) {
+  const auto is_stored = [this](const LogRow& row) {
+    if (row.number >= log_end_) return false;
+    if (row.number >= kFirstLines && row.number < log_end_ - kLastLines) return true;
+    Rows rows = connections_->line.Query(row.number);
+    return rows.Next() && rows.Bytes(0) == row.bytes;
+  };
+  while (!lines.empty() && is_stored(lines.front())) lines = lines.subspan(1);
+  return lines;
+}
+
+std::int64_t FrameDatabase::InsertLog(std::span<const LogRow> lines) {
+  if (lines.empty()) return log_end_;
+  connections_->delete_lines.Run(lines.front().number, INT64_MAX);
+  for (const LogRow& row : lines) connections_->insert_line.Run(row.number, Blob{row.bytes});
+  const std::int64_t end = lines.back().number + 1;
+  connections_->delete_lines.Run(kFirstLines, end - kLastLines);
+  return end;
+}
+
+void FrameDatabase::PutLog(std::span<const LogRow> lines) {
+  const std::lock_guard lock(write_mutex_);
+  lines = NewLines(lines);
+  if (lines.empty()) return;
+  Transaction transaction(connections_->database);
+  const std::int64_t end = InsertLog(lines);
+  transaction.Commit();
+  log_end_ = end;
+}
+
+std::vector<LogRow> FrameDatabase::ReadLog(std::int64_t start, int limit) {
+  return connections_->readers.With([&](Reader& reader) {
+    std::vector<LogRow> lines;
+    Rows rows = reader.log.Query(start, limit < 0 ? 0 : limit);
+    while (rows.Next()) {
+      CheckIntact(rows, 2, reader.database, "line " + std::to_string(rows.Int(0)) + " of the log");
+      lines.push_back({rows.Int(0), rows.String(1)});
+    }
+    return lines;
+  });
+}
+
+void FrameDatabase::PutSteering(const SteeringRecord& record) {
+  const std::lock_guard lock(write_mutex_);
+  connections_->put_steering.Run(record.sequence, record.step, record.time, record.accept_time_us, Blob{record.input});
+}
+
+std::vector<SteeringRecord> FrameDatabase::ListSteering(std::int64_t start, int limit) {
+  return connections_->readers.With([&](Reader& reader) {
+    std::vector<SteeringRecord> records;
+    Rows rows = reader.steering.Query(start, limit < 0 ? 0 : limit);
+    while (rows.Next()) {
+      CheckIntact(rows, 7, reader.database, "input " + std::to_string(rows.Int(0)));
+      SteeringRecord& record = records.emplace_back();
+      record.sequence = rows.Int(0);
+      if (rows.Int(5) == 1) record.step = rows.Int(1);
+      if (rows.Int(6) == 1) record.time = rows.Real(2);
+      record.accept_time_us = rows.Int(3);
+      record.input = rows.String(4);
+    }
+    return records;
   });
 }
 

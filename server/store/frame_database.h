@@ -15,7 +15,7 @@
 
 namespace fascicle::server {
 
-// The frames of one job, in jobs/{id}.db. Thread-safe.
+// The frames of one job, its inputs and its log, in jobs/{id}.db. Thread-safe.
 class FrameDatabase final : public FrameStore {
  public:
   // `held`, the lock of the directory, is kept as long as this object lives.
@@ -25,13 +25,20 @@ class FrameDatabase final : public FrameStore {
   void PutGeometry(std::string_view bytes) override;
   std::optional<std::int64_t> GeometrySize() override;
   std::optional<std::string> ReadGeometryChunk(std::int64_t chunk) override;
-  bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) override;
+  using FrameStore::PutFrame;
+  bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint,
+                std::span<const LogRow> log) override;
   void DropCheckpoints() override;
   std::optional<CheckpointRecord> GetCheckpoint(std::int64_t frame) override;
   std::vector<FrameRecord> ListFrames(std::int64_t start, int limit) override;
   std::int64_t frame_count() override { return frame_count_; }
   std::int64_t stored_bytes() override { return stored_bytes_; }
   std::optional<std::string> ReadChunk(std::int64_t index, std::int64_t chunk) override;
+  void PutLog(std::span<const LogRow> lines) override;
+  std::vector<LogRow> ReadLog(std::int64_t start, int limit) override;
+  std::int64_t log_end() override { return log_end_; }
+  void PutSteering(const SteeringRecord& record) override;
+  std::vector<SteeringRecord> ListSteering(std::int64_t start, int limit) override;
 
   // Whether the file is removed with this object: its job has been deleted, or is not there yet.
   void RemoveWhenClosed(bool remove = true) { remove_ = remove; }
@@ -50,6 +57,11 @@ class FrameDatabase final : public FrameStore {
   void InsertFrame(const FrameRecord& frame, std::string_view bytes);
   void DeleteFramesFrom(std::int64_t index);
   void InsertCheckpoint(std::int64_t frame, std::string_view bytes);
+  // The first line of `lines` that is not stored yet, or differs from the stored one. Lines between the first and the
+  // last ones count as stored.
+  std::span<const LogRow> NewLines(std::span<const LogRow> lines);
+  // Within a transaction; lines: of NewLines. Returns the end of the log.
+  std::int64_t InsertLog(std::span<const LogRow> lines);
   void Count();
 
   const std::shared_ptr<void> held_;
@@ -58,6 +70,7 @@ class FrameDatabase final : public FrameStore {
   std::unique_ptr<Connections> connections_;
   std::atomic<std::int64_t> frame_count_ = 0;
   std::atomic<std::int64_t> stored_bytes_ = 0;
+  std::atomic<std::int64_t> log_end_ = 0;
   std::atomic<bool> remove_ = false;
 };
 

@@ -35,7 +35,9 @@ class MemoryFrameStore final : public FrameStore {
     return ChunkOf(*geometry_, chunk);
   }
 
-  bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) override {
+  using FrameStore::PutFrame;
+  bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint,
+                std::span<const LogRow> log) override {
     const std::unique_lock lock(mutex_);
     const auto count = static_cast<std::int64_t>(frames_.size());
     if (frame.index < 0 || frame.index > count) {
@@ -53,6 +55,7 @@ class MemoryFrameStore final : public FrameStore {
       checkpoints_[frame.index] = checkpoint;
       while (checkpoints_.size() > 2) checkpoints_.erase(checkpoints_.begin());
     }
+    AddLines(log);
     return is_there && !is_same;
   }
 
@@ -95,6 +98,40 @@ class MemoryFrameStore final : public FrameStore {
     return ChunkOf(frames_[static_cast<std::size_t>(index)].bytes, chunk);
   }
 
+  void PutLog(std::span<const LogRow> lines) override {
+    const std::unique_lock lock(mutex_);
+    AddLines(lines);
+  }
+
+  std::vector<LogRow> ReadLog(std::int64_t start, int limit) override {
+    const std::shared_lock lock(mutex_);
+    std::vector<LogRow> lines;
+    for (auto line = log_.lower_bound(start); line != log_.end() && static_cast<int>(lines.size()) < limit; ++line) {
+      lines.push_back({line->first, line->second});
+    }
+    return lines;
+  }
+
+  std::int64_t log_end() override {
+    const std::shared_lock lock(mutex_);
+    return LogEnd();
+  }
+
+  void PutSteering(const SteeringRecord& record) override {
+    const std::unique_lock lock(mutex_);
+    steering_[record.sequence] = record;
+  }
+
+  std::vector<SteeringRecord> ListSteering(std::int64_t start, int limit) override {
+    const std::shared_lock lock(mutex_);
+    std::vector<SteeringRecord> records;
+    for (auto input = steering_.lower_bound(start); input != steering_.end(); ++input) {
+      if (static_cast<int>(records.size()) >= limit) break;
+      records.push_back(input->second);
+    }
+    return records;
+  }
+
  private:
   struct StoredFrame {
     FrameRecord record;
@@ -114,7 +151,22 @@ class MemoryFrameStore final : public FrameStore {
     checkpoints_.erase(checkpoints_.lower_bound(static_cast<std::int64_t>(index)), checkpoints_.end());
   }
 
+  std::int64_t LogEnd() const { return log_.empty() ? 0 : log_.rbegin()->first + 1; }
+
+  void AddLines(std::span<const LogRow> lines) {
+    for (const LogRow& row : lines) {
+      if (row.number >= kFirstLines && row.number < LogEnd() - kLastLines) continue;
+      const auto stored = log_.find(row.number);
+      if (stored != log_.end() && stored->second == row.bytes) continue;
+      log_.erase(log_.lower_bound(row.number), log_.end());
+      log_.emplace(row.number, row.bytes);
+      log_.erase(log_.lower_bound(kFirstLines), log_.lower_bound(std::max(kFirstLines, LogEnd() - kLastLines)));
+    }
+  }
+
   std::shared_mutex mutex_;
+  std::map<std::int64_t, std::string> log_;
+  std::map<std::int64_t, SteeringRecord> steering_;
   std::optional<std::string> geometry_;
   std::vector<StoredFrame> frames_;
   std::map<std::int64_t, std::string> checkpoints_;

@@ -5,6 +5,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -109,8 +110,23 @@ struct CheckpointRecord {
   std::string bytes;
 };
 
-// The frames of one job, in a file of their own. Writers wait for each other; readers do not wait. What is read is
-// compared with the checksum stored with it: DamageError.
+// A line of the log of a job.
+struct LogRow {
+  std::int64_t number = 0;
+  std::string bytes;
+};
+
+// An input of a job.
+struct SteeringRecord {
+  std::int64_t sequence = 0;         // from 1
+  std::optional<std::int64_t> step;  // with which it takes effect, if that is known
+  std::optional<double> time;        // otherwise: with the first step that does not begin before this time [s]
+  std::int64_t accept_time_us = 0;   // since the Unix epoch
+  std::string input;                 // serialized contents, opaque here
+};
+
+// The frames of one job, its inputs and its log, in a file of their own. Writers wait for each other; readers do not
+// wait. What is read is compared with the checksum stored with it: DamageError.
 class FrameStore {
  public:
   static constexpr std::int64_t kChunkSize = 1 << 20;  // size of the chunks in which frames and geometry are stored
@@ -122,13 +138,18 @@ class FrameStore {
   virtual std::optional<std::int64_t> GeometrySize() = 0;
   // Chunk number `chunk` of the geometry; nothing if it does not exist.
   virtual std::optional<std::string> ReadGeometryChunk(std::int64_t chunk) = 0;
-  // Appends a frame and, if `checkpoint` is not empty, stores that, in one transaction. The last two checkpoints are
-  // kept. If a frame with this index and digest is already stored, it is left as it is (a restart repeats frames after
-  // its checkpoint), but written anew if its bytes are damaged. If the digest differs, this frame and all later ones
-  // are replaced, checkpoints that belong to them are removed, and true is returned. The caller must increment the
-  // job's generation before such a call, so that no reader sees the new frame under the old generation. Throws
-  // std::invalid_argument unless 0 <= index <= frame_count(). `frame.size` is ignored; the size of `bytes` is stored.
-  virtual bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) = 0;
+  // Appends a frame and, if `checkpoint` is not empty, stores that, and the lines of `log` as by PutLog, in one
+  // transaction. The last two checkpoints are kept. If a frame with this index and digest is already stored, it is left
+  // as it is (a restart repeats frames after its checkpoint), but written anew if its bytes are damaged. If the digest
+  // differs, this frame and all later ones are replaced, checkpoints that belong to them are removed, and true is
+  // returned. The caller must increment the job's generation before such a call, so that no reader sees the new frame
+  // under the old generation. Throws std::invalid_argument unless 0 <= index <= frame_count(). `frame.size` is ignored;
+  // the size of `bytes` is stored.
+  virtual bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint,
+                        std::span<const LogRow> log) = 0;
+  bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) {
+    return PutFrame(frame, bytes, checkpoint, {});
+  }
   // Removes all checkpoints, so that the next run starts at rest.
   virtual void DropCheckpoints() = 0;
   // The newest undamaged checkpoint of a frame before `frame`.
@@ -140,6 +161,21 @@ class FrameStore {
   virtual std::int64_t stored_bytes() = 0;
   // Chunk number `chunk` of a frame; nothing if it does not exist.
   virtual std::optional<std::string> ReadChunk(std::int64_t index, std::int64_t chunk) = 0;
+
+  // Of a long log the first and the last lines are kept.
+  static constexpr std::int64_t kFirstLines = 1'000, kLastLines = 20'000;
+  // Stores lines of the log, with ascending numbers. Those that are stored already are left as they are (a restart
+  // repeats lines after its checkpoint); if one differs, it and all later ones are replaced.
+  virtual void PutLog(std::span<const LogRow> lines) = 0;
+  // Lines with number >= start, at most `limit`, in order.
+  virtual std::vector<LogRow> ReadLog(std::int64_t start, int limit) = 0;
+  // The number after that of the last line; 0 if there is none.
+  virtual std::int64_t log_end() = 0;
+
+  // Stores an input, or replaces the one with the same sequence number. Durable on return.
+  virtual void PutSteering(const SteeringRecord& record) = 0;
+  // Inputs with sequence >= start, at most `limit`, in order.
+  virtual std::vector<SteeringRecord> ListSteering(std::int64_t start, int limit) = 0;
 };
 
 // Files that scenes need, identified by digest.

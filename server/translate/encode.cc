@@ -88,6 +88,24 @@ v1::Failure::ObjectKind KindOf(ObjectKind kind) {
   return v1::Failure::OBJECT_KIND_UNSPECIFIED;
 }
 
+v1::LogLine::Kind KindOf(LogLine::Kind kind) {
+  switch (kind) {
+    case LogLine::Kind::kStep:
+      return v1::LogLine::KIND_STEP;
+    case LogLine::Kind::kCut:
+      return v1::LogLine::KIND_CUT;
+    case LogLine::Kind::kFrame:
+      return v1::LogLine::KIND_FRAME;
+    case LogLine::Kind::kInput:
+      return v1::LogLine::KIND_INPUT;
+    case LogLine::Kind::kWarning:
+      return v1::LogLine::KIND_WARNING;
+    case LogLine::Kind::kFailure:
+      return v1::LogLine::KIND_FAILURE;
+  }
+  return v1::LogLine::KIND_UNSPECIFIED;
+}
+
 }  // namespace
 
 void EncodeElements(const TetShape& shape, v1::BodyGeometry& geometry) {
@@ -175,6 +193,22 @@ v1::Warnings EncodeWarnings(const std::vector<Warning>& warnings) {
     for (const std::int64_t element : warning.elements) message.add_element_ids(element);
   }
   return messages;
+}
+
+v1::LogLine EncodeLine(const LogLine& line) {
+  v1::LogLine encoded;
+  encoded.set_kind(KindOf(line.kind));
+  encoded.set_step(line.step);
+  encoded.set_time(line.time);
+  encoded.set_steps(line.steps);
+  encoded.set_time_step(line.time_step);
+  encoded.set_iterations(line.iterations);
+  encoded.set_cuts(line.cuts);
+  if (line.residual >= 0) encoded.set_residual(line.residual);
+  if (line.frame >= 0) encoded.set_frame(line.frame);
+  encoded.set_text(line.text);
+  encoded.set_sequence(line.sequence);
+  return encoded;
 }
 
 v1::Failure EncodeFailure(const Failure& failure) {

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "server/translate/steering.h"
+
 namespace fascicle::server {
 namespace {
 
@@ -41,7 +43,10 @@ JobCodec MakeJobCodec(ResultCache* results) {
               [](const std::vector<Warning>& warnings) {
                 return warnings.empty() ? std::string() : Serialize(EncodeWarnings(warnings));
               },
-          .encode_profile = [](const RunProfile& profile) { return Serialize(EncodeProfile(profile)); }};
+          .encode_profile = [](const RunProfile& profile) { return Serialize(EncodeProfile(profile)); },
+          .encode_line = [](const LogLine& line) { return Serialize(EncodeLine(line)); },
+          .inputs_of_spec = InputsOfSpec,
+          .decode_inputs = DecodeInputs};
 }
 
 }  // namespace fascicle::server

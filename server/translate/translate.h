@@ -17,6 +17,7 @@
 #include "core/sim/simulation.h"
 #include "fascicle/v1/frame.pb.h"
 #include "fascicle/v1/job.pb.h"
+#include "fascicle/v1/log.pb.h"
 #include "fascicle/v1/scene.pb.h"
 
 namespace fascicle::server {
@@ -61,6 +62,7 @@ void EncodeElements(const TetShape& shape, v1::BodyGeometry& geometry);
 v1::Geometry EncodeGeometry(const Scene& scene, const FrameLayout& layout);
 v1::Frame EncodeFrame(const Frame& frame);
 v1::Failure EncodeFailure(const Failure& failure);
+v1::LogLine EncodeLine(const LogLine& line);
 v1::Warnings EncodeWarnings(const std::vector<Warning>& warnings);
 // The profile of the check of a scene, before the first run.
 v1::Profile EncodeProfileOfCheck(const Profile& profile);

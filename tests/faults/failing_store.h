@@ -45,7 +45,7 @@ class FailingStore final : public Store {
   struct Points {
     Faults reads;         // of jobs and frames
     Faults job_writes;    // CreateJob, UpdateJob, DeleteJob
-    Faults frame_writes;  // PutFrame, PutGeometry
+    Faults frame_writes;  // PutFrame, PutGeometry, PutSteering, PutLog
   };
 
   explicit FailingStore(std::unique_ptr<Store> behind) : behind_(std::move(behind)) {}
@@ -105,9 +105,10 @@ class FailingStore final : public Store {
       faults_->reads.Call();
       return behind_->ReadGeometryChunk(chunk);
     }
-    bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint) override {
+    bool PutFrame(const FrameRecord& frame, std::string_view bytes, std::string_view checkpoint,
+                  std::span<const LogRow> log) override {
       faults_->frame_writes.Call();
-      return behind_->PutFrame(frame, bytes, checkpoint);
+      return behind_->PutFrame(frame, bytes, checkpoint, log);
     }
     void DropCheckpoints() override {
       faults_->frame_writes.Call();
@@ -126,6 +127,23 @@ class FailingStore final : public Store {
     std::optional<std::string> ReadChunk(std::int64_t index, std::int64_t chunk) override {
       faults_->reads.Call();
       return behind_->ReadChunk(index, chunk);
+    }
+    void PutLog(std::span<const LogRow> lines) override {
+      faults_->frame_writes.Call();
+      behind_->PutLog(lines);
+    }
+    std::vector<LogRow> ReadLog(std::int64_t start, int limit) override {
+      faults_->reads.Call();
+      return behind_->ReadLog(start, limit);
+    }
+    std::int64_t log_end() override { return behind_->log_end(); }
+    void PutSteering(const SteeringRecord& record) override {
+      faults_->frame_writes.Call();
+      behind_->PutSteering(record);
+    }
+    std::vector<SteeringRecord> ListSteering(std::int64_t start, int limit) override {
+      faults_->reads.Call();
+      return behind_->ListSteering(start, limit);
     }
 
    private:

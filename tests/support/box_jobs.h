@@ -104,6 +104,18 @@ inline JobCodec BoxCodec() {
     return text;
   };
   codec.encode_profile = EncodeProfile;
+  codec.encode_line = [](const LogLine& line) {
+    return std::to_string(static_cast<int>(line.kind)) + " step " + std::to_string(line.step) + " " + line.text;
+  };
+  codec.inputs_of_spec = [](const std::string&) { return std::vector<SteeringRecord>(); };
+  // An input is the factor on gravity.
+  codec.decode_inputs = [](const std::string&, const std::vector<SteeringRecord>& records) {
+    std::vector<SteeringInput> inputs;
+    for (const SteeringRecord& record : records) {
+      inputs.push_back({record.sequence, {{ControlKind::kGravity, 0, std::stod(record.input)}}, 0});
+    }
+    return inputs;
+  };
   return codec;
 }
 

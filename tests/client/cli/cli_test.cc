@@ -53,9 +53,9 @@ TEST_F(CliTest, HelpTellsExitCodesAndExamples) {
   const Finished help = Fascicle({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.out, AllOf(HasSubstr("Exit codes:"), HasSubstr("3  no server")));
-  for (const char* command :
-       {"run", "submit", "validate", "watch", "list", "show", "cancel", "restart", "verify", "delete", "export",
-        "render", "plot", "mesh", "materials", "schema", "examples", "completion"}) {
+  for (const char* command : {"run",     "submit", "validate", "watch",     "list",   "show",     "cancel",
+                              "restart", "verify", "steer",    "replay",    "log",    "delete",   "export",
+                              "render",  "plot",   "mesh",     "materials", "schema", "examples", "completion"}) {
     EXPECT_THAT(help.out, HasSubstr(command));
     const Finished own = Fascicle({command, "--help"});
     EXPECT_EQ(own.exit_code, 0) << command;
@@ -696,7 +696,7 @@ TEST_F(ServerTest, RunningJobsCanBeCancelledButNotDeleted) {
   const Finished watched = Call({"watch", job, "--json"});
   EXPECT_EQ(watched.exit_code, 4) << watched.err;
   EXPECT_EQ(json::parse(watched.out)["state"], "cancelled");
-  for (const char* command : {"show", "cancel", "restart", "verify", "delete", "watch"}) {
+  for (const char* command : {"show", "cancel", "restart", "verify", "steer", "replay", "log", "delete", "watch"}) {
     EXPECT_EQ(Call({command, "jobs/none"}).exit_code, 2) << command;
   }
 }

@@ -125,6 +125,7 @@ class CommandsTest : public ::testing::Test {
     std::unique_ptr<ServerProcess> server;
     std::string address;
     std::string job, other;  // jobs/ID
+    std::string steered;     // the last one
   };
 
   static void SetUpTestSuite() {
@@ -134,6 +135,7 @@ class CommandsTest : public ::testing::Test {
     WriteInputs(all.files);
     WriteFile(all.folder / "quick.json", QuickScene());
     WriteFile(all.folder / "endless.json", EndlessScene());
+    WriteFile(all.folder / "steered.json", SteeredScene());
     all.server = std::make_unique<ServerProcess>(
         std::vector<std::string>{"--listen", "127.0.0.1:0", "--data", all.folder / "server", "--log-level", "off"});
     all.address = all.server->AwaitAddress();
@@ -175,6 +177,8 @@ class CommandsTest : public ::testing::Test {
     return name.substr(0, name.find('\n'));
   }
 
+  static bool Steers(const std::string& line) { return line.starts_with("fascicle steer "); }
+
   // The line with real names in place of the document's.
   static std::string WithNames(std::string line) {
     std::string job = prepared_->job, other = prepared_->other;
@@ -184,6 +188,7 @@ class CommandsTest : public ::testing::Test {
       for (const std::string& name : {job, other}) MustRun("fascicle watch " + name, prepared_->files);
     }
     if (line.starts_with("fascicle cancel ")) job = Submit("endless.json");
+    if (Steers(line)) job = prepared_->steered = Submit("steered.json");
     for (const Placeholder& placeholder : kPlaceholders) line = Replaced(line, placeholder.written, placeholder.meant);
     const auto id = [](const std::string& name) { return name.substr(name.find('/') + 1); };
     line = Replaced(Replaced(line, "$JOB", job), "$OTHER_ID", id(other));
@@ -215,6 +220,7 @@ class CommandsTest : public ::testing::Test {
     const auto start = std::chrono::steady_clock::now();
     const Finished finished = Shell(command, folder);
     EXPECT_EQ(finished.exit_code, 0) << command << '\n' << finished.out << finished.err;
+    if (Steers(line.command)) MustRun("fascicle cancel " + prepared_->steered, folder);
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
     if (!kSlow && time.count() > 2) std::printf("%4.1f s  %s\n", time.count(), line.command.c_str());
     // A comment that promises another exit code speaks of a scene that is not valid.

@@ -265,4 +265,17 @@ void WriteInputs(const std::filesystem::path& folder) {
 std::string QuickScene() { return BlockScene(0.001, 0.0005); }
 std::string EndlessScene() { return BlockScene(1000, 1); }
 
+std::string SteeredScene() {
+  return R"({"name": "steered", "bodies": [{"name": "muscle", "unit": "cm",
+    "mesh": {"box": {"size": [2, 2, 4], "divisions": [2, 2, 4]}},
+    "material": {"muscle": {"bulk_modulus": 1e5}}, "fibres": {"constant": {"direction": [0, 0, 1]}},
+    "regions": [{"name": "origin", "plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}},
+                {"name": "insertion", "plane": {"point": [0, 0, 4], "normal": [0, 0, 1]}},
+                {"name": "tip", "side": {"direction": [1, 0, 0]}}],
+    "constraints": [{"region": "origin"}, {"region": "insertion", "motion": {"translation": [{"axis": "x",
+                     "curve": {"times": [0, 100], "values": [0.0001, 0.001]}}]}}],
+    "loads": [{"region": "tip", "traction": {"vector": [10, 0, 0]}}], "damping": {"mass_proportional": 20}}],
+    "gravity": {"acceleration": [0, 0, -9.81]}, "duration": 800, "output": {"frame_interval": 0.01}, "tet": {}})";
+}
+
 }  // namespace fascicle::testing

@@ -13,6 +13,8 @@ void WriteInputs(const std::filesystem::path& folder);
 // A scene that takes milliseconds, and one that runs until it is cancelled.
 std::string QuickScene();
 std::string EndlessScene();
+// Endless, too, with everything that can be steered.
+std::string SteeredScene();
 
 }  // namespace fascicle::testing
 

@@ -88,8 +88,9 @@ TEST_F(StandardServicesTest, ReflectionListsTheServices) {
   ASSERT_TRUE(answer.DumpToSingleSlice(&whole).ok());
   ASSERT_TRUE(response->ParseFromArray(whole.begin(), static_cast<int>(whole.size())));
   const std::string text = response->ShortDebugString();
-  for (const char* service : {"fascicle.v1.JobService", "fascicle.v1.AssetService", "fascicle.v1.FrameService",
-                              "fascicle.v1.ServerService", "grpc.health.v1.Health"}) {
+  for (const char* service :
+       {"fascicle.v1.JobService", "fascicle.v1.AssetService", "fascicle.v1.FrameService", "fascicle.v1.ServerService",
+        "fascicle.v1.SteeringService", "fascicle.v1.LogService", "grpc.health.v1.Health"}) {
     EXPECT_NE(text.find(std::string("\"") + service + "\""), std::string::npos) << text;
   }
   call->WritesDone(nullptr);

@@ -315,6 +315,72 @@ TEST_P(StoreContract, ReadersGoOnWhileFramesAreWritten) {
   EXPECT_EQ(wrong, 0);
 }
 
+std::vector<LogRow> LinesOf(int first, int end, const std::string& text = "line ") {
+  std::vector<LogRow> lines;
+  for (int number = first; number < end; ++number) lines.push_back({number, text + std::to_string(number)});
+  return lines;
+}
+
+std::string TextOf(FrameStore& frames, std::int64_t number) {
+  const std::vector<LogRow> lines = frames.ReadLog(number, 1);
+  return lines.empty() || lines[0].number != number ? "missing" : lines[0].bytes;
+}
+
+TEST_P(StoreContract, ARepeatedLineOfTheLogIsStoredOnce) {
+  const std::shared_ptr<FrameStore> frames = MakeFrames();
+  EXPECT_EQ(frames->log_end(), 0);
+  const SampleFrame first = MakeSampleFrame(0, 10), second = MakeSampleFrame(1, 10);
+  frames->PutFrame(first.record, first.bytes, "", LinesOf(0, 5));
+  frames->PutLog(LinesOf(5, 8));
+  EXPECT_EQ(frames->log_end(), 8);
+  // As a run writes them again from a checkpoint: with the frame, and beyond what was stored.
+  frames->PutFrame(first.record, first.bytes, "", LinesOf(2, 5));
+  EXPECT_EQ(frames->log_end(), 8);
+  frames->PutFrame(second.record, second.bytes, "", LinesOf(5, 11));
+  ASSERT_EQ(frames->ReadLog(0, 100).size(), 11u);
+  for (int k = 0; k < 11; ++k) EXPECT_EQ(TextOf(*frames, k), "line " + std::to_string(k));
+  EXPECT_EQ(frames->ReadLog(4, 3).size(), 3u);
+  frames->PutLog(LinesOf(6, 8, "other "));
+  EXPECT_EQ(frames->log_end(), 8) << "later ones belong to the other course";
+  EXPECT_EQ(TextOf(*frames, 5), "line 5");
+  EXPECT_EQ(TextOf(*frames, 6), "other 6");
+}
+
+TEST_P(StoreContract, KeepsTheFirstAndTheLastLinesOfALog) {
+  const std::shared_ptr<FrameStore> frames = MakeFrames();
+  constexpr int kEnd = 30'000;
+  frames->PutLog(LinesOf(0, 10'000));
+  frames->PutLog(LinesOf(10'000, kEnd));
+  const std::vector<LogRow> kept = frames->ReadLog(0, 1 << 20);
+  ASSERT_EQ(static_cast<std::int64_t>(kept.size()), FrameStore::kFirstLines + FrameStore::kLastLines);
+  EXPECT_EQ(TextOf(*frames, 999), "line 999");
+  EXPECT_EQ(TextOf(*frames, 1000), "missing");
+  EXPECT_EQ(TextOf(*frames, 10'000), "line 10000");
+  frames->PutLog(LinesOf(5'000, kEnd));  // again, from before what was removed
+  EXPECT_EQ(frames->log_end(), kEnd);
+  EXPECT_EQ(frames->ReadLog(0, 1 << 20).size(), kept.size());
+}
+
+TEST_P(StoreContract, KeepsInputs) {
+  const std::shared_ptr<FrameStore> frames = MakeFrames();
+  EXPECT_THAT(frames->ListSteering(1, 10), IsEmpty());
+  frames->PutSteering({1, 17, std::nullopt, 5, std::string("a\0b", 3)});
+  frames->PutSteering({2, std::nullopt, 0.25, 6, "later"});
+  std::vector<SteeringRecord> listed = frames->ListSteering(1, 10);
+  ASSERT_EQ(listed.size(), 2u);
+  EXPECT_EQ(listed[0].step, 17);
+  EXPECT_FALSE(listed[0].time.has_value());
+  EXPECT_EQ(listed[0].accept_time_us, 5);
+  EXPECT_EQ(listed[0].input, std::string("a\0b", 3));
+  EXPECT_FALSE(listed[1].step.has_value());
+  EXPECT_EQ(listed[1].time, 0.25);
+  listed[1].step = 40;
+  frames->PutSteering(listed[1]);
+  EXPECT_EQ(frames->ListSteering(2, 10).size(), 1u);
+  EXPECT_EQ(frames->ListSteering(2, 10)[0].step, 40);
+  EXPECT_EQ(frames->ListSteering(1, 1).size(), 1u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Stores, StoreContract, ::testing::Values(Kind::kMemory, Kind::kSqlite),
                          [](const auto& test) { return test.param == Kind::kMemory ? "Memory" : "Sqlite"; });
 
