@@ -5,7 +5,8 @@
 
 namespace fascicle::server {
 
-ActiveJob::ActiveJob(Store& store, JobRecord record) : store_(store), id_(record.id), record_(std::move(record)) {
+ActiveJob::ActiveJob(Store& store, JobRecord record) 
+    : store_(store), id_(record.id), wanted_threads_(record.threads), record_(std::move(record)) {
   record_.spec.clear();
   progress_ = ViewOf(record_).progress;
 }
@@ -74,11 +75,29 @@ JobView ActiveJob::View(JobRecord stored) const {
   const std::lock_guard lock(mutex_);
   JobRecord record = record_;
   record.spec = std::move(stored.spec);
+  record.labels = std::move(stored.labels);
+  record.priority = stored.priority;
+  record.ttl_s = stored.ttl_s;
+  record.is_pinned = stored.is_pinned;
+  record.revision = stored.revision;
   FillIn(record);
+  return ViewWithProgress(std::move(record));
+}
+
+JobView ActiveJob::ViewStored(JobRecord stored) const {
+  const std::lock_guard lock(mutex_);
+  JobView view = ViewWithProgress(std::move(stored));
+  if (frames_ == nullptr) return view;
+  view.frame_count = frames_->frame_count();
+  view.stored_bytes = frames_->stored_bytes();
+  return view;
+}
+
+JobView ActiveJob::ViewWithProgress(JobRecord record) const {
   JobView view = ViewOf(std::move(record));
   view.progress = progress_;
-  if (!IsFinal(record_.state)) view.waiting = waiting_;
-  if (record_.state == JobState::kRunning) view.eta_seconds = eta_.Seconds(std::chrono::steady_clock::now());
+  if (!IsAtRest(view.record.state)) view.waiting = waiting_;
+  if (view.record.state == JobState::kRunning) view.eta_seconds = eta_.Seconds(std::chrono::steady_clock::now());
   return view;
 }
 
@@ -107,9 +126,15 @@ std::string_view EventOf(JobState state) {
       return "failed";
     case JobState::kCancelled:
       return "cancelled";
+    case JobState::kPaused:
+      return "paused";
+    case JobState::kPausing:
+      return "asked to pause";
   }
   return "changed";
 }
+
+bool IsAtRest(JobState state) { return IsFinal(state) || state == JobState::kPaused; }
 
 std::int64_t UnixTimeUs() {
   return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())

@@ -146,7 +146,9 @@ void JobQueue::FindPlaces(Clock::time_point now) {
   for (auto& [name, owner] : owners_) {
     if (owner.waiting.empty()) continue;
     const auto level = owner.waiting.cbegin();
-    turns.insert(turn_of({.owner = &owner,
+    turns.insert(turn_of({.is_at_limit = false,
+                          .rank = {},
+                          .owner = &owner,
                           .level = level,
                           .id = level->second.cbegin(),
                           .used = UsedBy(owner, now),

@@ -9,6 +9,7 @@
 #include "core/base/stop.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "server/jobs/job_manager.h"
 #include "server/store/store.h"
 
 namespace fascicle::server {
@@ -177,6 +178,8 @@ grpc::Status Guarded(spdlog::logger& log, const char* what, const std::function<
   } catch (const NoSpaceError& e) {
     log.error("{}: the disk is full: {}", what, e.what());
     return ResourceExhausted("DISK_FULL", "disk", "the server's disk is full; delete jobs or free some space");
+  } catch (const OwnerLimitError& e) {
+    return ResourceExhausted("OWNER_LIMIT", "owner", e.what());
   } catch (const StoreError& e) {
     log.error("{}: storage failed: {}", what, e.what());
     return Internal("STORAGE", Shortened(std::string("the server's storage failed: ") + e.what()));

@@ -13,6 +13,8 @@ std::string SpecOf(const v1::Job& requested);
 
 // The message of a job, without its scene.
 v1::Job ToMessage(const JobView& view);
+// The same as in a list: without profile and warnings, which are as large as everything else.
+v1::Job ToListedMessage(const JobView& view);
 // The message of a job with its scene, as GetJob gives it.
 v1::Job ToMessageWithScene(const JobView& view);
 

@@ -43,15 +43,17 @@ bool PassesLabel(const JobRecord& job, const JobCondition& condition) {
   return Compare(found->second, condition.relation, condition.text);
 }
 
+bool Holds(const JobRecord& job, const JobCondition& condition) {
+  if (condition.field == JobField::kLabel) return PassesLabel(job, condition);
+  const JobPlace value = PlaceOf(job, condition.field);
+  if (IsText(condition.field)) return PassesText(value.text, condition);
+  if (MayBeAbsent(condition.field) && value.number == 0) return condition.relation == Relation::kNotEqual;
+  return Compare(value.number, condition.relation, condition.number);
+}
+
 }  // namespace
 
-bool JobCondition::Passes(const JobRecord& job) const {
-  if (field == JobField::kLabel) return PassesLabel(job, *this);
-  const JobPlace value = PlaceOf(job, field);
-  if (IsText(field)) return PassesText(value.text, *this);
-  if (MayBeAbsent(field) && value.number == 0) return relation == Relation::kNotEqual;
-  return Compare(value.number, relation, number);
-}
+bool JobCondition::Passes(const JobRecord& job) const { return Holds(job, *this) != is_negated; }
 
 bool JobFilter::Passes(const JobRecord& job) const {
   return std::all_of(groups.begin(), groups.end(), [&](const std::vector<JobCondition>& group) {

@@ -37,8 +37,9 @@ struct JobCondition {
   std::int64_t number = 0;  // for fields that are numbers; times in us since the Unix epoch
   std::string text = {};    // for kOwner, kName and kLabel
   std::string key = {};     // of a label; with kContains, jobs that have the label pass
+  bool is_negated = false;  // whether the others pass
 
-  // Jobs without a value (a time that has not come, a label that is not there) pass kNotEqual only.
+  // Jobs without a value (a time that has not come, a label that is not there) pass kNotEqual only, unless negated.
   bool Passes(const JobRecord& job) const;
 };
 

@@ -230,6 +230,11 @@ class JobSelection {
 
  private:
   std::string Term(const JobCondition& condition) {
+    const std::string term = PlainTerm(condition);
+    return condition.is_negated ? "NOT (" + term + ")" : term;
+  }
+
+  std::string PlainTerm(const JobCondition& condition) {
     if (condition.field == JobField::kLabel) return LabelTerm(condition);
     const std::string column = ColumnOf(condition.field);
     if (!IsText(condition.field)) {
