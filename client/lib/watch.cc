@@ -5,9 +5,9 @@
 #include <optional>
 #include <utility>
 
-#include "client/lib/backoff.h"
 #include "client/lib/message_assembler.h"
 #include "client/lib/message_stream.h"
+#include "client/lib/patience.h"
 #include "client/lib/status_error.h"
 
 namespace fascicle::client {
@@ -21,33 +21,6 @@ using Outcome = MessageStream<Response>::Outcome;
 constexpr std::chrono::seconds kLongestSilence(30);
 
 const Error kStoppedError = {.kind = Error::Kind::kStopped, .message = "stopped", .reason = "", .problems = {}};
-
-// When to give up after a lost connection: `patience` after the first loss since the last success.
-class Patience {
- public:
-  explicit Patience(std::chrono::seconds patience) : patience_(patience) {}
-
-  void Succeeded() {
-    lost_since_.reset();
-    backoff_.Reset();
-  }
-
-  // Returns true for the first loss since the last success.
-  bool Lost() {
-    if (lost_since_) return false;
-    lost_since_ = Steady::now();
-    return true;
-  }
-
-  bool exhausted() const { return lost_since_ && Steady::now() - *lost_since_ >= patience_; }
-
-  void Wait(const grpc::Status& status, const std::stop_token& stop) { backoff_.Wait(RetryDelayOf(status), stop); }
-
- private:
-  const std::chrono::seconds patience_;
-  std::optional<Steady::time_point> lost_since_;
-  Backoff backoff_;
-};
 
 grpc::Status Damaged(const std::string& what) { return grpc::Status(grpc::StatusCode::UNAVAILABLE, what); }
 

@@ -5,7 +5,7 @@
 
 namespace fascicle::server {
 
-ActiveJob::ActiveJob(Store& store, JobRecord record) 
+ActiveJob::ActiveJob(Store& store, JobRecord record)
     : store_(store), id_(record.id), wanted_threads_(record.threads), record_(std::move(record)) {
   record_.spec.clear();
   progress_ = ViewOf(record_).progress;

@@ -52,7 +52,7 @@ class ActiveJob {
   std::stop_token stop_token() const { return stop_.get_token(); }
 
  private:
-  void FillIn(JobRecord& record) const;        // progress and counts; needs mutex_
+  void FillIn(JobRecord& record) const;       // progress and counts; needs mutex_
   JobView ViewWithProgress(JobRecord) const;  // needs mutex_
 
   Store& store_;

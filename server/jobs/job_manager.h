@@ -106,8 +106,9 @@ struct JobCheck {
   std::vector<std::string> damages;
 };
 
-// The queue and its workers. With workers, also removes what need not be kept (retention.h). Resumes jobs that were queued or running when the last process ended. Thread-safe; all
-// functions may block on disk and throw StoreError. An error within a job ends that job only.
+// The queue and its workers. With workers, also removes what need not be kept (retention.h). Resumes jobs that were
+// queued or running when the last process ended. Thread-safe; all functions may block on disk and throw StoreError. An
+// error within a job ends that job only.
 class JobManager {
  public:
   // `store` must outlive this object. Throws StoreError if stored jobs can't be read.
@@ -117,8 +118,8 @@ class JobManager {
 
   // `record` has spec, scene_name, threads, owner, settings, request_id, request_digest and the profile so far set.
   // Returns the new job, or the earlier one with the same request id (then `*repeated` is true; the caller compares
-  // request_digest). The job is durable on return. Throws OwnerLimitError. `scene` is the scene of the spec, so that the worker need not decode it. Scenes are kept for
-  // at most as many waiting jobs as there are workers.
+  // request_digest). The job is durable on return. Throws OwnerLimitError. `scene` is the scene of the spec, so that
+  // the worker need not decode it. Scenes are kept for at most as many waiting jobs as there are workers.
   JobView Submit(JobRecord record, bool* repeated, std::shared_ptr<const Scene> scene = nullptr);
   std::optional<JobView> Get(std::string_view id);
   // Jobs newest first: ids below `before_id` (empty: from the newest), states in `states` (empty: all).

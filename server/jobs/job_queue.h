@@ -56,7 +56,7 @@ class JobQueue {
   struct Owner {
     // The ids of waiting jobs by descending priority; ids are in the order of creation.
     std::map<int, std::set<std::string>, std::greater<>> waiting;
-    int count = 0;    // of waiting jobs
+    int count = 0;  // of waiting jobs
     int running = 0;
     double used = 0;  // processor time at `used_at` [s]
     Clock::time_point used_at;

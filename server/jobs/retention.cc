@@ -65,8 +65,7 @@ std::vector<JobRecord> Retention::Finished(const std::vector<JobCondition>& cond
 void Retention::DeleteExpired(const std::stop_token& stop) {
   using Relation = JobCondition::Relation;
   const std::int64_t now = UnixTimeUs();
-  std::vector<JobRecord> expired =
-      Finished({{.field = JobField::kExpiry, .relation = Relation::kLess, .number = now}});
+  std::vector<JobRecord> expired = Finished({{.field = JobField::kExpiry, .relation = Relation::kLess, .number = now}});
   if (options_.default_ttl_s > 0) {
     const std::int64_t ended_before = now - 1'000'000 * options_.default_ttl_s;
     for (JobRecord& job :
@@ -85,9 +84,8 @@ void Retention::KeepBudget(const std::stop_token& stop) {
   if (options_.disk_budget <= 0) return;
   std::int64_t excess = store_.StoredBytesOf(std::nullopt) - options_.disk_budget;
   if (excess <= 0) return;
-  for (const JobRecord& job : Finished({{.field = JobField::kStoredBytes,
-                                         .relation = JobCondition::Relation::kGreater,
-                                         .number = 0}})) {
+  for (const JobRecord& job :
+       Finished({{.field = JobField::kStoredBytes, .relation = JobCondition::Relation::kGreater, .number = 0}})) {
     if (excess <= 0 || stop.stop_requested()) return;
     Try([&] { excess -= actions_.remove_frames(job) ? job.stored_bytes : 0; });
   }

@@ -157,6 +157,12 @@ grpc::Status OutOfRange(const std::string& reason, const std::string& message) {
   return MakeStatus(grpc::StatusCode::OUT_OF_RANGE, reason, message, {});
 }
 
+grpc::Status FramesRemoved(const std::string& job_name, std::int64_t first_frame) {
+  const std::string index = std::to_string(first_frame);
+  return OutOfRange("FRAMES_REMOVED", "the frames of " + job_name + " before index " + index +
+                                          " were removed to make room; RestartJob from the start computes them again");
+}
+
 grpc::Status Cancelled() { return MakeStatus(grpc::StatusCode::CANCELLED, "CANCELLED", "the call was cancelled", {}); }
 
 grpc::Status Internal(const std::string& reason, const std::string& message) {

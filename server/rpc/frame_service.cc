@@ -8,39 +8,20 @@
 #include "server/rpc/frame_stream.h"
 #include "server/rpc/geometry_stream.h"
 #include "server/rpc/names.h"
+#include "server/rpc/raw_request.h"
 
 namespace fascicle::server {
-namespace {
-
-// A stream that ends at once with a status.
-class EndedStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
- public:
-  explicit EndedStream(const grpc::Status& status) { Finish(status); }
-  void OnDone() override { delete this; }
-};
-
-template <class Message>
-std::optional<Message> Parse(const grpc::ByteBuffer& bytes) {
-  grpc::ByteBuffer copy(bytes);  // shares the bytes; parsing consumes it
-  Message message;
-  if (!grpc::SerializationTraits<Message>::Deserialize(&copy, &message).ok()) return std::nullopt;
-  return message;
-}
-
-grpc::Status NotAMessage() { return InvalidArgument("", "the request is not the message type of this call"); }
-
-}  // namespace
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::GetGeometry(grpc::CallbackServerContext*,
                                                                           const grpc::ByteBuffer* request) {
-  const auto parsed = Parse<v1::GetGeometryRequest>(*request);
+  const auto parsed = ParseMessage<v1::GetGeometryRequest>(*request);
   if (!parsed) return new EndedStream(NotAMessage());
   return OutStream::Launch(std::make_shared<GeometryStream>(context_, parsed->name()));
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::StreamFrames(grpc::CallbackServerContext*,
                                                                            const grpc::ByteBuffer* request) {
-  auto parsed = Parse<v1::StreamFramesRequest>(*request);
+  auto parsed = ParseMessage<v1::StreamFramesRequest>(*request);
   if (!parsed) return new EndedStream(NotAMessage());
   return OutStream::Launch(std::make_shared<FrameStream>(context_, std::move(*parsed)));
 }
@@ -59,8 +40,12 @@ grpc::Status FrameServiceImpl::List(const v1::ListFramesRequest& request, v1::Li
   if (request.start_index() < 0) problems.Add("start_index", "must not be negative");
   if (request.page_size() < 0 || request.page_size() > 10'000) problems.Add("page_size", "must be in [0, 10000]");
   if (!problems.empty()) return InvalidArgument(problems);
-  const std::shared_ptr<FrameStore> frames = context_.jobs.Frames(*id);
+  const std::optional<JobView> view = context_.jobs.Get(*id);
+  const std::shared_ptr<FrameStore> frames = view ? context_.jobs.Frames(*id) : nullptr;
   if (!frames) return NotFound("job", request.name());
+  if (request.start_index() < view->record.first_frame) {
+    return FramesRemoved(request.name(), view->record.first_frame);
+  }
   const int page_size = request.page_size() == 0 ? 1000 : request.page_size();
   for (const FrameRecord& record : frames->ListFrames(request.start_index(), page_size)) {
     v1::FrameInfo* info = response.add_frames();

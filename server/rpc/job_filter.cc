@@ -91,7 +91,7 @@ std::optional<std::int64_t> ParseDuration(std::string_view text) {
   constexpr std::array<Suffix, 4> kSuffixes = {
       {{"s", kSecond}, {"m", 60 * kSecond}, {"h", 3600 * kSecond}, {"d", 86400 * kSecond}}};
   const std::optional<std::int64_t> time = ParseWithSuffix(text, kSuffixes);
-  constexpr std::int64_t kLongest = 100 * 366 * 86400 * kSecond;
+  constexpr std::int64_t kLongest = 3'000'000'000 * kSecond;  // about a century
   return time && *time <= kLongest ? time : std::nullopt;
 }
 

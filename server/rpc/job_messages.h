@@ -10,6 +10,8 @@ namespace fascicle::server {
 
 // The spec of a job as it is stored: a v1::Job with scene and threads only. Equal jobs have equal bytes.
 std::string SpecOf(const v1::Job& requested);
+// SHA-256 of everything that a client asks for; that of the spec for a job with neither owner nor settings.
+std::string DigestOf(const v1::Job& requested);
 
 // The message of a job, without its scene.
 v1::Job ToMessage(const JobView& view);

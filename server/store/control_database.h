@@ -56,11 +56,11 @@ class ControlDatabase final : public JobStore {
   JobWriter main_, copy_;
   GroupCommit writes_;
   ReaderPool<JobReader> readers_, copy_readers_;
-  std::int64_t next_revision_;            // of the thread that commits
-  std::atomic<std::int64_t> revision_;    // of the last durable change
-  std::atomic<std::int64_t> forgotten_;   // deletions up to this revision are not known
-  std::mutex removals_mutex_;             // guards removals_
-  std::deque<std::int64_t> removals_;     // revisions of the known deletions
+  std::int64_t next_revision_;           // of the thread that commits
+  std::atomic<std::int64_t> revision_;   // of the last durable change
+  std::atomic<std::int64_t> forgotten_;  // deletions up to this revision are not known
+  std::mutex removals_mutex_;            // guards removals_
+  std::deque<std::int64_t> removals_;    // revisions of the known deletions
 };
 
 }  // namespace fascicle::server

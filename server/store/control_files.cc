@@ -65,8 +65,8 @@ void Salvage(const std::string& from, Database& database) {
   }
 }
 
-// Makes control.db again from the rows of both files. Which jobs were deleted is not known any more; revisions that were
-// given to later changes must not be given again.
+// Makes control.db again from the rows of both files. Which jobs were deleted is not known any more; revisions that
+// were given to later changes must not be given again.
 void Rebuild(const ControlFiles& files) {
   constexpr std::int64_t kMostLost = 1'000'000;
   const std::string damaged = SetAside(files.main);

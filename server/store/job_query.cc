@@ -57,7 +57,8 @@ bool JobCondition::Passes(const JobRecord& job) const { return Holds(job, *this)
 
 bool JobFilter::Passes(const JobRecord& job) const {
   return std::all_of(groups.begin(), groups.end(), [&](const std::vector<JobCondition>& group) {
-    return std::any_of(group.begin(), group.end(), [&](const JobCondition& condition) { return condition.Passes(job); });
+    return std::any_of(group.begin(), group.end(),
+                       [&](const JobCondition& condition) { return condition.Passes(job); });
   });
 }
 

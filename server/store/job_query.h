@@ -57,8 +57,8 @@ struct JobPlace {
   std::string id;
 };
 
-// A part of a list of jobs. Jobs with equal values are in the order of their ids, which descends with the values. kId is
-// the order of creation.
+// A part of a list of jobs. Jobs with equal values are in the order of their ids, which descends with the values. kId
+// is the order of creation.
 struct JobQuery {
   JobFilter filter = {};
   JobField order = JobField::kId;

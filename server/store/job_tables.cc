@@ -239,8 +239,7 @@ class JobSelection {
     const std::string column = ColumnOf(condition.field);
     if (!IsText(condition.field)) {
       arguments_.push_back({.number = condition.number});
-      const bool needs_value =
-          MayBeAbsent(condition.field) && condition.relation != JobCondition::Relation::kNotEqual;
+      const bool needs_value = MayBeAbsent(condition.field) && condition.relation != JobCondition::Relation::kNotEqual;
       return "(" + column + OperatorOf(condition.relation) + (needs_value ? " AND " + column + " <> 0)" : ")");
     }
     arguments_.push_back({.text = condition.text});
@@ -301,9 +300,9 @@ JobWriter::JobWriter(Database& database, const std::string& schema)
           ".jobs SET state = ?2, failure = ?3, attempt = ?4, generation = ?5, start_time_us = ?6, end_time_us = ?7, "
           "fraction = ?8, time = ?9, step = ?10, frame_count = ?11, stored_bytes = ?12, profile = ?13, warnings = ?14, "
           "crash_score = ?15, crash_place = ?16, first_frame = ?17, revision = ?18 WHERE id = ?1")),
-      update_settings_(
-          database.Prepare("UPDATE " + schema +
-                           ".jobs SET labels = ?2, priority = ?3, ttl_s = ?4, pinned = ?5, revision = ?6 WHERE id = ?1")),
+      update_settings_(database.Prepare(
+          "UPDATE " + schema +
+          ".jobs SET labels = ?2, priority = ?3, ttl_s = ?4, pinned = ?5, revision = ?6 WHERE id = ?1")),
       renew_checksum_(database.Prepare("UPDATE " + schema + ".jobs SET checksum = " + JobChecksum() + " WHERE id = ?")),
       delete_(database.Prepare("DELETE FROM " + schema + ".jobs WHERE id = ?")),
       insert_removal_(database.Prepare("INSERT INTO " + schema +
@@ -370,11 +369,11 @@ JobReader::JobReader(const std::string& path)
                               " FROM jobs WHERE (?1 = '' OR id < ?1) AND (?2 >> state) & 1 ORDER BY id DESC LIMIT ?3")),
       has_(database_.Prepare("SELECT 1 FROM jobs WHERE id = ?")),
       ids_(database_.Prepare("SELECT id FROM jobs NOT INDEXED")),
-      with_frames_(database_.Prepare(
-          "SELECT id FROM jobs NOT INDEXED WHERE first_frame = 0 OR first_frame < frame_count")),
+      with_frames_(
+          database_.Prepare("SELECT id FROM jobs NOT INDEXED WHERE first_frame = 0 OR first_frame < frame_count")),
       stored_bytes_(database_.Prepare("SELECT ifnull(sum(stored_bytes), 0) FROM jobs INDEXED BY jobs_by_owner")),
-      stored_bytes_of_(database_.Prepare(
-          "SELECT ifnull(sum(stored_bytes), 0) FROM jobs INDEXED BY jobs_by_owner WHERE owner = ?")),
+      stored_bytes_of_(
+          database_.Prepare("SELECT ifnull(sum(stored_bytes), 0) FROM jobs INDEXED BY jobs_by_owner WHERE owner = ?")),
       changed_(database_.Prepare("SELECT " + CheckedColumns() +
                                  " FROM jobs WHERE revision > ? AND revision <= ? ORDER BY revision LIMIT ?")),
       deleted_(database_.Prepare("SELECT job_id, revision, row_checksum(revision, job_id) = checksum FROM removals "

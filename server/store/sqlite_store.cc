@@ -151,8 +151,8 @@ class SqliteStore final : public Store {
 
   std::string FramesPath(std::string_view id) const { return directory_ + "/jobs/" + std::string(id) + ".db"; }
 
-  // Removes files of jobs that are not in the control database, or whose frames were removed, left by interruptions. Keeps all of them if
-  // the control database was ever damaged: its list may be incomplete.
+  // Removes files of jobs that are not in the control database, or whose frames were removed, left by interruptions.
+  // Keeps all of them if the control database was ever damaged: its list may be incomplete.
   void RemoveOrphans() {
     if (fs::exists(directory_ + "/control.db.damaged-1")) return;
     const std::unordered_set<std::string> ids = jobs_.IdsWithFrames();

@@ -80,7 +80,7 @@ struct JobRecord {
   // the place that it had reached then; see job_manager.cc.
   std::int64_t crash_score = 0;
   std::int64_t crash_place = -1;
-  std::string owner = {};                           // who submitted it; empty: nobody in particular
+  std::string owner = {};                          // who submitted it; empty: nobody in particular
   std::map<std::string, std::string> labels = {};  // keys without '=', keys and values without line feeds
   int priority = 0;
   std::int64_t ttl_s = 0;        // how long it is kept after its end [s]; 0: as the server decides

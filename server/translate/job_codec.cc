@@ -1,6 +1,9 @@
 #include "server/translate/job_codec.h"
 
+#include <set>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace fascicle::server {
 namespace {
@@ -22,6 +25,13 @@ std::shared_ptr<const Scene> DecodeScene(const std::string& spec, AssetStore& as
   return scene;
 }
 
+std::set<std::string> AssetsOfSpec(const std::string& spec) {
+  v1::Job job;
+  if (!job.ParseFromString(spec)) throw std::runtime_error("a stored job can't be read");
+  const std::vector<std::string> assets = AssetsOf(job.scene());
+  return {assets.begin(), assets.end()};
+}
+
 }  // namespace
 
 AssetReader ReaderOf(AssetStore& assets) {
@@ -41,7 +51,8 @@ JobCodec MakeJobCodec(ResultCache* results) {
               [](const std::vector<Warning>& warnings) {
                 return warnings.empty() ? std::string() : Serialize(EncodeWarnings(warnings));
               },
-          .encode_profile = [](const RunProfile& profile) { return Serialize(EncodeProfile(profile)); }};
+          .encode_profile = [](const RunProfile& profile) { return Serialize(EncodeProfile(profile)); },
+          .assets_of = AssetsOfSpec};
 }
 
 }  // namespace fascicle::server
