@@ -12,7 +12,7 @@ namespace {
 using Stream = MessageStream<v1::WatchJobsResponse>;
 
 // The server sends something at least every ten seconds.
-constexpr std::chrono::seconds kLongestSilence(30);
+constexpr std::chrono::seconds kLongestQuiet(30);
 
 // Reads one stream to its end. `request.revision` stays the last one received.
 grpc::Status ReadChanges(Connection& connection, v1::WatchJobsRequest& request, const JobsWatch& watch,
@@ -24,7 +24,7 @@ grpc::Status ReadChanges(Connection& connection, v1::WatchJobsRequest& request, 
   });
   v1::WatchJobsResponse message;
   while (true) {
-    switch (stream.Next(message, kLongestSilence, stop)) {
+    switch (stream.Next(message, kLongestQuiet, stop)) {
       case Stream::Outcome::kMessage:
         patience.Succeeded();
         if (watch.changes && (message.jobs_size() > 0 || message.removed_size() > 0)) watch.changes(message);
