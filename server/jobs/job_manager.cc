@@ -198,10 +198,24 @@ struct JobManager::Impl {
     return WithPlace(job->View(std::move(stored)));
   }
 
-  JobView ViewStored(JobRecord stored) {
-    const std::shared_ptr<ActiveJob> job = FindActive(stored.id);
-    if (job == nullptr) return ViewOf(std::move(stored));
-    return WithPlace(job->ViewStored(std::move(stored)));
+  // Records as they are stored.
+  std::vector<JobView> ViewsOf(std::vector<JobRecord> stored) {
+    std::shared_ptr<const JobQueue::Places> places;
+    {
+      const std::lock_guard lock(mutex);
+      places = queue.PlacesOfAll(JobQueue::Clock::now());
+    }
+    std::vector<JobView> views;
+    for (JobRecord& record : stored) {
+      const std::shared_ptr<ActiveJob> job = FindActive(record.id);
+      views.push_back(job == nullptr ? ViewOf(std::move(record)) : job->ViewStored(std::move(record)));
+      if (job == nullptr) continue;
+      const auto place = places->find(job->id());
+      if (place != places->end()) views.back().queue_position = place->second;
+      const std::lock_guard lock(mutex);
+      views.back().threads = queue.ThreadsOf(job->id());
+    }
+    return views;
   }
 
   JobView WithPlace(JobView view) {
@@ -402,25 +416,15 @@ std::optional<JobView> JobManager::Get(std::string_view id) {
 }
 
 std::vector<JobView> JobManager::List(int limit, std::string_view before_id, const std::vector<JobState>& states) {
-  std::vector<JobView> views;
-  for (JobRecord& record : impl_->store.ListJobs(limit, before_id, states)) {
-    views.push_back(impl_->ViewStored(std::move(record)));
-  }
-  return views;
+  return impl_->ViewsOf(impl_->store.ListJobs(limit, before_id, states));
 }
 
-std::vector<JobView> JobManager::Find(const JobQuery& query) {
-  std::vector<JobView> views;
-  for (JobRecord& record : impl_->store.FindJobs(query)) views.push_back(impl_->ViewStored(std::move(record)));
-  return views;
-}
+std::vector<JobView> JobManager::Find(const JobQuery& query) { return impl_->ViewsOf(impl_->store.FindJobs(query)); }
 
 std::optional<JobChangeViews> JobManager::ChangesAfter(std::int64_t revision, std::int64_t deletions_after, int limit) {
   std::optional<JobChanges> changes = impl_->store.ChangesAfter(revision, deletions_after, limit);
   if (!changes) return std::nullopt;
-  JobChangeViews views = {{}, std::move(changes->deleted), changes->revision};
-  for (JobRecord& record : changes->changed) views.changed.push_back(impl_->ViewStored(std::move(record)));
-  return views;
+  return JobChangeViews{impl_->ViewsOf(std::move(changes->changed)), std::move(changes->deleted), changes->revision};
 }
 
 std::int64_t JobManager::Revision() { return impl_->store.Revision(); }

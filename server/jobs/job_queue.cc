@@ -1,8 +1,11 @@
 #include "server/jobs/job_queue.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace fascicle::server {
 namespace {
@@ -14,7 +17,12 @@ double Seconds(JobQueue::Clock::duration time) { return std::chrono::duration<do
 }  // namespace
 
 bool JobQueue::Rank::operator<(const Rank& other) const {
-  return std::tie(priority, running, used, oldest) < std::tie(other.priority, other.running, other.used, other.oldest);
+  return std::tie(is_over_limit, priority, running, used, id) <
+         std::tie(other.is_over_limit, other.priority, other.running, other.used, other.id);
+}
+
+JobQueue::Rank JobQueue::RankOf(int running, const Level& level, double used, std::string_view id) const {
+  return {max_running_ > 0 && running >= max_running_, -level.first, running, used, id};
 }
 
 void JobQueue::Add(const std::string& id, const std::string& owner, int priority) {
@@ -22,7 +30,7 @@ void JobQueue::Add(const std::string& id, const std::string& owner, int priority
   Owner& of = owners_[owner];
   of.waiting[priority].insert(id);
   ++of.count;
-  has_places_ = false;
+  places_.reset();
 }
 
 void JobQueue::Erase(Owner& owner, const std::string& id, int priority) {
@@ -30,7 +38,7 @@ void JobQueue::Erase(Owner& owner, const std::string& id, int priority) {
   same->second.erase(id);
   if (same->second.empty()) owner.waiting.erase(same);
   --owner.count;
-  has_places_ = false;
+  places_.reset();
 }
 
 void JobQueue::Remove(std::string_view id) {
@@ -58,15 +66,15 @@ std::optional<std::string> JobQueue::Take(Clock::time_point now) {
   Owner* next = nullptr;
   Rank best;
   for (auto& [name, owner] : owners_) {
-    if (owner.waiting.empty() || (max_running_ > 0 && owner.running >= max_running_)) continue;
-    const auto& [priority, ids] = *owner.waiting.begin();
-    const Rank rank = {-priority, owner.running, UsedBy(owner, now), *ids.begin()};
-    if (next != nullptr && !(rank < best)) continue;
+    if (owner.waiting.empty()) continue;
+    const Level& level = *owner.waiting.begin();
+    const Rank rank = RankOf(owner.running, level, UsedBy(owner, now), *level.second.begin());
+    if (rank.is_over_limit || (next != nullptr && !(rank < best))) continue;
     next = &owner;
     best = rank;
   }
   if (next == nullptr) return std::nullopt;
-  std::string id(best.oldest);
+  std::string id(best.id);
   Erase(*next, id, -best.priority);
   ++next->running;
   running_[id] = {std::move(waiting_.at(id).owner), 1, now};
@@ -85,7 +93,7 @@ void JobQueue::Stopped(const std::string& id, Clock::time_point now) {
   owner.used_at = now;
   --owner.running;
   running_.erase(found);
-  has_places_ = false;
+  places_.reset();
   ForgetIdleOwners(now);
 }
 
@@ -116,56 +124,55 @@ int JobQueue::ThreadsOf(std::string_view id) const {
   return found == running_.end() ? 0 : found->second.threads;
 }
 
-int JobQueue::PlaceOf(std::string_view id, Clock::time_point now) {
-  if (!waiting_.contains(id)) return 0;
-  if (!has_places_) FindPlaces(now);
-  return places_.at(std::string(id));
+int JobQueue::CountBefore(const Owner& owner, const Rank& rank, Clock::time_point now) const {
+  const double used = UsedBy(owner, now);
+  int count = 0;
+  for (const Level& level : owner.waiting) {
+    const int size = static_cast<int>(level.second.size());
+    // Ranks ascend: find the first that is not smaller. Only the last digit, so to speak, needs the job's id.
+    int low = 0, high = size;
+    while (low < high) {
+      const int middle = (low + high) / 2;
+      Rank one = RankOf(owner.running + count + middle, level, used, rank.id);
+      if (!(one < rank) && !(rank < one)) one.id = *std::next(level.second.begin(), middle);
+      (one < rank ? low : high) = one < rank ? middle + 1 : middle;
+    }
+    count += low;
+    if (low < size) break;
+  }
+  return count;
 }
 
-// Owners at their limit come last.
-void JobQueue::FindPlaces(Clock::time_point now) {
-  places_.clear();
-  struct Turn {
-    bool is_at_limit = false;
-    Rank rank;
-    Owner* owner = nullptr;
-    std::map<int, std::set<std::string>, std::greater<>>::const_iterator level;
-    std::set<std::string>::const_iterator id;
-    double used = 0;
-    int running = 0;
-    bool operator<(const Turn& other) const {
-      return std::tie(is_at_limit, rank) < std::tie(other.is_at_limit, other.rank);
+int JobQueue::PlaceOf(std::string_view id, Clock::time_point now) const {
+  const auto found = waiting_.find(id);
+  if (found == waiting_.end()) return 0;
+  const Owner& own = owners_.at(found->second.owner);
+  int running = own.running;
+  auto level = own.waiting.begin();
+  for (; level->first != found->second.priority; ++level) running += static_cast<int>(level->second.size());
+  running += static_cast<int>(std::distance(level->second.begin(), level->second.find(found->first)));
+  const Rank rank = RankOf(running, *level, UsedBy(own, now), id);
+  int place = 0;
+  for (const auto& [name, owner] : owners_) place += CountBefore(owner, rank, now);
+  return place;
+}
+
+std::shared_ptr<const JobQueue::Places> JobQueue::PlacesOfAll(Clock::time_point now) {
+  if (places_ != nullptr) return places_;
+  std::vector<Rank> ranks;
+  ranks.reserve(waiting_.size());
+  for (const auto& [name, owner] : owners_) {
+    const double used = UsedBy(owner, now);
+    int running = owner.running;
+    for (const Level& level : owner.waiting) {
+      for (const std::string& id : level.second) ranks.push_back(RankOf(running++, level, used, id));
     }
-  };
-  const auto turn_of = [&](Turn turn) {
-    turn.is_at_limit = max_running_ > 0 && turn.running >= max_running_;
-    turn.rank = {-turn.level->first, turn.running, turn.used, *turn.id};
-    return turn;
-  };
-  std::multiset<Turn> turns;
-  for (auto& [name, owner] : owners_) {
-    if (owner.waiting.empty()) continue;
-    const auto level = owner.waiting.cbegin();
-    turns.insert(turn_of({.is_at_limit = false,
-                          .rank = {},
-                          .owner = &owner,
-                          .level = level,
-                          .id = level->second.cbegin(),
-                          .used = UsedBy(owner, now),
-                          .running = owner.running}));
   }
-  for (int place = 0; !turns.empty(); ++place) {
-    Turn turn = *turns.begin();
-    turns.erase(turns.begin());
-    places_.emplace_hint(places_.end(), *turn.id, place);
-    ++turn.running;
-    if (++turn.id == turn.level->second.cend()) {
-      if (++turn.level == turn.owner->waiting.cend()) continue;
-      turn.id = turn.level->second.cbegin();
-    }
-    turns.insert(turn_of(std::move(turn)));
-  }
-  has_places_ = true;
+  std::sort(ranks.begin(), ranks.end());
+  auto places = std::make_shared<Places>(ranks.size());
+  for (const Rank& rank : ranks) places->emplace(rank.id, static_cast<int>(places->size()));
+  places_ = std::move(places);
+  return places_;
 }
 
 }  // namespace fascicle::server

@@ -3,11 +3,15 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <utility>
 
 namespace fascicle::server {
 
@@ -41,7 +45,10 @@ class JobQueue {
 
   // How many jobs would be started before this one if all were started one after another and none ended; 0 if it does
   // not wait.
-  int PlaceOf(std::string_view id, Clock::time_point now);
+  int PlaceOf(std::string_view id, Clock::time_point now) const;
+  // The same of all waiting jobs; computed again only when the queue has changed.
+  using Places = std::unordered_map<std::string, int>;
+  std::shared_ptr<const Places> PlacesOfAll(Clock::time_point now);
 
  private:
   struct Waiting {
@@ -62,17 +69,24 @@ class JobQueue {
     Clock::time_point used_at;
   };
 
-  // What decides between owners; the smallest is next.
+  // Jobs of an owner with the same priority.
+  using Level = std::pair<const int, std::set<std::string>>;
+
+  // The smallest is started first. Ranks of an owner's jobs ascend in the order in which they are started.
   struct Rank {
+    bool is_over_limit = false;
     int priority = 0;  // negative
-    int running = 0;
+    int running = 0;   // jobs of its owner when it is started
     double used = 0;
-    std::string_view oldest;
+    std::string_view id;
     bool operator<(const Rank& other) const;
   };
 
   double UsedBy(const Owner& owner, Clock::time_point now) const;
-  void FindPlaces(Clock::time_point now);
+  // Of a job that is started when its owner has `running` others.
+  Rank RankOf(int running, const Level& level, double used, std::string_view id) const;
+  // How many jobs of an owner have a smaller rank.
+  int CountBefore(const Owner& owner, const Rank& rank, Clock::time_point now) const;
   void Erase(Owner& owner, const std::string& id, int priority);
   void ForgetIdleOwners(Clock::time_point now);
 
@@ -80,8 +94,7 @@ class JobQueue {
   std::map<std::string, Waiting, std::less<>> waiting_;
   std::map<std::string, Running, std::less<>> running_;
   std::map<std::string, Owner, std::less<>> owners_;
-  std::map<std::string, int, std::less<>> places_;  // of waiting jobs, when they were last asked for
-  bool has_places_ = false;
+  std::shared_ptr<const Places> places_;  // null: unknown
 };
 
 }  // namespace fascicle::server

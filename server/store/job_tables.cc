@@ -44,10 +44,13 @@ constexpr std::array<const char*, 5> kControlFormats = {
          stored_bytes, profile, warnings, crash_score, crash_place);
        ALTER TABLE specs ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
        UPDATE specs SET checksum = row_checksum(job_id, spec);)",
-    // Format 5: owners, settings, revisions. Reading the other columns of `jobs` is slow where profiles are large, so
-    // one index contains all columns by which jobs are found. `removals` remembers deleted jobs; an empty id means
-    // that deletions up to this revision were forgotten.
-    R"(ALTER TABLE jobs ADD COLUMN owner TEXT NOT NULL DEFAULT '';
+    // Format 5: owners, settings, revisions. Damaged rows stay damaged. Reading the other columns of `jobs` is slow where
+    // profiles are large, so one index contains all columns by which jobs are found. `removals` remembers deleted jobs;
+    // an empty id means that deletions up to this revision were forgotten.
+    R"(UPDATE jobs SET checksum = -1 WHERE checksum IS NOT row_checksum(id, request_id, request_digest, scene_name,
+         threads, state, failure, attempt, generation, create_time_us, start_time_us, end_time_us, fraction, time, step,
+         frame_count, stored_bytes, profile, warnings, crash_score, crash_place);
+       ALTER TABLE jobs ADD COLUMN owner TEXT NOT NULL DEFAULT '';
        ALTER TABLE jobs ADD COLUMN labels TEXT NOT NULL DEFAULT '';
        ALTER TABLE jobs ADD COLUMN priority INTEGER NOT NULL DEFAULT 0;
        ALTER TABLE jobs ADD COLUMN ttl_s INTEGER NOT NULL DEFAULT 0;
@@ -59,7 +62,7 @@ constexpr std::array<const char*, 5> kControlFormats = {
        UPDATE jobs SET checksum = row_checksum(id, request_id, request_digest, scene_name, threads, state, failure,
          attempt, generation, create_time_us, start_time_us, end_time_us, fraction, time, step, frame_count,
          stored_bytes, profile, warnings, crash_score, crash_place, owner, labels, priority, ttl_s, pinned,
-         first_frame, revision);
+         first_frame, revision) WHERE checksum <> -1;
        CREATE INDEX jobs_by_owner ON jobs (owner, stored_bytes, state, scene_name, labels, create_time_us,
          start_time_us, end_time_us, priority, ttl_s, frame_count, pinned);
        CREATE INDEX jobs_by_revision ON jobs (revision);
@@ -239,8 +242,10 @@ class JobSelection {
     const std::string column = ColumnOf(condition.field);
     if (!IsText(condition.field)) {
       arguments_.push_back({.number = condition.number});
-      const bool needs_value = MayBeAbsent(condition.field) && condition.relation != JobCondition::Relation::kNotEqual;
-      return "(" + column + OperatorOf(condition.relation) + (needs_value ? " AND " + column + " <> 0)" : ")");
+      if (!MayBeAbsent(condition.field)) return column + OperatorOf(condition.relation);
+      const bool passes_absent = condition.relation == JobCondition::Relation::kNotEqual;
+      return "(" + column + OperatorOf(condition.relation) + (passes_absent ? " OR " : " AND ") + column +
+             (passes_absent ? " = 0)" : " <> 0)");
     }
     arguments_.push_back({.text = condition.text});
     if (condition.relation == JobCondition::Relation::kContains) return "instr(" + column + ", ?) > 0";

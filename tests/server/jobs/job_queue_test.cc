@@ -116,6 +116,7 @@ TEST(JobQueue, PlacesAreTheOrderInWhichJobsAreTaken) {
       if (queue.Contains(id)) places[id] = queue.PlaceOf(id, now);
     }
     EXPECT_EQ(static_cast<int>(places.size()), queue.size());
+    EXPECT_EQ(*queue.PlacesOfAll(now), JobQueue::Places(places.begin(), places.end()));
     for (int place = 0; queue.size() > 0; ++place) EXPECT_EQ(places.at(*queue.Take(now)), place);
   }
 }

@@ -142,25 +142,29 @@ TEST_F(SqliteStoreTest, JobsOfFormat4AreTakenOver) {
         "UPDATE jobs SET checksum = row_checksum(id, request_id, request_digest, scene_name, threads, state, failure, "
         "attempt, generation, create_time_us, start_time_us, end_time_us, fraction, time, step, frame_count, "
         "stored_bytes, profile, warnings, crash_score, crash_place)");
+    // A damage that was there before does not become the truth.
+    const bool is_main = std::string_view(file) == "control.db";
+    if (is_main) old.Execute(("UPDATE jobs SET scene_name = 'wrong' WHERE id = '" + SampleJob(7).id + "'").c_str());
   }
   std::int64_t revision = 0;
   {
     const std::unique_ptr<Store> store = Open();
     revision = store->Revision();
-    EXPECT_EQ(revision, kJobs);
+    EXPECT_GE(revision, kJobs);
     const JobChanges changes = *store->ChangesAfter(0, 0, 1000);
     ASSERT_EQ(changes.changed.size(), std::size_t{kJobs});
     for (int i = 0; i < kJobs; ++i) EXPECT_EQ(changes.changed[static_cast<std::size_t>(i)].id, SampleJob(i).id);
     JobRecord job = *store->GetJob(SampleJob(5).id);
     EXPECT_EQ(job.spec, "\x02\x03");
     EXPECT_EQ(job.owner, "");
+    EXPECT_EQ(store->GetJob(SampleJob(7).id)->scene_name, "old");
     job.labels = {{"a", "b"}};
     EXPECT_TRUE(store->UpdateSettings(job));
     JobQuery query = {.limit = 10};
     query.filter.groups = {{{.field = JobField::kLabel, .text = "b", .key = "a"}}};
     ASSERT_EQ(store->FindJobs(query).size(), 1u);
   }
-  EXPECT_FALSE(fs::exists(directory_ / "control.db.damaged-1"));
+  EXPECT_TRUE(fs::exists(directory_ / "control.db.damaged-1"));
   EXPECT_TRUE(fs::exists(directory_ / "control.db.format-4.backup"));
   EXPECT_EQ(Open()->Revision(), revision + 1);
 }
