@@ -4,6 +4,16 @@
 #include <utility>
 
 namespace fascicle::server {
+namespace {
+
+void CopySettings(const JobRecord& from, JobRecord& to) {
+  to.labels = from.labels;
+  to.priority = from.priority;
+  to.ttl_s = from.ttl_s;
+  to.is_pinned = from.is_pinned;
+}
+
+}  // namespace
 
 ActiveJob::ActiveJob(Store& store, JobRecord record)
     : store_(store), id_(record.id), wanted_threads_(record.threads), record_(std::move(record)) {
@@ -28,6 +38,12 @@ void ActiveJob::Update(const Change& change) {
   store_.UpdateJob(changed);
   const std::lock_guard lock(mutex_);
   record_ = std::move(changed);
+}
+
+void ActiveJob::SetSettings(const JobRecord& stored) {
+  const std::lock_guard update_lock(update_mutex_);
+  const std::lock_guard lock(mutex_);
+  CopySettings(stored, record_);
 }
 
 void ActiveJob::SetProgress(const Progress& progress) {
@@ -75,10 +91,7 @@ JobView ActiveJob::View(JobRecord stored) const {
   const std::lock_guard lock(mutex_);
   JobRecord record = record_;
   record.spec = std::move(stored.spec);
-  record.labels = std::move(stored.labels);
-  record.priority = stored.priority;
-  record.ttl_s = stored.ttl_s;
-  record.is_pinned = stored.is_pinned;
+  CopySettings(stored, record);
   record.revision = stored.revision;
   FillIn(record);
   return ViewWithProgress(std::move(record));

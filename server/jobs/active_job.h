@@ -32,6 +32,9 @@ class ActiveJob {
   using Change = std::function<bool(JobRecord&)>;
   void Update(const Change& change);
 
+  // Takes labels, priority, ttl and pin of a record that is stored.
+  void SetSettings(const JobRecord& stored);
+
   // Called in every step; cheap.
   void SetProgress(const Progress& progress);
   // Why the run does not go on at present, for users; empty if it does.

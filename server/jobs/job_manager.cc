@@ -285,12 +285,17 @@ struct JobManager::Impl {
     if (is_queued_again) Enqueue(std::move(record), nullptr);
   }
 
-  // Makes a change of a job that is not active, once it is not: change(record) or, if it does not exist, nothing.
-  // Returns false as long as it is active, or about to be.
+  bool IsWithWorker(std::string_view id) {
+    const std::lock_guard lock(mutex);
+    return active.find(id) != active.end() || queue.ThreadsOf(id) > 0;
+  }
+
+  // Makes a change of a job that is at rest: change(record), where the record is empty if there is no such job. Returns
+  // false as long as the job is active or about to be, or a worker has not left it yet.
   template <class Change>
   bool WhenInactive(std::string_view id, const Change& change) {
     const std::lock_guard lock(change_mutex);
-    if (FindActive(id) != nullptr) return false;
+    if (IsWithWorker(id)) return false;
     std::optional<JobRecord> record = store.GetJob(id);
     if (record && !IsAtRest(record->state)) return false;
     change(std::move(record));
@@ -441,6 +446,7 @@ std::optional<JobView> JobManager::ChangeSettings(std::string_view id, const std
     if (!record) return std::nullopt;
     change(*record);
     if (!impl_->store.UpdateSettings(*record)) return std::nullopt;
+    if (const std::shared_ptr<ActiveJob> job = impl_->FindActive(id)) job->SetSettings(*record);
     const std::lock_guard queue_lock(impl_->mutex);
     impl_->queue.SetPriority(id, record->priority);
   }
@@ -550,7 +556,7 @@ JobManager::DeleteResult JobManager::Delete(std::string_view id) {
 
 JobManager::RestartResult JobManager::Restart(std::string_view id, bool from_start) {
   RestartResult result = RestartResult::kActive;
-  impl_->WhenInactive(id, [&](std::optional<JobRecord> record) {
+  const auto restart = [&](std::optional<JobRecord> record) {
     if (!record) result = RestartResult::kNotFound;
     if (!record || !IsFinal(record->state)) return;
     Impl::QueuePlace place(*impl_, record->owner);
@@ -568,7 +574,12 @@ JobManager::RestartResult JobManager::Restart(std::string_view id, bool from_sta
     impl_->Enqueue(*std::move(record), nullptr, &place);
     impl_->Tell(id);
     result = RestartResult::kRestarted;
-  });
+  };
+  while (!impl_->WhenInactive(id, restart)) {
+    const std::optional<JobView> view = Get(id);
+    if (view && !IsFinal(view->record.state)) return RestartResult::kActive;
+    WaitBriefly();
+  }
   return result;
 }
 

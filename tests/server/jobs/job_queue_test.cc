@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
+#include <utility>
 
 namespace fascicle::server {
 namespace {
@@ -52,28 +54,25 @@ TEST(JobQueue, OwnersTakeTurnsHoweverManyJobsOneHas) {
   EXPECT_THAT(RunAll(queue), ElementsAre("1", "5", "2", "6", "3", "4"));
 }
 
-TEST(JobQueue, WhoHasUsedLessIsNextUntilItIsForgotten) {
+TEST(JobQueue, WhoHasUsedLessIsNextAndUseIsForgotten) {
   JobQueue queue;
-  const auto use = [&](const std::string& owner, int threads, seconds time) {
+  const auto use = [&](const std::string& owner, int threads, seconds time, JobQueue::Clock::time_point end) {
     queue.Add("0" + owner, owner, 0);
-    EXPECT_EQ(queue.Take(kStart), "0" + owner);
+    EXPECT_EQ(queue.Take(end - time), "0" + owner);
     queue.Started("0" + owner, threads);
-    queue.Stopped("0" + owner, kStart + time);
+    queue.Stopped("0" + owner, end);
   };
-  use("ann", 4, seconds(60));
-  use("bob", 1, seconds(100));
-  queue.Add("1", "ann", 0);
-  queue.Add("2", "bob", 0);
-  queue.Add("3", "cid", 0);
-  EXPECT_EQ(queue.PlaceOf("1", kStart + seconds(100)), 2);
-  EXPECT_EQ(queue.Take(kStart + seconds(100)), "3");
-  queue.Stopped("3", kStart + seconds(100));
-  EXPECT_EQ(queue.Take(kStart + seconds(100)), "2");
-  queue.Stopped("2", kStart + seconds(100));
-  // After two days neither has used anything worth mentioning; bob used 1 s since.
+  use("ann", 4, seconds(60), kStart);
+  use("bob", 1, seconds(100), kStart);
+  for (const auto& [id, owner] : {std::pair{"1", "ann"}, {"2", "bob"}, {"3", "cid"}}) queue.Add(id, owner, 0);
+  EXPECT_EQ(queue.PlaceOf("1", kStart), 2);
+  EXPECT_EQ(queue.PlaceOf("3", kStart), 0);
+  for (const char* id : {"1", "2", "3"}) queue.Remove(id);
+  // Two hours later ann's 240 s count as 60.
+  use("bob", 1, seconds(100), kStart + hours(2));
   queue.Add("4", "bob", 0);
-  EXPECT_EQ(queue.Take(kStart + hours(48)), "1");
-  queue.Stopped("1", kStart + hours(48));
+  queue.Add("5", "ann", 0);
+  EXPECT_EQ(queue.Take(kStart + hours(2)), "5");
 }
 
 TEST(JobQueue, OwnersWithFewerRunningJobsComeFirstAndNoneHasMoreThanItsLimit) {

@@ -194,8 +194,10 @@ TEST_F(OwnersTest, FramesOfTheOldestFinishedJobsMakeRoom) {
   options.disk_budget = 3 * each - 1;
   const std::shared_ptr<FrameStore> read = store_->OpenFrames(ids[1]);  // somebody reads the frames of the first one
   JobManager manager(*store_, BoxCodec(), options);
-  EXPECT_TRUE(Eventually([&] { return store_->StoredBytesOf(std::nullopt) == 2 * each; }));
-  EXPECT_THAT(events_.Of("lost its frames, which were removed to make room"), ElementsAre("c", "d"));
+  const std::string lost = "lost its frames, which were removed to make room";
+  EXPECT_TRUE(Eventually([&] { return events_.Of(lost).size() == 2; }));
+  EXPECT_THAT(events_.Of(lost), ElementsAre("c", "d"));
+  EXPECT_EQ(store_->StoredBytesOf(std::nullopt), 2 * each);
   const JobRecord removed = manager.Get(ids[2])->record;
   EXPECT_EQ(removed.state, JobState::kSucceeded);
   EXPECT_EQ(removed.first_frame, 21);
