@@ -45,9 +45,8 @@ constexpr std::array<const char*, 5> kControlFormats = {
        ALTER TABLE specs ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
        UPDATE specs SET checksum = row_checksum(job_id, spec);)",
     // Format 5: owners, settings, revisions. Damaged rows stay damaged. Reading the other columns of `jobs` is slow
-    // where
-    // profiles are large, so one index contains all columns by which jobs are found. `removals` remembers deleted jobs;
-    // an empty id means that deletions up to this revision were forgotten.
+    // where profiles are large, so one index contains all columns by which jobs are found. `removals` remembers deleted
+    // jobs; an empty id means that deletions up to this revision were forgotten.
     R"(UPDATE jobs SET checksum = -1 WHERE checksum IS NOT row_checksum(id, request_id, request_digest, scene_name,
          threads, state, failure, attempt, generation, create_time_us, start_time_us, end_time_us, fraction, time, step,
          frame_count, stored_bytes, profile, warnings, crash_score, crash_place);

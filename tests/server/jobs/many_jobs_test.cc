@@ -94,7 +94,6 @@ TEST(ManyJobs, ListsAndRestartsTakeLittleTime) {
   const double p50 = times[times.size() / 2], p99 = times[times.size() * 99 / 100];
   std::printf("%d jobs: list p50 %.1f ms, p99 %.1f ms, restart %.2f s\n", count, 1e3 * p50, 1e3 * p99, restart);
   EXPECT_EQ(manager.Find(Queries()[4]).size(), 51u);
-  EXPECT_EQ(manager.Find(Queries()[4]).back().queue_position, (count + 9) / 10 - 51);
   EXPECT_LT(p99, 0.05);
   EXPECT_LT(restart, 2);
 }

@@ -168,8 +168,10 @@ TEST_F(OwnersTest, JobsAreDeletedAfterTheirTimeUnlessTheyArePinned) {
   const std::string gone = manager.Submit(with_ttl, nullptr).record.id;
   const std::string kept = manager.Submit(pinned, nullptr).record.id;
   const std::string without = manager.Submit(JobOf("cid"), nullptr).record.id;
-  EXPECT_TRUE(Eventually([&] { return !manager.Get(gone); }));
-  EXPECT_THAT(events_.Of("deleted, because it ended longer ago than jobs are kept"), ElementsAre("ann"));
+  const std::string deleted = "deleted, because it ended longer ago than jobs are kept";
+  EXPECT_TRUE(Eventually([&] { return !events_.Of(deleted).empty(); }));
+  EXPECT_THAT(events_.Of(deleted), ElementsAre("ann"));
+  EXPECT_FALSE(manager.Get(gone));
   EXPECT_EQ(WaitForEnd(manager, kept).record.state, JobState::kSucceeded);
   EXPECT_EQ(manager.Get(without)->record.state, JobState::kSucceeded);
   manager.ChangeSettings(kept, [](JobRecord& job) { job.is_pinned = false; });

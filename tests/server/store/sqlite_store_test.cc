@@ -151,7 +151,7 @@ TEST_F(SqliteStoreTest, JobsOfFormat4AreTakenOver) {
     const std::unique_ptr<Store> store = Open();
     revision = store->Revision();
     EXPECT_GE(revision, kJobs);
-    const JobChanges changes = *store->ChangesAfter(0, 0, 1000);
+    const JobChanges changes = store->ChangesAfter(0, revision, 1000).value();
     ASSERT_EQ(changes.changed.size(), std::size_t{kJobs});
     for (int i = 0; i < kJobs; ++i) EXPECT_EQ(changes.changed[static_cast<std::size_t>(i)].id, SampleJob(i).id);
     JobRecord job = *store->GetJob(SampleJob(5).id);
