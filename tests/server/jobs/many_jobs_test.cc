@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <random>
 #include <thread>
 #include <vector>
@@ -17,9 +18,27 @@
 namespace fascicle::server {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+// Processor time of this thread, which does not depend on what else the machine does, and the time of the clock [s].
+struct Times {
+  double processor = 0;
+  double clock = 0;
 
-double SecondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+  static Times Now() {
+    timespec time = {};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return {static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec),
+            std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count()};
+  }
+  static Times Since(const Times& start) {
+    const Times now = Now();
+    return {now.processor - start.processor, now.clock - start.clock};
+  }
+};
+
+double Quantile(std::vector<double> values, double part) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+}
 
 // 1,000, or FASCICLE_JOBS: with 10,000 the figures are those of a release.
 int NumberOfJobs() {
@@ -76,26 +95,29 @@ TEST(ManyJobs, ListsAndRestartsTakeLittleTime) {
   testing::TemporaryFolder directory;
   Fill(*OpenSqliteStore(directory.path()), count);
 
-  const Clock::time_point start = Clock::now();
+  const Times start = Times::Now();
   const std::unique_ptr<Store> store = OpenSqliteStore(directory.path());
   JobManager manager(*store, BoxCodec(), Workers(0));
-  const double restart = SecondsSince(start);
+  const Times restart = Times::Since(start);
   EXPECT_EQ(manager.Load().queued, (count + 9) / 10);
 
-  std::vector<double> times;
+  std::vector<double> processor, clock;
   for (int round = 0; round < (is_release ? 100 : 10); ++round) {
     for (const JobQuery& query : Queries()) {
-      const Clock::time_point asked = Clock::now();
+      const Times asked = Times::Now();
       manager.Find(query);
-      times.push_back(SecondsSince(asked));
+      const Times time = Times::Since(asked);
+      processor.push_back(time.processor);
+      clock.push_back(time.clock);
     }
   }
-  std::sort(times.begin(), times.end());
-  const double p50 = times[times.size() / 2], p99 = times[times.size() * 99 / 100];
-  std::printf("%d jobs: list p50 %.1f ms, p99 %.1f ms, restart %.2f s\n", count, 1e3 * p50, 1e3 * p99, restart);
+  const double p99 = Quantile(processor, 0.99);
+  std::printf("%d jobs: list p50 %.1f ms, p99 %.1f ms of processor time, %.1f and %.1f ms by the clock\n", count,
+              1e3 * Quantile(processor, 0.5), 1e3 * p99, 1e3 * Quantile(clock, 0.5), 1e3 * Quantile(clock, 0.99));
+  std::printf("restart %.2f s of processor time, %.2f s by the clock\n", restart.processor, restart.clock);
   EXPECT_EQ(manager.Find(Queries()[4]).size(), 51u);
   EXPECT_LT(p99, 0.05);
-  EXPECT_LT(restart, 2);
+  EXPECT_LT(restart.processor, 2);
 }
 
 }  // namespace
