@@ -113,6 +113,8 @@ TEST_P(StoreContract, UpdatesOfStateAndSettingsDoNotUndoEachOther) {
   EXPECT_FALSE(store_->UpdateSettings(SampleJob(2)));
 }
 
+constexpr const char* kKeys[] = {"l", "kl", "l.k", "m"};  // parts of each other
+
 // A job whose fields are chosen at random from few values, so that many jobs are equal in some.
 JobRecord RandomJob(int number, std::mt19937& random) {
   JobRecord job = SampleJob(number);
@@ -120,7 +122,7 @@ JobRecord RandomJob(int number, std::mt19937& random) {
   job.state = static_cast<JobState>(1 + pick(9));
   job.owner = std::string(1, static_cast<char>('a' + pick(3)));
   job.scene_name = std::string(1, static_cast<char>('p' + pick(3))) + "%_'\"";
-  for (int i = pick(3); i > 0; --i) job.labels[std::string(1, static_cast<char>('k' + i))] = std::to_string(pick(2));
+  for (int i = pick(3); i > 0; --i) job.labels[kKeys[pick(3)]] = std::to_string(pick(2));
   job.priority = pick(3) - 1;
   job.start_time_us = pick(3) * 10;
   job.end_time_us = pick(3) * 20;
@@ -144,7 +146,7 @@ JobCondition RandomCondition(std::mt19937& random) {
   if (IsText(condition.field)) condition.relation = static_cast<JobCondition::Relation>(pick(2));
   if (IsText(condition.field) && pick(3) == 0) condition.relation = JobCondition::Relation::kContains;
   if (condition.field == JobField::kLabel) {
-    condition.key = std::string(1, static_cast<char>('k' + pick(4)));
+    condition.key = kKeys[pick(4)];
     condition.text = std::to_string(pick(3));
   }
   return condition;
