@@ -1,7 +1,9 @@
 #include "server/config.h"
 
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
+#include <map>
 #include <ostream>
 #include <string>
 
@@ -23,6 +25,7 @@ Examples:
   fascicled                                    serve this machine on port 7300
   fascicled --listen 127.0.0.1:0               choose a free port and print it
   fascicled --data /srv/fascicle --workers 4   four jobs at once, data in /srv/fascicle
+  fascicled --ttl 30d --disk-budget 200GB      remove jobs after 30 days, and old frames beyond 200 GB
   fascicled --listen 0.0.0.0:7300 --allow-remote
                                                allow other machines, in trusted networks only
 
@@ -36,8 +39,10 @@ std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std:
   Config config;
   config.server.listen = "127.0.0.1:7300";
   config.server.data_directory = DefaultDataDirectory();
+  config.server.max_queued_per_owner = 10'000;
   std::string level = "info";
   double checkpoint = 2;
+  std::int64_t ttl = 0;
 
   CLI::App app("fascicled runs simulations of muscle and soft tissue for clients.", "fascicled");
   app.footer(kFooter);
@@ -77,6 +82,36 @@ std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std:
       ->type_name("SECONDS")
       ->check(CLI::Range(0.01, 3600.0))
       ->capture_default_str();
+  app.add_flag("--oversubscribe", config.server.oversubscribe,
+               "Give jobs the threads that they ask for, even if all jobs together then have more threads than cores");
+  app.add_option("--owner-queued", config.server.max_queued_per_owner,
+                 "Most jobs of an owner in the queue; 0: no limit")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--owner-running", config.server.max_running_per_owner,
+                 "Most jobs of an owner that run at once; 0: no limit")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
+  app.add_option("--owner-stored", config.server.max_stored_per_owner,
+                 "Most that is stored of an owner's jobs before new ones are refused; 0: no limit")
+      ->type_name("SIZE")
+      ->transform(CLI::AsSizeValue(false))
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--ttl", ttl, "How long jobs are kept after their end, unless they are pinned; 0: for ever")
+      ->type_name("TIME")
+      ->transform(
+          CLI::AsNumberWithUnit(std::map<std::string, std::int64_t>{{"s", 1}, {"m", 60}, {"h", 3600}, {"d", 86400}},
+                                CLI::AsNumberWithUnit::CASE_SENSITIVE))
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{315'576'000}))
+      ->capture_default_str();
+  app.add_option("--disk-budget", config.server.disk_budget,
+                 "Disk space for frames: beyond it, frames of the finished jobs that ended first are removed, unless "
+                 "they are pinned; 0: no limit")
+      ->type_name("SIZE")
+      ->transform(CLI::AsSizeValue(false))
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app.add_flag("--allow-remote", config.server.allow_remote,
                "Allow addresses other than loopback; there is no TLS and no login");
   app.add_option("--log-level", level, "What is logged to stderr")
@@ -92,6 +127,7 @@ std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std:
     return 2;
   }
   config.server.checkpoint_interval = std::chrono::milliseconds(static_cast<int>(1000 * checkpoint));
+  config.server.default_ttl = std::chrono::seconds(ttl);
   config.log_level = spdlog::level::from_str(level);
   return config;
 }

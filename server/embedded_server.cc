@@ -57,6 +57,7 @@ std::unique_ptr<Store> OpenStore(const ServerOptions& options) {
 
 void LogEvent(spdlog::logger& log, const JobRecord& job, std::string_view event) {
   std::string text = "job " + job.id + " " + std::string(event);
+  if (!job.owner.empty()) text += ", owner " + job.owner;
   if (job.attempt > 1) text += ", attempt " + std::to_string(job.attempt);
   if (!job.request_id.empty()) text += ", request " + job.request_id;
   if (v1::Failure failure; job.state == JobState::kFailed && failure.ParseFromString(job.failure)) {
@@ -72,7 +73,17 @@ std::int64_t MostMemory() {
 }
 
 JobManagerOptions JobOptions(const ServerOptions& options, const std::shared_ptr<spdlog::logger>& log) {
-  JobManagerOptions result = {options.workers, options.default_threads, options.checkpoint_interval};
+  JobManagerOptions result = {.workers = options.workers,
+                              .default_threads = options.default_threads,
+                              .checkpoint_interval = options.checkpoint_interval};
+  result.oversubscribe = options.oversubscribe;
+  result.max_queued_per_owner = options.max_queued_per_owner;
+  result.max_running_per_owner = options.max_running_per_owner;
+  result.max_stored_per_owner = options.max_stored_per_owner;
+  result.default_ttl_s = options.default_ttl.count();
+  result.disk_budget = options.disk_budget;
+  result.retention_interval = options.retention_interval;
+  result.on_note = [log](const std::string& note) { log->info("{}", note); };
   result.on_event = [log](const JobRecord& job, std::string_view event) { LogEvent(*log, job, event); };
   if (!options.record_crashes || options.data_directory.empty()) return result;
   const std::string crashes = options.data_directory + "/crashes";
@@ -120,6 +131,12 @@ class Server : public EmbeddedServer {
     settings.workers = options.workers;
     settings.default_threads = options.default_threads;
     settings.max_asset_size = options.max_asset_size;
+    settings.oversubscribe = options.oversubscribe;
+    settings.max_queued_per_owner = options.max_queued_per_owner;
+    settings.max_running_per_owner = options.max_running_per_owner;
+    settings.max_stored_per_owner = options.max_stored_per_owner;
+    settings.default_ttl_s = options.default_ttl.count();
+    settings.disk_budget = options.disk_budget;
     settings.job_memory = options.job_memory > 0 ? options.job_memory : MostMemory();
     settings.heartbeat_interval = options.heartbeat_interval;
     settings.progress_interval = options.progress_interval;

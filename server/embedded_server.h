@@ -17,6 +17,15 @@ struct ServerOptions {
   std::string data_directory;          // empty: in memory
   int workers = 2;                     // 0: jobs stay in the queue, for a server that only reads
   int default_threads = 1;
+  bool oversubscribe = false;  // whether jobs get all threads that they ask for, whatever else runs
+  // Limits of an owner's jobs; 0: none.
+  int max_queued_per_owner = 0;
+  int max_running_per_owner = 0;
+  std::int64_t max_stored_per_owner = 0;  // [byte]
+  // What is kept; 0: everything.
+  std::chrono::seconds default_ttl = std::chrono::seconds(0);               // of jobs after their end
+  std::int64_t disk_budget = 0;                                             // for frames and geometry [byte]
+  std::chrono::milliseconds retention_interval = std::chrono::seconds(10);  // between looks for what can be removed
   bool record_crashes = false;  // in the data directory, for the next start; changes signal handlers of the process
   bool allow_remote = false;    // whether addresses other than loopback are allowed
 

@@ -24,7 +24,10 @@ void Show(const v1::Job& job, ProgressBar& bar) {
   bar.Show(job.state(), job.progress(), job.queue_position());
 }
 
-bool HasStarted(v1::Job::State state) { return state != v1::Job::STATE_QUEUED && state != v1::Job::STATE_STARTING; }
+bool HasStarted(const v1::Job& job) {
+  if (job.state() == v1::Job::STATE_PAUSED || job.state() == v1::Job::STATE_PAUSING) return job.has_start_time();
+  return job.state() != v1::Job::STATE_QUEUED && job.state() != v1::Job::STATE_STARTING;
+}
 
 // Waits until the job has been started or is final, or until a stop is requested; returns its current state.
 v1::Job AwaitStart(Client& client, const std::string& name, ProgressBar& bar, const std::stop_token& stop) {
@@ -32,7 +35,7 @@ v1::Job AwaitStart(Client& client, const std::string& name, ProgressBar& bar, co
   for (;;) {
     v1::Job job = Take(client.GetJob(name));
     Show(job, bar);
-    if (HasStarted(job.state()) || stop.stop_requested()) return job;
+    if (HasStarted(job) || stop.stop_requested()) return job;
     Sleep(pause, stop);
     pause = std::min(pause * 2, std::chrono::milliseconds(500));
   }
@@ -83,7 +86,7 @@ Followed Follow(Client& client, const std::string& name, const WatchOptions& opt
                 const std::stop_token& stop) {
   ProgressBar bar;
   v1::Job job = AwaitStart(client, name, bar, stop);
-  if (!HasStarted(job.state())) return Nothing(std::move(job), true);
+  if (!HasStarted(job)) return Nothing(std::move(job), true);
   std::optional<v1::Geometry> geometry = FetchGeometry(client, job);
   if (!geometry) return Nothing(std::move(job), false);
   Followed followed{{}, std::move(*geometry), SeriesTable({}), std::nullopt, false};

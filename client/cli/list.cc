@@ -1,14 +1,17 @@
-#include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <map>
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
 #include "client/cli/command.h"
+#include "client/cli/interrupts.h"
+#include "client/cli/job_table.h"
 #include "client/cli/progress_bar.h"
 #include "client/cli/summary.h"
 
@@ -18,11 +21,17 @@ namespace {
 constexpr const char* kListExamples = R"(  fascicle list                       the newest 50 jobs
   fascicle list --state running       running jobs
   fascicle list --limit 500 --json    one object per line
+  fascicle list --filter 'state=FAILED AND age<7d' --order-by 'size desc'
+  fascicle list --filter 'owner=ann AND (labels.study=knee OR name:knee)'
+  fascicle list --watch               all jobs, then each change, until Ctrl-C
+Filters compare state, owner, name, labels.KEY, created, started, ended, age, priority, size, frames and pinned
+by = != < <= > >= and : (a part of a text), and join comparisons by AND, OR (which binds more strongly) and NOT.
 )";
 
 struct ListOptions {
-  int limit = 50;
+  JobsToList which;
   std::vector<std::string> states;
+  bool watch = false;
 };
 
 std::map<std::string, v1::Job::State> KnownStates() {
@@ -34,60 +43,76 @@ std::map<std::string, v1::Job::State> KnownStates() {
   return states;
 }
 
-// "2026-11-30 09:40" in local time; empty for an absent one.
-std::string TimeText(bool is_set, const google::protobuf::Timestamp& time) {
-  if (!is_set) return "";
-  const std::time_t seconds = time.seconds();
-  std::tm local = {};
-  localtime_r(&seconds, &local);
-  char text[32];
-  return std::strftime(text, sizeof text, "%Y-%m-%d %H:%M", &local) > 0 ? text : "";
-}
-
-// From the start to the end, or until now; empty before the start.
-std::string WallText(const v1::Job& job) {
-  if (!job.has_start_time()) return "";
-  const double start = static_cast<double>(job.start_time().seconds()) + 1e-9 * job.start_time().nanos();
-  const double end = job.has_end_time() ? static_cast<double>(job.end_time().seconds()) + 1e-9 * job.end_time().nanos()
-                                        : static_cast<double>(std::time(nullptr));
-  return DurationText(end - start);
-}
-
-// "950 kB"; powers of 1000.
-std::string SizeText(std::int64_t bytes) {
-  double size = static_cast<double>(bytes);
-  const char* unit = "B";
-  for (const char* larger : {"kB", "MB", "GB", "TB"}) {
-    if (size < 999.5) break;
-    size /= 1000;
-    unit = larger;
-  }
-  char text[32];
-  std::snprintf(text, sizeof text, size < 9.95 && *unit != 'B' ? "%.1f %s" : "%.0f %s", size, unit);
-  return text;
-}
-
 int List(const ListOptions& options, const Context& context) {
-  std::vector<v1::Job::State> states;
-  for (const std::string& name : options.states) states.push_back(KnownStates().at(name));
+  JobsToList which = options.which;
+  for (const std::string& name : options.states) which.states.push_back(KnownStates().at(name));
   Client client = Connect(context);
-  const std::vector<v1::Job> jobs = Take(client.ListJobs(options.limit, states));
+  const std::vector<v1::Job> jobs = Take(client.ListJobs(which));
   if (context.json) {
     for (const v1::Job& job : jobs) PrintJson(JobJson(job));
     return kDone;
   }
-  int width = 3;
-  for (const v1::Job& job : jobs) width = std::max(width, static_cast<int>(job.name().size()));
-  std::printf("%-*s  %-10s %5s %7s %7s  %-16s %8s  %s\n", width, "job", "state", "done", "frames", "size", "created",
-              "wall", "scene");
-  for (const v1::Job& job : jobs) {
-    std::printf("%-*s  %-10s %3.0f %% %7lld %7s  %-16s %8s  %s\n", width, job.name().c_str(),
-                StateName(job.state()).c_str(), 100 * job.progress().fraction(),
-                static_cast<long long>(job.frame_count()), SizeText(job.stored_bytes()).c_str(),
-                TimeText(job.has_create_time(), job.create_time()).c_str(), WallText(job).c_str(),
-                (job.scene_name() + (job.has_imported() ? " (imported)" : "")).c_str());
-  }
+  const JobTable table(jobs);
+  table.PrintHead();
+  for (const v1::Job& job : jobs) table.Print(job);
   return kDone;
+}
+
+// Prints changes: all with --json, otherwise those other than progress.
+class ChangePrinter {
+ public:
+  explicit ChangePrinter(bool json) : json_(json) {}
+
+  void Print(const v1::WatchJobsResponse& changes) {
+    for (const v1::Job& job : changes.jobs()) {
+      const std::string before = std::exchange(told_[job.name()], WithoutProgress(job));
+      if (json_) PrintJson(JobJson(job));
+      if (!json_ && before != told_[job.name()]) Print(job);
+    }
+    for (const std::string& name : changes.removed()) {
+      const bool was_told = told_.erase(name) > 0;
+      if (json_) PrintJson({{"removed", name}});
+      if (!json_ && was_told) std::printf("%s  is not in the list any more\n", name.c_str());
+    }
+    std::fflush(stdout);
+  }
+
+ private:
+  static std::string WithoutProgress(const v1::Job& job) {
+    Json json = JobJson(job);
+    for (const char* key :
+         {"frames", "fraction", "time", "steps", "stored_bytes", "queue_position", "revision", "threads_in_use"}) {
+      json.erase(key);
+    }
+    return json.dump();
+  }
+
+  void Print(const v1::Job& job) {
+    if (!table_) {
+      table_.emplace(std::vector<v1::Job>{job});
+      table_->PrintHead();
+    }
+    table_->Print(job);
+  }
+
+  const bool json_;
+  std::optional<JobTable> table_;
+  std::map<std::string, std::string> told_;
+};
+
+int Watch(const ListOptions& options, const Context& context) {
+  const StopOnInterrupt interrupt;
+  Client client = Connect(context);
+  ChangePrinter printer(context.json);
+  JobsWatch watch;
+  watch.filter = options.which.filter;
+  watch.changes = [&](const v1::WatchJobsResponse& changes) { printer.Print(changes); };
+  watch.reconnecting = [](const std::string& message) {
+    std::fprintf(stderr, "connection lost (%s), trying again\n", message.c_str());
+  };
+  const Error error = client.WatchJobs(watch, interrupt.token());
+  if (error.kind == Error::Kind::kStopped) return kCancelled;
+  throw CommandError(error);
 }
 
 }  // namespace
@@ -95,12 +120,27 @@ int List(const ListOptions& options, const Context& context) {
 void AddList(CLI::App& app, Context& context) {
   CLI::App* command = AddCommand(app, "list", "List the jobs of a server, newest first", kListExamples);
   const auto options = std::make_shared<ListOptions>();
-  command->add_option("--limit", options->limit, "Largest number of jobs to list")->check(CLI::Range(1, 1000000));
+  CLI::Option* limit = command->add_option("--limit", options->which.limit, "Largest number of jobs to list")
+                           ->check(CLI::Range(1, 1000000));
   std::vector<std::string> names;
   for (const auto& [name, state] : KnownStates()) names.push_back(name);
-  command->add_option("--state", options->states, "Only jobs in this state; may be repeated")
-      ->check(CLI::IsMember(names));
-  command->callback([options, &context] { context.action = [options, &context] { return List(*options, context); }; });
+  CLI::Option* states = command->add_option("--state", options->states, "Only jobs in this state; may be repeated")
+                            ->check(CLI::IsMember(names));
+  command->add_option("--filter", options->which.filter, "Only jobs that pass; see below")->type_name("FILTER");
+  CLI::Option* order =
+      command
+          ->add_option("--order-by", options->which.order_by,
+                       "created, started, ended, priority, size, frames, owner, name or state, and ` desc`")
+          ->type_name("ORDER");
+  command->add_flag("--watch", options->watch, "Print all jobs, then each change, until Ctrl-C")
+      ->excludes(limit)
+      ->excludes(states)
+      ->excludes(order);
+  command->callback([options, &context] {
+    context.action = [options, &context] {
+      return options->watch ? Watch(*options, context) : List(*options, context);
+    };
+  });
 }
 
 }  // namespace fascicle::client

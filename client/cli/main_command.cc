@@ -44,9 +44,15 @@ std::optional<std::string> UnknownCommand(const CLI::App& app, int argc, char** 
 // Names of other programs' commands for the same, otherwise the command that is spelled most nearly so.
 std::string NearCommand(const CLI::App& app, const std::string& wrong) {
   static const std::map<std::string, const char*> kOtherNames = {{"status", "show` or `list"},
-                                                                 {"info", "show"},
                                                                  {"tail", "log"},
                                                                  {"logs", "log"},
+                                                                 {"server", "info"},
+                                                                 {"hold", "pause"},
+                                                                 {"suspend", "pause"},
+                                                                 {"continue", "resume` or `restart"},
+                                                                 {"label", "update"},
+                                                                 {"pin", "update"},
+                                                                 {"priority", "update"},
                                                                  {"jobs", "list"},
                                                                  {"ls", "list"},
                                                                  {"ps", "list"},
@@ -120,6 +126,10 @@ int Run(int argc, char** argv) {
   AddWatch(app, context);
   AddList(app, context);
   AddShow(app, context);
+  AddInfo(app, context);
+  AddUpdate(app, context);
+  AddPause(app, context);
+  AddResume(app, context);
   AddCancel(app, context);
   AddRestart(app, context);
   AddVerify(app, context);

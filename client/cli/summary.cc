@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <map>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
@@ -136,6 +138,14 @@ Json JobJson(const v1::Job& job) {
                {"threads", job.threads()},
                {"attempt", job.attempt()},
                {"stored_bytes", job.stored_bytes()}};
+  if (job.threads_in_use() > 0) json["threads_in_use"] = job.threads_in_use();
+  if (job.first_frame() > 0) json["first_frame"] = job.first_frame();
+  if (!job.owner().empty()) json["owner"] = job.owner();
+  if (job.priority() != 0) json["priority"] = job.priority();
+  for (const auto& [key, value] : std::map<std::string, std::string>(job.labels().begin(), job.labels().end()))
+    json["labels"][key] = value;
+  if (job.ttl().seconds() > 0) json["ttl_seconds"] = job.ttl().seconds();
+  if (job.pinned()) json["pinned"] = true;
   if (job.state() == v1::Job::STATE_QUEUED) json["queue_position"] = job.queue_position();
   if (job.has_create_time()) json["created"] = TimeUtil::ToString(job.create_time());
   if (job.has_start_time()) json["started"] = TimeUtil::ToString(job.start_time());

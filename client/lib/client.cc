@@ -12,6 +12,7 @@
 #include "client/lib/upload.h"
 #include "client/lib/watch.h"
 #include "client/lib/watch_log.h"
+#include "client/lib/watch_jobs.h"
 
 namespace fascicle::client {
 namespace {
@@ -82,9 +83,15 @@ Result<v1::ServerInfo> Client::GetServerInfo() {
 }
 
 Result<v1::Job> Client::Submit(const ScenePackage& package, int threads, const std::stop_token& stop) {
+  v1::Job wanted;
+  wanted.set_threads(threads);
+  return Submit(package, std::move(wanted), stop);
+}
+
+Result<v1::Job> Client::Submit(const ScenePackage& package, v1::Job wanted, const std::stop_token& stop) {
   v1::CreateJobRequest request;
+  *request.mutable_job() = std::move(wanted);
   *request.mutable_job()->mutable_scene() = package.scene;
-  request.mutable_job()->set_threads(threads);
   request.set_request_id(RandomRequestId());
   return impl_->Create(package, request, stop);
 }
@@ -108,12 +115,18 @@ Result<v1::Job> Client::GetJob(const std::string& name) {
 }
 
 Result<std::vector<v1::Job>> Client::ListJobs(int limit, const std::vector<v1::Job::State>& states) {
+  return ListJobs({.limit = limit, .states = states});
+}
+
+Result<std::vector<v1::Job>> Client::ListJobs(const JobsToList& which) {
   constexpr int kLargestPage = 1000;
   std::vector<v1::Job> jobs;
   v1::ListJobsRequest request;
-  for (const v1::Job::State state : states) request.add_states(state);
-  while (static_cast<int>(jobs.size()) < limit) {
-    request.set_page_size(std::min(limit - static_cast<int>(jobs.size()), kLargestPage));
+  for (const v1::Job::State state : which.states) request.add_states(state);
+  request.set_filter(which.filter);
+  request.set_order_by(which.order_by);
+  while (static_cast<int>(jobs.size()) < which.limit) {
+    request.set_page_size(std::min(which.limit - static_cast<int>(jobs.size()), kLargestPage));
     auto page = impl_->Ask<v1::ListJobsResponse>(kTimeout, [&](grpc::ClientContext& context, auto& response) {
       return impl_->connection.jobs().ListJobs(&context, request, &response);
     });
@@ -123,6 +136,32 @@ Result<std::vector<v1::Job>> Client::ListJobs(int limit, const std::vector<v1::J
     request.set_page_token(page.value().next_page_token());
   }
   return jobs;
+}
+
+Error Client::WatchJobs(const JobsWatch& watch, const std::stop_token& stop) {
+  return WatchAllJobs(impl_->connection, watch, stop);
+}
+
+Result<v1::Job> Client::UpdateJob(const v1::UpdateJobRequest& request) {
+  return impl_->Ask<v1::Job>(kTimeout, [&](grpc::ClientContext& context, v1::Job& response) {
+    return impl_->connection.jobs().UpdateJob(&context, request, &response);
+  });
+}
+
+Result<v1::Job> Client::PauseJob(const std::string& name) {
+  v1::PauseJobRequest request;
+  request.set_name(name);
+  return impl_->Ask<v1::Job>(kTimeout, [&](grpc::ClientContext& context, v1::Job& response) {
+    return impl_->connection.jobs().PauseJob(&context, request, &response);
+  });
+}
+
+Result<v1::Job> Client::ResumeJob(const std::string& name) {
+  v1::ResumeJobRequest request;
+  request.set_name(name);
+  return impl_->Ask<v1::Job>(kTimeout, [&](grpc::ClientContext& context, v1::Job& response) {
+    return impl_->connection.jobs().ResumeJob(&context, request, &response);
+  });
 }
 
 Result<v1::Job> Client::CancelJob(const std::string& name) {

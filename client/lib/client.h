@@ -73,6 +73,24 @@ struct WatchOptions {
   std::chrono::seconds patience = std::chrono::seconds(30);
 };
 
+// What WatchJobs watches, and its callbacks, all on the thread that called WatchJobs.
+struct JobsWatch {
+  std::string filter = {};                                   // as in ListJobsRequest
+  std::int64_t revision = 0;                                 // only changes after it; 0: all jobs first
+  std::chrono::seconds patience = std::chrono::seconds(30);  // how long to retry after a lost connection
+  // Jobs as they are now, and names of jobs that were deleted or do not pass the filter any more.
+  std::function<void(const v1::WatchJobsResponse& changes)> changes = {};
+  std::function<void(const std::string& message)> reconnecting = {};
+};
+
+// Which jobs ListJobs lists.
+struct JobsToList {
+  int limit = 50;
+  std::vector<v1::Job::State> states = {};  // empty: all
+  std::string filter = {};                  // as in ListJobsRequest, here and below
+  std::string order_by = {};
+};
+
 // Callbacks of Watch, all on the thread that called Watch. Any may be empty.
 struct WatchEvents {
   // With correct checksums, and arrays of doubles whatever the encoding. Frames that are not as stored have a
@@ -100,10 +118,20 @@ class Client {
   // Uploads the files that the server lacks and creates the job. A stop request ends it with kStopped, and also ends
   // the server's work on the scene.
   Result<v1::Job> Submit(const ScenePackage& package, int threads, const std::stop_token& stop = {});
+  // The same with threads, owner, labels, priority, ttl and pin of `wanted`.
+  Result<v1::Job> Submit(const ScenePackage& package, v1::Job wanted, const std::stop_token& stop = {});
   // Checks a scene without creating a job.
   std::optional<Error> Validate(const ScenePackage& package, int threads);
   Result<v1::Job> GetJob(const std::string& name);
   Result<std::vector<v1::Job>> ListJobs(int limit, const std::vector<v1::Job::State>& states);
+  Result<std::vector<v1::Job>> ListJobs(const JobsToList& which);
+  // Tells all jobs, then all changes of jobs, each once and none missed, over lost connections too. Returns when it is
+  // over: kStopped after a stop request.
+  Error WatchJobs(const JobsWatch& watch, const std::stop_token& stop = {});
+  // Changes what the mask of the request names.
+  Result<v1::Job> UpdateJob(const v1::UpdateJobRequest& request);
+  Result<v1::Job> PauseJob(const std::string& name);
+  Result<v1::Job> ResumeJob(const std::string& name);
   Result<v1::Job> CancelJob(const std::string& name);
   std::optional<Error> DeleteJob(const std::string& name);
   // Queues a job in a final state again, from its last checkpoint or from time 0.

@@ -15,8 +15,6 @@ namespace fascicle::client {
 // When to give up after a lost connection: `patience` after the first loss since the last success. Not thread-safe.
 class Patience {
  public:
-  using Steady = std::chrono::steady_clock;
-
   explicit Patience(std::chrono::seconds patience) : patience_(patience) {}
 
   void Succeeded() {
@@ -27,17 +25,19 @@ class Patience {
   // Returns true for the first loss since the last success.
   bool Lost() {
     if (lost_since_) return false;
-    lost_since_ = Steady::now();
+    lost_since_ = Clock::now();
     return true;
   }
 
-  bool exhausted() const { return lost_since_ && Steady::now() - *lost_since_ >= patience_; }
+  bool exhausted() const { return lost_since_ && Clock::now() - *lost_since_ >= patience_; }
 
   void Wait(const grpc::Status& status, const std::stop_token& stop) { backoff_.Wait(RetryDelayOf(status), stop); }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   const std::chrono::seconds patience_;
-  std::optional<Steady::time_point> lost_since_;
+  std::optional<Clock::time_point> lost_since_;
   Backoff backoff_;
 };
 

@@ -4,8 +4,19 @@
 #include <utility>
 
 namespace fascicle::server {
+namespace {
 
-ActiveJob::ActiveJob(Store& store, JobRecord record) : store_(store), id_(record.id), record_(std::move(record)) {
+void CopySettings(const JobRecord& from, JobRecord& to) {
+  to.labels = from.labels;
+  to.priority = from.priority;
+  to.ttl_s = from.ttl_s;
+  to.is_pinned = from.is_pinned;
+}
+
+}  // namespace
+
+ActiveJob::ActiveJob(Store& store, JobRecord record)
+    : store_(store), id_(record.id), wanted_threads_(record.threads), record_(std::move(record)) {
   record_.spec.clear();
   progress_ = ViewOf(record_).progress;
 }
@@ -27,6 +38,12 @@ void ActiveJob::Update(const Change& change) {
   store_.UpdateJob(changed);
   const std::lock_guard lock(mutex_);
   record_ = std::move(changed);
+}
+
+void ActiveJob::SetSettings(const JobRecord& stored) {
+  const std::lock_guard update_lock(update_mutex_);
+  const std::lock_guard lock(mutex_);
+  CopySettings(stored, record_);
 }
 
 void ActiveJob::SetProgress(const Progress& progress) {
@@ -74,11 +91,26 @@ JobView ActiveJob::View(JobRecord stored) const {
   const std::lock_guard lock(mutex_);
   JobRecord record = record_;
   record.spec = std::move(stored.spec);
+  CopySettings(stored, record);
+  record.revision = stored.revision;
   FillIn(record);
+  return ViewWithProgress(std::move(record));
+}
+
+JobView ActiveJob::ViewStored(JobRecord stored) const {
+  const std::lock_guard lock(mutex_);
+  JobView view = ViewWithProgress(std::move(stored));
+  if (frames_ == nullptr) return view;
+  view.frame_count = frames_->frame_count();
+  view.stored_bytes = frames_->stored_bytes();
+  return view;
+}
+
+JobView ActiveJob::ViewWithProgress(JobRecord record) const {
   JobView view = ViewOf(std::move(record));
   view.progress = progress_;
-  if (!IsFinal(record_.state)) view.waiting = waiting_;
-  if (record_.state == JobState::kRunning) view.eta_seconds = eta_.Seconds(std::chrono::steady_clock::now());
+  if (!IsAtRest(view.record.state)) view.waiting = waiting_;
+  if (view.record.state == JobState::kRunning) view.eta_seconds = eta_.Seconds(std::chrono::steady_clock::now());
   return view;
 }
 
@@ -107,9 +139,15 @@ std::string_view EventOf(JobState state) {
       return "failed";
     case JobState::kCancelled:
       return "cancelled";
+    case JobState::kPaused:
+      return "paused";
+    case JobState::kPausing:
+      return "asked to pause";
   }
   return "changed";
 }
+
+bool IsAtRest(JobState state) { return IsFinal(state) || state == JobState::kPaused; }
 
 std::int64_t UnixTimeUs() {
   return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())

@@ -1,6 +1,7 @@
 #include "server/jobs/job_manager.h"
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <map>
 #include <mutex>
@@ -11,8 +12,10 @@
 #include "server/jobs/active_job.h"
 #include "server/jobs/crash_marks.h"
 #include "server/jobs/job_id.h"
+#include "server/jobs/job_queue.h"
 #include "server/jobs/job_run.h"
 #include "server/jobs/notifier.h"
+#include "server/jobs/retention.h"
 #include "server/jobs/verify_job.h"
 
 namespace fascicle::server {
@@ -20,7 +23,7 @@ namespace {
 
 const std::vector<JobState>& UnfinishedStates() {
   static const std::vector<JobState> states = {JobState::kQueued, JobState::kStarting, JobState::kRunning,
-                                               JobState::kCancelling};
+                                               JobState::kCancelling, JobState::kPausing};
   return states;
 }
 
@@ -54,10 +57,10 @@ void NoteCrash(const JobManagerOptions& options, const JobCodec& codec, JobRecor
   record.end_time_us = UnixTimeUs();
 }
 
-// Takes over a job that another process left unfinished: queues it again, or ends it.
-void Resume(Store& store, const JobManagerOptions& options, const JobCodec& codec, JobRecord& record) {
+// Takes over a job that another process left unfinished: queues it again, pauses it or ends it.
+void TakeUp(Store& store, const JobManagerOptions& options, const JobCodec& codec, JobRecord& record) {
   if (record.state == JobState::kQueued) return;
-  const bool is_cancelled = record.state == JobState::kCancelling;
+  const JobState left = record.state;
   try {
     if (const std::shared_ptr<FrameStore> frames = store.OpenFrames(record.id)) {
       record.frame_count = frames->frame_count();
@@ -66,22 +69,40 @@ void Resume(Store& store, const JobManagerOptions& options, const JobCodec& code
   } catch (const StoreError&) {
     // A damaged file makes its own job fail, when that is started, and nothing else.
   }
-  record.state = is_cancelled ? JobState::kCancelled : JobState::kQueued;
-  if (is_cancelled) record.end_time_us = UnixTimeUs();
-  if (!is_cancelled) NoteCrash(options, codec, record);
+  record.state = left == JobState::kCancelling ? JobState::kCancelled
+                 : left == JobState::kPausing  ? JobState::kPaused
+                                               : JobState::kQueued;
+  if (IsFinal(record.state)) record.end_time_us = UnixTimeUs();
+  if (record.state == JobState::kQueued) NoteCrash(options, codec, record);
   store.UpdateJob(record);
 }
+
+// Waits for another thread that has stored something and is about to do the rest.
+void WaitBriefly() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
+
+int Cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 }  // namespace
 
 struct JobManager::Impl {
   Impl(Store& the_store, JobCodec the_codec, JobManagerOptions the_options)
-      : store(the_store), codec(std::move(the_codec)), options(the_options), ids(NewestId(the_store)) {
+      : store(the_store),
+        codec(std::move(the_codec)),
+        options(the_options),
+        ids(NewestId(the_store)),
+        queue(the_options.max_running_per_owner) {
     TakeUpUnfinished();
     for (int i = 0; i < options.workers; ++i) workers.emplace_back([this] { Work(); });
+    if (options.workers == 0) return;
+    retention.emplace(store, codec, options,
+                      Retention::Actions{[this](const JobRecord& job) { DeleteExpired(job.id); },
+                                         [this](const JobRecord& job) { return RemoveFrames(job.id); }});
   }
 
-  ~Impl() { Drain(); }
+  ~Impl() {
+    retention.reset();
+    Drain();
+  }
 
   void TakeUpUnfinished() {
     constexpr int kPage = 500;
@@ -91,14 +112,50 @@ struct JobManager::Impl {
       if (page.empty()) return;
       before = page.back().id;
       for (JobRecord& record : page) {
-        Resume(store, options, codec, record);
+        TakeUp(store, options, codec, record);
         options.on_event(record, EventOf(record.state));
-        if (!IsFinal(record.state)) Enqueue(std::move(record), nullptr);
+        if (record.state == JobState::kQueued) Enqueue(std::move(record), nullptr);
       }
     }
   }
 
-  void Enqueue(JobRecord record, std::shared_ptr<const Scene> scene) {
+  // While it exists, an owner has one more job in the queue. Throws OwnerLimitError if that is too many.
+  class QueuePlace {
+   public:
+    QueuePlace(Impl& impl, const std::string& owner) : impl_(impl), owner_(owner) {
+      const std::lock_guard lock(impl_.mutex);
+      const int most = impl_.options.max_queued_per_owner;
+      const auto coming = impl_.coming.find(owner_);
+      const int count = impl_.queue.CountOf(owner_) + (coming == impl_.coming.end() ? 0 : coming->second);
+      if (most > 0 && count >= most) {
+        throw OwnerLimitError("an owner may have " + std::to_string(most) +
+                              " jobs in the queue: wait until some have started, or cancel some");
+      }
+      ++impl_.coming[owner_];
+    }
+    ~QueuePlace() {
+      const std::lock_guard lock(impl_.mutex);
+      GiveUp();
+    }
+    // When the job is in the queue itself; needs mutex.
+    void GiveUp() {
+      if (std::exchange(is_given_up_, true)) return;
+      const auto coming = impl_.coming.find(owner_);
+      if (--coming->second == 0) impl_.coming.erase(coming);
+    }
+    QueuePlace(const QueuePlace&) = delete;
+    QueuePlace& operator=(const QueuePlace&) = delete;
+
+   private:
+    Impl& impl_;
+    const std::string owner_;
+    bool is_given_up_ = false;
+  };
+
+  // `place`: of this job; may be null.
+  void Enqueue(JobRecord record, std::shared_ptr<const Scene> scene, QueuePlace* place = nullptr) {
+    const std::string owner = record.owner;
+    const int priority = record.priority;
     auto job = std::make_shared<ActiveJob>(store, std::move(record));
     {
       const std::lock_guard lock(mutex);
@@ -106,10 +163,18 @@ struct JobManager::Impl {
         job->SetScene(std::move(scene));
         with_scene.insert(job->id());
       }
-      queue.insert(job->id());
+      queue.Add(job->id(), owner, priority);
+      if (place != nullptr) place->GiveUp();
       active[job->id()] = job;
     }
     queue_changed.notify_one();
+  }
+
+  // Wakes those who listen to a job and, if its record has changed, those who listen to all jobs.
+  void Tell(std::string_view id) {
+    notifier.Notify(id);
+    const std::int64_t revision = store.Revision();
+    if (told_revision.exchange(revision) != revision) notifier.Notify("");
   }
 
   std::shared_ptr<ActiveJob> FindActive(std::string_view id) {
@@ -118,43 +183,176 @@ struct JobManager::Impl {
     return found == active.end() ? nullptr : found->second;
   }
 
-  void Forget(std::string_view id) {
+  // Of a job that needs no worker any more.
+  void Forget(const std::shared_ptr<ActiveJob>& job) {
     const std::lock_guard lock(mutex);
-    if (const auto found = queue.find(id); found != queue.end()) queue.erase(found);
-    if (const auto found = with_scene.find(id); found != with_scene.end()) with_scene.erase(found);
-    if (const auto found = active.find(id); found != active.end()) active.erase(found);
+    queue.Remove(job->id());
+    with_scene.erase(job->id());
+    const auto found = active.find(job->id());
+    if (found != active.end() && found->second == job) active.erase(found);
   }
 
   // The current record, where `stored` was read after `job` was looked up.
   JobView View(const std::shared_ptr<ActiveJob>& job, JobRecord stored) {
     if (job == nullptr) return ViewOf(std::move(stored));
-    JobView view = job->View(std::move(stored));
+    return WithPlace(job->View(std::move(stored)));
+  }
+
+  // Records as they are stored.
+  std::vector<JobView> ViewsOf(std::vector<JobRecord> stored) {
+    std::shared_ptr<const JobQueue::Places> places;
+    {
+      const std::lock_guard lock(mutex);
+      places = queue.PlacesOfAll(JobQueue::Clock::now());
+    }
+    std::vector<JobView> views;
+    for (JobRecord& record : stored) {
+      const std::shared_ptr<ActiveJob> job = FindActive(record.id);
+      views.push_back(job == nullptr ? ViewOf(std::move(record)) : job->ViewStored(std::move(record)));
+      if (job == nullptr) continue;
+      const auto place = places->find(job->id());
+      if (place != places->end()) views.back().queue_position = place->second;
+      const std::lock_guard lock(mutex);
+      views.back().threads = queue.ThreadsOf(job->id());
+    }
+    return views;
+  }
+
+  JobView WithPlace(JobView view) {
     const std::lock_guard lock(mutex);
-    const auto place = queue.find(view.record.id);
-    if (place != queue.end()) view.queue_position = static_cast<int>(std::distance(queue.begin(), place));
+    view.queue_position = queue.PlaceOf(view.record.id, JobQueue::Clock::now());
+    view.threads = queue.ThreadsOf(view.record.id);
     return view;
   }
 
-  // Waits for the next job; null when there will be none.
-  std::shared_ptr<ActiveJob> TakeNext() {
+  struct Task {
+    std::shared_ptr<ActiveJob> job;  // null when there will be none
+    int threads = 1;
+  };
+
+  // Waits for the next job.
+  Task TakeNext() {
     std::unique_lock lock(mutex);
-    queue_changed.wait(lock, [this] { return is_draining || !queue.empty(); });
-    if (is_draining) return nullptr;
-    const std::string id = *queue.begin();
-    queue.erase(queue.begin());
-    with_scene.erase(id);
-    return *running.insert(active.at(id)).first;
+    std::optional<std::string> id;
+    queue_changed.wait(lock, [&] {
+      if (!is_draining) id = queue.Take(JobQueue::Clock::now());
+      return is_draining || id;
+    });
+    if (!id) return {};
+    with_scene.erase(*id);
+    Task task = {active.at(*id)};
+    task.threads = ThreadsFor(*task.job);
+    queue.Started(*id, task.threads);
+    running.insert(task.job);
+    return task;
+  }
+
+  // Of a job that was just taken; needs mutex. All jobs together have no more threads than there are cores, one of
+  // which is kept for each worker that waits, so that no job waits for the end of another.
+  int ThreadsFor(const ActiveJob& job) const {
+    const int wanted = std::min(job.wanted_threads() > 0 ? job.wanted_threads() : options.default_threads, Cores());
+    if (options.oversubscribe) return wanted;
+    const int waiting_workers = options.workers - queue.running();
+    const int others = queue.threads_in_use() - 1;  // this one counts as one until it is started
+    return std::clamp(Cores() - others - waiting_workers, 1, std::max(1, wanted));
   }
 
   void Work() {
-    while (const std::shared_ptr<ActiveJob> job = TakeNext()) {
-      const JobOnThisThread mark(job->id());
-      RunJob({store, codec, options, drain.get_token()}, *job, [this, &job] { notifier.Notify(job->id()); });
-      const bool is_final = IsFinal(job->record().state);
-      const std::lock_guard lock(mutex);
-      running.erase(job);
-      if (is_final) active.erase(job->id());
+    while (true) {
+      const Task task = TakeNext();
+      if (task.job == nullptr) return;
+      const JobOnThisThread mark(task.job->id());
+      RunJob({store, codec, options, drain.get_token(), task.threads}, *task.job,
+             [this, &task] { Tell(task.job->id()); });
+      Leave(task.job);
     }
+  }
+
+  // A worker has done with a job, which has ended, is paused, was resumed while it was about to be paused, or is left
+  // to the next process.
+  void Leave(const std::shared_ptr<ActiveJob>& job) {
+    JobRecord record = job->record();
+    bool is_queued_again = false;
+    {
+      const std::lock_guard lock(mutex);
+      queue.Stopped(job->id(), JobQueue::Clock::now());
+      running.erase(job);
+      is_queued_again = record.state == JobState::kQueued && !is_draining;
+      const auto found = active.find(job->id());
+      const bool is_over = is_queued_again || IsAtRest(record.state);
+      if (is_over && found != active.end() && found->second == job) active.erase(found);
+    }
+    if (is_queued_again) Enqueue(std::move(record), nullptr);
+  }
+
+  bool IsWithWorker(std::string_view id) {
+    const std::lock_guard lock(mutex);
+    return active.find(id) != active.end() || queue.ThreadsOf(id) > 0;
+  }
+
+  // Makes a change of a job that is at rest: change(record), where the record is empty if there is no such job. Returns
+  // false as long as the job is active or about to be, or a worker has not left it yet.
+  template <class Change>
+  bool WhenInactive(std::string_view id, const Change& change) {
+    const std::lock_guard lock(change_mutex);
+    if (IsWithWorker(id)) return false;
+    std::optional<JobRecord> record = store.GetJob(id);
+    if (record && !IsAtRest(record->state)) return false;
+    change(std::move(record));
+    return true;
+  }
+
+  // Stores a record and tells it.
+  void Put(const JobRecord& record) {
+    store.UpdateJob(record);
+    options.on_event(record, EventOf(record.state));
+  }
+
+  void DeleteExpired(const std::string& id) {
+    WhenInactive(id, [&](std::optional<JobRecord> record) {
+      if (!record || !IsFinal(record->state) || record->is_pinned || !store.DeleteJob(id)) return;
+      options.on_event(*record, "deleted, because it ended longer ago than jobs are kept");
+      Tell(id);
+    });
+  }
+
+  bool RemoveFrames(const std::string& id) {
+    bool is_removed = false;
+    WhenInactive(id, [&](std::optional<JobRecord> record) {
+      if (!record || !IsFinal(record->state) || record->is_pinned) return;
+      record->first_frame = record->frame_count;
+      record->stored_bytes = 0;
+      is_removed = store.RemoveFrames(*record);
+      if (!is_removed) return;
+      options.on_event(*record, "lost its frames, which were removed to make room");
+      Tell(id);
+    });
+    return is_removed;
+  }
+
+  // Submit, when the owner's limits allow it.
+  JobView Create(JobRecord record, bool* repeated, std::shared_ptr<const Scene> scene, QueuePlace& place) {
+    record.create_time_us = UnixTimeUs();
+    record.id = ids.Next(record.create_time_us / 1000);
+    record.state = JobState::kQueued;
+    JobRecord existing;
+    const bool is_new = store.CreateJob(record, &existing);
+    if (repeated != nullptr) *repeated = !is_new;
+    if (!is_new) return View(FindActive(existing.id), std::move(existing));
+    options.on_event(record, "accepted");
+    Enqueue(record, std::move(scene), &place);
+    Tell(record.id);
+    return View(FindActive(record.id), std::move(record));
+  }
+
+  // Throws OwnerLimitError.
+  void CheckStored(const std::string& owner) {
+    const std::int64_t most = options.max_stored_per_owner;
+    if (most <= 0) return;
+    const std::int64_t stored = store.StoredBytesOf(owner);
+    if (stored < most) return;
+    throw OwnerLimitError("the owner's jobs have stored " + std::to_string(stored) + " bytes, the most are " +
+                          std::to_string(most) + ": delete some of them");
   }
 
   // Calls use(inputs of the job) and returns its result; nothing if there is no such job. Those of a job that has ended
@@ -163,15 +361,19 @@ struct JobManager::Impl {
   auto WithSteering(std::string_view id, const Use& use) -> std::optional<decltype(use(std::declval<JobSteering&>()))> {
     while (true) {
       const std::shared_ptr<ActiveJob> job = FindActive(id);
+      // A job at rest stays so meanwhile.
+      std::unique_lock rest(change_mutex, std::defer_lock);
+      if (job == nullptr) rest.lock();
       const std::optional<JobRecord> record = store.GetJob(id);
       if (!record) return std::nullopt;
-      if (job == nullptr && !IsFinal(record->state)) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));  // about to be queued by Submit, or ended just now
+      if (job == nullptr && (!IsAtRest(record->state) || IsWithWorker(id))) {
+        rest.unlock();
+        WaitBriefly();
         continue;
       }
-      JobSteering ended;
-      JobSteering& steering = job == nullptr ? ended : job->steering();
-      if (job == nullptr) ended.Close();
+      JobSteering resting;
+      JobSteering& steering = job == nullptr ? resting : job->steering();
+      if (job == nullptr && IsFinal(record->state)) resting.Close();
       std::shared_ptr<FrameStore> frames = job == nullptr ? nullptr : job->frames();
       if (frames == nullptr) frames = store.OpenFrames(id);
       if (frames == nullptr) return std::nullopt;
@@ -198,20 +400,24 @@ struct JobManager::Impl {
   const JobManagerOptions options;
   JobIdGenerator ids;
   Notifier notifier;
+  std::atomic<std::int64_t> told_revision = 0;
 
   std::mutex mutex;  // guards the members below; never held during disk access
   std::condition_variable queue_changed;
   std::map<std::string, std::shared_ptr<ActiveJob>, std::less<>> active;
-  std::set<std::string, std::less<>> queue;       // in the order of creation; all of them active
+  JobQueue queue;                                 // all of them active
+  std::map<std::string, int> coming;              // jobs of an owner that are being stored
   std::set<std::string, std::less<>> with_scene;  // those of the queue that have their scene
   std::set<std::shared_ptr<ActiveJob>> running;   // with a worker
   bool is_draining = false;
 
   std::stop_source drain;
-  std::mutex restart_mutex;  // serializes restarts
+  // Serializes changes of jobs that are not active, and of settings. Taken before all others.
+  std::mutex change_mutex;
 
   std::mutex drain_mutex;  // serializes drains; guards workers
   std::vector<std::thread> workers;
+  std::optional<Retention> retention;
 };
 
 JobManager::JobManager(Store& store, JobCodec codec, JobManagerOptions options)
@@ -220,17 +426,18 @@ JobManager::JobManager(Store& store, JobCodec codec, JobManagerOptions options)
 JobManager::~JobManager() = default;
 
 JobView JobManager::Submit(JobRecord record, bool* repeated, std::shared_ptr<const Scene> scene) {
-  record.create_time_us = UnixTimeUs();
-  record.id = impl_->ids.Next(record.create_time_us / 1000);
-  record.state = JobState::kQueued;
-  JobRecord existing;
-  const bool is_new = impl_->store.CreateJob(record, &existing);
-  if (repeated != nullptr) *repeated = !is_new;
-  if (!is_new) return impl_->View(impl_->FindActive(existing.id), std::move(existing));
-  impl_->options.on_event(record, "accepted");
-  impl_->Enqueue(record, std::move(scene));
-  impl_->notifier.Notify(record.id);
-  return impl_->View(impl_->FindActive(record.id), std::move(record));
+  std::optional<JobRecord> existing;
+  try {
+    impl_->CheckStored(record.owner);
+    Impl::QueuePlace place(*impl_, record.owner);
+    return impl_->Create(std::move(record), repeated, std::move(scene), place);
+  } catch (const OwnerLimitError&) {
+    // A repeated request makes no new job.
+    if (!record.request_id.empty()) existing = impl_->store.FindRequest(record.request_id);
+    if (!existing) throw;
+  }
+  if (repeated != nullptr) *repeated = true;
+  return impl_->View(impl_->FindActive(existing->id), *std::move(existing));
 }
 
 JobManager::Staged JobManager::Stage(const std::string& wanted) {
@@ -250,7 +457,7 @@ JobView JobManager::AddFinished(const JobRecord& record, bool* repeated) {
   *repeated = !impl_->store.CreateJob(record, &existing);
   if (*repeated) return impl_->View(impl_->FindActive(existing.id), std::move(existing));
   impl_->options.on_event(record, "imported");
-  impl_->notifier.Notify(record.id);
+  impl_->Tell(record.id);
   return impl_->View(nullptr, record);
 }
 
@@ -262,78 +469,167 @@ std::optional<JobView> JobManager::Get(std::string_view id) {
 }
 
 std::vector<JobView> JobManager::List(int limit, std::string_view before_id, const std::vector<JobState>& states) {
-  std::map<std::string, std::shared_ptr<ActiveJob>, std::less<>> active;
+  return impl_->ViewsOf(impl_->store.ListJobs(limit, before_id, states));
+}
+
+std::vector<JobView> JobManager::Find(const JobQuery& query) { return impl_->ViewsOf(impl_->store.FindJobs(query)); }
+
+std::optional<JobChangeViews> JobManager::ChangesAfter(std::int64_t revision, std::int64_t deletions_after, int limit) {
+  std::optional<JobChanges> changes = impl_->store.ChangesAfter(revision, deletions_after, limit);
+  if (!changes) return std::nullopt;
+  return JobChangeViews{impl_->ViewsOf(std::move(changes->changed)), std::move(changes->deleted), changes->revision};
+}
+
+std::int64_t JobManager::Revision() { return impl_->store.Revision(); }
+
+WorkLoad JobManager::Load() {
+  const std::lock_guard lock(impl_->mutex);
+  return {impl_->queue.running(), impl_->queue.threads_in_use(), impl_->queue.size()};
+}
+
+std::optional<JobView> JobManager::ChangeSettings(std::string_view id, const std::function<void(JobRecord&)>& change) {
   {
-    const std::lock_guard lock(impl_->mutex);
-    active = impl_->active;
+    const std::lock_guard lock(impl_->change_mutex);
+    std::optional<JobRecord> record = impl_->store.GetJob(id);
+    if (!record) return std::nullopt;
+    change(*record);
+    if (!impl_->store.UpdateSettings(*record)) return std::nullopt;
+    if (const std::shared_ptr<ActiveJob> job = impl_->FindActive(id)) job->SetSettings(*record);
+    const std::lock_guard queue_lock(impl_->mutex);
+    impl_->queue.SetPriority(id, record->priority);
   }
-  std::vector<JobView> views;
-  for (JobRecord& record : impl_->store.ListJobs(limit, before_id, states)) {
-    const auto found = active.find(record.id);
-    views.push_back(impl_->View(found == active.end() ? nullptr : found->second, std::move(record)));
-  }
-  return views;
+  impl_->queue_changed.notify_all();
+  impl_->Tell(id);
+  return Get(id);
 }
 
 std::optional<JobView> JobManager::Cancel(std::string_view id) {
-  std::shared_ptr<ActiveJob> job;
-  while ((job = impl_->FindActive(id)) == nullptr) {
-    std::optional<JobView> view = Get(id);
-    if (!view || IsFinal(view->record.state)) return view;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // stored, and about to be queued by Submit
+  while (true) {
+    if (const std::shared_ptr<ActiveJob> job = impl_->FindActive(id)) {
+      bool is_paused = false;
+      job->Update([&](JobRecord& record) {
+        is_paused = record.state == JobState::kPaused;
+        if (IsAtRest(record.state) || record.state == JobState::kCancelling) return false;
+        const bool is_queued = record.state == JobState::kQueued;
+        record.state = is_queued ? JobState::kCancelled : JobState::kCancelling;
+        if (is_queued) record.end_time_us = UnixTimeUs();
+        return true;
+      });
+      if (!is_paused) {
+        job->RequestStop();
+        job->steering().Close();
+        std::optional<JobView> view = Get(id);
+        impl_->options.on_event(job->record(), EventOf(job->record().state));
+        if (job->record().state == JobState::kCancelled) impl_->Forget(job);
+        impl_->Tell(id);
+        return view;
+      }
+    }
+    bool is_done = impl_->WhenInactive(id, [&](std::optional<JobRecord> record) {
+      if (!record || record->state != JobState::kPaused) return;
+      record->state = JobState::kCancelled;
+      record->end_time_us = UnixTimeUs();
+      impl_->Put(*record);
+      impl_->Tell(id);
+    });
+    if (is_done) return Get(id);
+    WaitBriefly();
   }
-  job->Update([](JobRecord& record) {
-    if (IsFinal(record.state) || record.state == JobState::kCancelling) return false;
-    const bool is_queued = record.state == JobState::kQueued;
-    record.state = is_queued ? JobState::kCancelled : JobState::kCancelling;
-    if (is_queued) record.end_time_us = UnixTimeUs();
-    return true;
-  });
-  job->RequestStop();
-  job->steering().Close();
-  std::optional<JobView> view = Get(id);
-  impl_->options.on_event(job->record(), EventOf(job->record().state));
-  if (job->record().state == JobState::kCancelled) impl_->Forget(id);
-  impl_->notifier.Notify(id);
-  return view;
+}
+
+std::optional<JobView> JobManager::Pause(std::string_view id) {
+  while (true) {
+    if (const std::shared_ptr<ActiveJob> job = impl_->FindActive(id)) {
+      bool has_changed = false;
+      job->Update([&](JobRecord& record) {
+        const bool is_queued = record.state == JobState::kQueued;
+        has_changed = is_queued || record.state == JobState::kStarting || record.state == JobState::kRunning;
+        if (has_changed) record.state = is_queued ? JobState::kPaused : JobState::kPausing;
+        return has_changed;
+      });
+      if (has_changed) {
+        job->RequestStop();
+        impl_->options.on_event(job->record(), EventOf(job->record().state));
+        if (job->record().state == JobState::kPaused) impl_->Forget(job);
+        impl_->Tell(id);
+      }
+      return Get(id);
+    }
+    if (impl_->WhenInactive(id, [](const std::optional<JobRecord>&) {})) return Get(id);
+    WaitBriefly();
+  }
+}
+
+std::optional<JobView> JobManager::Resume(std::string_view id) {
+  while (true) {
+    if (const std::shared_ptr<ActiveJob> job = impl_->FindActive(id)) {
+      bool is_paused = false, has_changed = false;
+      job->Update([&](JobRecord& record) {
+        is_paused = record.state == JobState::kPaused;
+        has_changed = record.state == JobState::kPausing;
+        if (has_changed) record.state = JobState::kRunning;  // its worker will queue it again
+        return has_changed;
+      });
+      if (has_changed) impl_->Tell(id);
+      if (!is_paused) return Get(id);
+    }
+    const bool is_done = impl_->WhenInactive(id, [&](std::optional<JobRecord> record) {
+      if (!record || record->state != JobState::kPaused) return;
+      record->state = JobState::kQueued;
+      impl_->Put(*record);
+      impl_->Enqueue(*std::move(record), nullptr);
+      impl_->Tell(id);
+    });
+    if (is_done) return Get(id);
+    WaitBriefly();
+  }
 }
 
 JobManager::DeleteResult JobManager::Delete(std::string_view id) {
-  JobRecord record;
-  if (const std::shared_ptr<ActiveJob> job = impl_->FindActive(id)) {
+  const std::lock_guard lock(impl_->change_mutex);
+  const std::shared_ptr<ActiveJob> job = impl_->FindActive(id);
+  std::optional<JobRecord> record;
+  if (job != nullptr) {
     record = job->record();
   } else {
-    std::optional<JobRecord> stored = impl_->store.GetJob(id);
-    if (!stored) return DeleteResult::kNotFound;
-    record = *std::move(stored);
+    record = impl_->store.GetJob(id);
   }
-  if (!IsFinal(record.state)) return DeleteResult::kActive;  // perhaps accepted a moment ago
+  if (!record) return DeleteResult::kNotFound;
+  if (!IsFinal(record->state)) return DeleteResult::kActive;  // perhaps accepted a moment ago
   const bool is_deleted = impl_->store.DeleteJob(id);
-  if (is_deleted) impl_->options.on_event(record, "deleted");
-  impl_->Forget(id);
-  impl_->notifier.Notify(id);
+  if (is_deleted) impl_->options.on_event(*record, "deleted");
+  if (job != nullptr) impl_->Forget(job);
+  impl_->Tell(id);
   return is_deleted ? DeleteResult::kDeleted : DeleteResult::kNotFound;
 }
 
 JobManager::RestartResult JobManager::Restart(std::string_view id, bool from_start) {
-  const std::lock_guard lock(impl_->restart_mutex);
-  if (impl_->FindActive(id) != nullptr) return RestartResult::kActive;
-  std::optional<JobRecord> record = impl_->store.GetJob(id);
-  if (!record) return RestartResult::kNotFound;
-  if (!IsFinal(record->state)) return RestartResult::kActive;
-  if (from_start) {
-    if (const std::shared_ptr<FrameStore> frames = impl_->store.OpenFrames(id)) frames->DropCheckpoints();
+  RestartResult result = RestartResult::kActive;
+  const auto restart = [&](std::optional<JobRecord> record) {
+    if (!record) result = RestartResult::kNotFound;
+    if (!record || !IsFinal(record->state)) return;
+    Impl::QueuePlace place(*impl_, record->owner);
+    if (from_start) {
+      if (const std::shared_ptr<FrameStore> frames = impl_->store.OpenFrames(id)) frames->DropCheckpoints();
+    }
+    if (record->first_frame > 0) record->frame_count = 0;  // they were removed
+    record->first_frame = 0;
+    record->state = JobState::kQueued;
+    record->failure.clear();
+    record->warnings.clear();
+    record->end_time_us = 0;
+    record->crash_score = 0;
+    impl_->Put(*record);
+    impl_->Enqueue(*std::move(record), nullptr, &place);
+    impl_->Tell(id);
+    result = RestartResult::kRestarted;
+  };
+  while (!impl_->WhenInactive(id, restart)) {
+    const std::optional<JobView> view = Get(id);
+    if (view && !IsFinal(view->record.state)) return RestartResult::kActive;
+    WaitBriefly();
   }
-  record->state = JobState::kQueued;
-  record->failure.clear();
-  record->warnings.clear();
-  record->end_time_us = 0;
-  record->crash_score = 0;
-  impl_->store.UpdateJob(*record);
-  impl_->options.on_event(*record, EventOf(record->state));
-  impl_->Enqueue(*std::move(record), nullptr);
-  impl_->notifier.Notify(id);
-  return RestartResult::kRestarted;
+  return result;
 }
 
 std::optional<JobCheck> JobManager::Verify(std::string_view id, const std::stop_token& stop) {
@@ -342,7 +638,7 @@ std::optional<JobCheck> JobManager::Verify(std::string_view id, const std::stop_
   try {
     const std::optional<JobRecord> record = impl_->store.GetJob(id);
     if (!record) return std::nullopt;
-    if (IsFinal(record->state)) frames = record->frame_count;
+    if (IsFinal(record->state) && record->first_frame == 0) frames = record->frame_count;
   } catch (const DamageError& error) {
     damages.emplace_back(error.what());
   }

@@ -6,6 +6,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
+#include <stdexcept>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -46,6 +48,9 @@ struct JobCodec {
   // What the inputs of a job change in its scene.
   std::function<std::vector<SteeringInput>(const std::string& spec, const std::vector<SteeringRecord>& inputs)>
       decode_inputs;
+  // Digests of the assets that a spec names. Throws std::runtime_error if it can't be read. May be empty: assets are
+  // then never removed.
+  std::function<std::set<std::string>(const std::string& spec)> assets_of = nullptr;
 };
 
 struct JobManagerOptions {
@@ -57,6 +62,22 @@ struct JobManagerOptions {
   std::function<void(const JobRecord& job, std::string_view event)> on_event = [](const JobRecord&, std::string_view) {
   };
   std::vector<std::string> crashes = {};  // ids of the jobs whose threads crashed the last process; see crash_marks.h
+  // Whether jobs get as many threads as they ask for, up to the number of cores, whatever else runs.
+  bool oversubscribe = false;
+  int max_queued_per_owner = 0;           // 0: no limit, here and below
+  int max_running_per_owner = 0;          // more of them wait
+  std::int64_t max_stored_per_owner = 0;  // new jobs are refused beyond it [byte]
+  std::int64_t default_ttl_s = 0;         // after its end, a job without a ttl is kept so long [s]; 0: for ever
+  std::int64_t disk_budget = 0;           // for frames and geometry [byte]
+  std::chrono::milliseconds retention_interval = std::chrono::seconds(10);  // between looks for what can be removed
+  // Told what belongs to no single job: assets that were removed, failures to remove something. From another thread.
+  std::function<void(const std::string& note)> on_note = [](const std::string&) {};
+};
+
+// A limit of an owner does not allow another job. what() says what to do.
+class OwnerLimitError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 // The current state of a job: the stored record, completed by data that only this process has.
@@ -68,6 +89,21 @@ struct JobView {
   int queue_position = 0;   // number of jobs before it; for kQueued only
   std::int64_t frame_count = 0;
   std::int64_t stored_bytes = 0;
+  int threads = 0;  // with which it is run now; 0 if it is not
+};
+
+// As JobChanges.
+struct JobChangeViews {
+  std::vector<JobView> changed;
+  std::vector<std::string> deleted;
+  std::int64_t revision = 0;
+};
+
+// What the workers do now.
+struct WorkLoad {
+  int running = 0;  // jobs
+  int threads = 0;  // of these
+  int queued = 0;   // jobs
 };
 
 // What Verify found.
@@ -102,8 +138,9 @@ struct SteeringList {
   std::int64_t reached_step = 0;  // the last step that the run has begun or made
 };
 
-// The queue and its workers. Resumes jobs that were queued or running when the last process ended. Thread-safe; all
-// functions may block on disk and throw StoreError. An error within a job ends that job only.
+// The queue and its workers. With workers, also removes what need not be kept (retention.h). Resumes jobs that were
+// queued or running when the last process ended. Thread-safe; all functions may block on disk and throw StoreError. An
+// error within a job ends that job only.
 class JobManager {
  public:
   // `store` must outlive this object. Throws StoreError if stored jobs can't be read.
@@ -111,10 +148,10 @@ class JobManager {
   // Drains; the next process continues unfinished jobs.
   ~JobManager();
 
-  // `record` has spec, scene_name, threads, request_id, request_digest and the profile so far set. Returns the new job,
-  // or the earlier one with the same request id (then `*repeated` is true; the caller compares request_digest). The job
-  // is durable on return. `scene` is the scene of the spec, so that the worker need not decode it. Scenes are kept for
-  // at most as many waiting jobs as there are workers.
+  // `record` has spec, scene_name, threads, owner, settings, request_id, request_digest and the profile so far set.
+  // Returns the new job, or the earlier one with the same request id (then `*repeated` is true; the caller compares
+  // request_digest). The job is durable on return. Throws OwnerLimitError. `scene` is the scene of the spec, so that
+  // the worker need not decode it. Scenes are kept for at most as many waiting jobs as there are workers.
   JobView Submit(JobRecord record, bool* repeated, std::shared_ptr<const Scene> scene = nullptr);
   // Takes over a job that another server ran: an id and its empty frame store, which is filled before AddFinished makes
   // it a job. The id is `wanted` if that could be one of this server's own and is free, otherwise a new one.
@@ -127,13 +164,27 @@ class JobManager {
   // same request id (then `*repeated` is true).
   JobView AddFinished(const JobRecord& record, bool* repeated);
   std::optional<JobView> Get(std::string_view id);
+  // Jobs newest first: ids below `before_id` (empty: from the newest), states in `states` (empty: all).
   std::vector<JobView> List(int limit, std::string_view before_id, const std::vector<JobState>& states);
+  // Records are as stored, so that they pass the filter.
+  std::vector<JobView> Find(const JobQuery& query);
+  // As JobStore::ChangesAfter.
+  std::optional<JobChangeViews> ChangesAfter(std::int64_t revision, std::int64_t deletions_after, int limit);
+  std::int64_t Revision();
+  WorkLoad Load();
+  // Applies `change` to labels, priority, ttl and pin. Returns nothing if there is no such job.
+  std::optional<JobView> ChangeSettings(std::string_view id, const std::function<void(JobRecord&)>& change);
+  // Takes a job from the queue, or asks it to stop, until Resume; one that is final, being cancelled or paused stays as
+  // it is. A paused job needs no worker, and goes on from its last checkpoint. Returns nothing if there is no such job.
+  std::optional<JobView> Pause(std::string_view id);
+  // Queues a paused job again; any other stays as it is. Returns nothing if there is no such job.
+  std::optional<JobView> Resume(std::string_view id);
   // Asks the job to stop; a final job stays as it is. Returns nothing if there is no such job.
   std::optional<JobView> Cancel(std::string_view id);
   enum class DeleteResult { kDeleted, kNotFound, kActive };
   DeleteResult Delete(std::string_view id);
   // Queues a job in a final state again, from its last checkpoint or from the start. Frames that come out the same stay
-  // as they are; damaged ones are replaced.
+  // as they are; damaged and removed ones are replaced. Throws OwnerLimitError.
   enum class RestartResult { kRestarted, kNotFound, kActive };
   RestartResult Restart(std::string_view id, bool from_start);
   // Reads everything that is stored of a job, and describes what is damaged. Throws Stopped. Nothing if there is no
@@ -147,7 +198,8 @@ class JobManager {
   // The frames of a job; null if there is no such job.
   std::shared_ptr<FrameStore> Frames(std::string_view id);
 
-  // Calls `listener` whenever the job has a new geometry, frame or state, or has been deleted, after that was stored.
+  // Calls `listener` whenever the job has a new geometry, frame, state or settings, or has been deleted, after that was
+  // stored; with an empty id, whenever any job has a new state or settings, or has been added or deleted.
   // Calls come from an internal thread and without any lock; the listener must return quickly. Changes in quick
   // succession may be combined into one call. The listener is not called after the returned handle is destroyed.
   // Destroying it waits for a call in progress (unless the call itself does it), so do not destroy it while holding a

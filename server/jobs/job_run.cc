@@ -1,6 +1,5 @@
 #include "server/jobs/job_run.h"
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <memory>
@@ -17,7 +16,7 @@
 namespace fascicle::server {
 namespace {
 
-// False if the job was cancelled at the last moment, while still in the queue.
+// False if the job was cancelled or paused at the last moment, while still in the queue.
 bool Start(ActiveJob& job, Profile& profile) {
   const StageTimer timer(&profile, "start");
   bool has_started = false;
@@ -34,7 +33,7 @@ bool Start(ActiveJob& job, Profile& profile) {
 
 void SetRunning(ActiveJob& job) {
   job.Update([](JobRecord& record) {
-    if (record.state != JobState::kStarting) return false;  // being cancelled
+    if (record.state != JobState::kStarting) return false;  // asked to stop
     record.state = JobState::kRunning;
     return true;
   });
@@ -82,10 +81,7 @@ std::unique_ptr<Simulation> SetUp(const RunContext& context, ActiveJob& job, Pro
   if (frames == nullptr) throw StoreError("job " + job.id() + " has gone");
   job.SetFrames(frames);
 
-  // More threads than cores would only slow each other down.
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int threads = std::min(record->threads > 0 ? record->threads : context.options.default_threads, cores);
-  std::unique_ptr<Simulation> simulation = MakeSimulation(scene, threads, *frames, profile, job.stop_token());
+  std::unique_ptr<Simulation> simulation = MakeSimulation(scene, context.threads, *frames, profile, job.stop_token());
   const auto write = [&context, &job](const std::function<void()>& store) { WriteWhenRoom(context.store, job, store); };
   write([&] { job.steering().Open(frames, record->spec, context.codec); });
   job.steering().BeginRun(simulation->step(), record->spec, context.codec, write);
@@ -161,7 +157,7 @@ ActiveJob::Change EndOf(const JobCodec& codec, const RunProfile& profile, const 
   return [&](JobRecord& record) {
     record.profile = Encode(codec, profile);
     record.warnings = Encode(codec, outcome.warnings);
-    const bool is_cancelling = record.state == JobState::kCancelling;
+    const JobState before = record.state;
     switch (outcome.kind) {
       case Outcome::Kind::kSucceeded:
         record.state = JobState::kSucceeded;
@@ -171,7 +167,9 @@ ActiveJob::Change EndOf(const JobCodec& codec, const RunProfile& profile, const 
         record.failure = Encode(codec, outcome.failure);
         break;
       case Outcome::Kind::kCancelled:
-        record.state = is_cancelling ? JobState::kCancelled : JobState::kQueued;  // drained
+        record.state = before == JobState::kCancelling ? JobState::kCancelled
+                       : before == JobState::kPausing  ? JobState::kPaused
+                                                       : JobState::kQueued;  // drained
         break;
     }
     if (IsFinal(record.state)) record.end_time_us = UnixTimeUs();

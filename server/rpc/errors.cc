@@ -9,6 +9,7 @@
 #include "core/base/stop.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "server/jobs/job_manager.h"
 #include "server/store/store.h"
 
 namespace fascicle::server {
@@ -156,6 +157,12 @@ grpc::Status OutOfRange(const std::string& reason, const std::string& message) {
   return MakeStatus(grpc::StatusCode::OUT_OF_RANGE, reason, message, {});
 }
 
+grpc::Status FramesRemoved(const std::string& job_name, std::int64_t first_frame) {
+  const std::string index = std::to_string(first_frame);
+  return OutOfRange("FRAMES_REMOVED", "the frames of " + job_name + " before index " + index +
+                                          " were removed to make room; RestartJob from the start computes them again");
+}
+
 grpc::Status Cancelled() { return MakeStatus(grpc::StatusCode::CANCELLED, "CANCELLED", "the call was cancelled", {}); }
 
 grpc::Status Internal(const std::string& reason, const std::string& message) {
@@ -177,6 +184,8 @@ grpc::Status Guarded(spdlog::logger& log, const char* what, const std::function<
   } catch (const NoSpaceError& e) {
     log.error("{}: the disk is full: {}", what, e.what());
     return ResourceExhausted("DISK_FULL", "disk", "the server's disk is full; delete jobs or free some space");
+  } catch (const OwnerLimitError& e) {
+    return ResourceExhausted("OWNER_LIMIT", "owner", e.what());
   } catch (const StoreError& e) {
     log.error("{}: storage failed: {}", what, e.what());
     return Internal("STORAGE", Shortened(std::string("the server's storage failed: ") + e.what()));

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -48,6 +49,8 @@ grpc::Status Unavailable(const std::string& reason, const std::string& message, 
 grpc::Status ShuttingDown();
 grpc::Status Aborted(const std::string& reason, const std::string& message);
 grpc::Status OutOfRange(const std::string& reason, const std::string& message);
+// OUT_OF_RANGE (FRAMES_REMOVED) with the oldest index.
+grpc::Status FramesRemoved(const std::string& job_name, std::int64_t first_frame);
 grpc::Status Cancelled();
 grpc::Status Internal(const std::string& reason, const std::string& message);
 
@@ -55,8 +58,8 @@ grpc::Status Internal(const std::string& reason, const std::string& message);
 grpc::Status DataLoss(const std::string& message);
 
 // Runs `body`. An exception is logged under `what` and becomes an error: DATA_LOSS for a DamageError,
-// RESOURCE_EXHAUSTED (DISK_FULL) for a NoSpaceError, otherwise INTERNAL: STORAGE for a StoreError, OUT_OF_MEMORY, or
-// INTERNAL. Stopped becomes CANCELLED.
+// RESOURCE_EXHAUSTED (DISK_FULL) for a NoSpaceError, the same (OWNER_LIMIT) for an OwnerLimitError, otherwise INTERNAL:
+// STORAGE for a StoreError, OUT_OF_MEMORY, or INTERNAL. Stopped becomes CANCELLED.
 grpc::Status Guarded(spdlog::logger& log, const char* what, const std::function<grpc::Status()>& body) noexcept;
 
 }  // namespace fascicle::server

@@ -40,8 +40,12 @@ grpc::Status FrameServiceImpl::List(const v1::ListFramesRequest& request, v1::Li
   if (request.start_index() < 0) problems.Add("start_index", "must not be negative");
   if (request.page_size() < 0 || request.page_size() > 10'000) problems.Add("page_size", "must be in [0, 10000]");
   if (!problems.empty()) return InvalidArgument(problems);
-  const std::shared_ptr<FrameStore> frames = context_.jobs.Frames(*id);
+  const std::optional<JobView> view = context_.jobs.Get(*id);
+  const std::shared_ptr<FrameStore> frames = view ? context_.jobs.Frames(*id) : nullptr;
   if (!frames) return NotFound("job", request.name());
+  if (request.start_index() < view->record.first_frame) {
+    return FramesRemoved(request.name(), view->record.first_frame);
+  }
   const int page_size = request.page_size() == 0 ? 1000 : request.page_size();
   for (const FrameRecord& record : frames->ListFrames(request.start_index(), page_size)) {
     v1::FrameInfo* info = response.add_frames();

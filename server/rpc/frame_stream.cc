@@ -91,6 +91,10 @@ bool FrameStream::Open() {
   generation_ = request_.generation();
   if (!Refresh()) return false;
   generation_ = view_.record.generation;
+  if (next_index_ < view_.record.first_frame) {
+    Complete(FramesRemoved(request_.name(), view_.record.first_frame));
+    return false;
+  }
   // The next index of a stream with a stride may be beyond the last frame.
   if (IsFinal(view_.record.state) && next_index_ > known_count_ - 1 + stride_) {
     Complete(OutOfRange("START_INDEX", "start_index " + std::to_string(next_index_) + " is beyond the " +
@@ -120,7 +124,9 @@ bool FrameStream::Refresh() {
   }
   view_ = std::move(*view);
   known_count_ = frames_->frame_count();
-  if (IsFinal(view_.record.state) && known_count_ < view_.record.frame_count) {
+  if (view_.record.first_frame > 0) {
+    known_count_ = view_.record.frame_count;
+  } else if (IsFinal(view_.record.state) && known_count_ < view_.record.frame_count) {
     throw DamageError("of the " + std::to_string(view_.record.frame_count) + " frames of " + request_.name() +
                       " only " + std::to_string(known_count_) + " are there");
   }

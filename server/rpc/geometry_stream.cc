@@ -33,7 +33,9 @@ bool GeometryStream::Load() {
     frames_ = frames;
     return true;
   }
-  if (IsFinal(view->record.state)) {
+  if (view->record.first_frame > 0) {
+    Complete(NotFound("geometry", job_name_));  // removed with the frames
+  } else if (IsFinal(view->record.state)) {
     Complete(FailedPrecondition("NO_GEOMETRY", {job_name_}, "the job ended before it was started"));
   }
   return false;

@@ -6,6 +6,7 @@
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 
+#include "core/base/digest.h"
 #include "server/rpc/names.h"
 
 namespace fascicle::server {
@@ -17,19 +18,39 @@ google::protobuf::Timestamp TimestampOf(std::int64_t microseconds) {
   return timestamp;
 }
 
-std::string SpecOf(const v1::Job& requested) {
-  v1::Job spec;
-  *spec.mutable_scene() = requested.scene();
-  spec.set_threads(requested.threads());
-  *spec.mutable_inputs() = requested.inputs();
+// The same bytes for the same message.
+std::string SerializeAlways(const v1::Job& job) {
   std::string bytes;
   {
     google::protobuf::io::StringOutputStream stream(&bytes);
     google::protobuf::io::CodedOutputStream out(&stream);
     out.SetSerializationDeterministic(true);
-    spec.SerializeToCodedStream(&out);
+    job.SerializeToCodedStream(&out);
   }
   return bytes;
+}
+
+}  // namespace
+
+std::string SpecOf(const v1::Job& requested) {
+  v1::Job spec;
+  *spec.mutable_scene() = requested.scene();
+  spec.set_threads(requested.threads());
+  *spec.mutable_inputs() = requested.inputs();
+  return SerializeAlways(spec);
+}
+
+std::string DigestOf(const v1::Job& requested) {
+  v1::Job wanted;
+  *wanted.mutable_scene() = requested.scene();
+  wanted.set_threads(requested.threads());
+  *wanted.mutable_inputs() = requested.inputs();
+  wanted.set_owner(requested.owner());
+  wanted.set_priority(requested.priority());
+  *wanted.mutable_labels() = requested.labels();
+  if (requested.has_ttl()) *wanted.mutable_ttl() = requested.ttl();
+  wanted.set_pinned(requested.pinned());
+  return Hex(Sha256Of(SerializeAlways(wanted)));
 }
 
 v1::Job::State StateOf(const JobView& view) { return static_cast<v1::Job::State>(view.record.state); }
@@ -72,6 +93,21 @@ v1::Job ToMessage(const JobView& view) {
   job.set_generation(record.generation);
   job.set_frame_count(view.frame_count);
   job.set_stored_bytes(view.stored_bytes);
+  job.set_owner(record.owner);
+  job.set_priority(record.priority);
+  job.mutable_labels()->insert(record.labels.begin(), record.labels.end());
+  if (record.ttl_s > 0) job.mutable_ttl()->set_seconds(record.ttl_s);
+  job.set_pinned(record.is_pinned);
+  job.set_revision(record.revision);
+  job.set_first_frame(record.first_frame);
+  job.set_threads_in_use(view.threads);
+  return job;
+}
+
+v1::Job ToListedMessage(const JobView& view) {
+  v1::Job job = ToMessage(view);
+  job.clear_profile();
+  job.clear_warnings();
   return job;
 }
 

@@ -10,9 +10,13 @@ namespace fascicle::server {
 
 // The spec of a job as it is stored: a v1::Job with scene, threads and inputs only. Equal jobs have equal bytes.
 std::string SpecOf(const v1::Job& requested);
+// SHA-256 of everything that a client asks for; that of the spec for a job with neither owner nor settings.
+std::string DigestOf(const v1::Job& requested);
 
 // The message of a job, without its scene.
 v1::Job ToMessage(const JobView& view);
+// The same as in a list: without profile and warnings, which are as large as everything else.
+v1::Job ToListedMessage(const JobView& view);
 // The message of a job with its scene, as GetJob gives it.
 v1::Job ToMessageWithScene(const JobView& view);
 

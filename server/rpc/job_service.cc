@@ -5,10 +5,14 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/digest.h"
 #include "core/base/stop.h"
+#include "server/jobs/active_job.h"
+#include "server/rpc/job_filter.h"
 #include "server/rpc/job_messages.h"
+#include "server/rpc/job_settings.h"
+#include "server/rpc/job_watch_stream.h"
 #include "server/rpc/names.h"
+#include "server/rpc/raw_request.h"
 #include "server/rpc/start_state.h"
 #include "server/translate/steering.h"
 #include "server/translate/translate.h"
@@ -21,7 +25,32 @@ void CheckRequest(const v1::CreateJobRequest& request, Problems& problems) {
   if (request.job().threads() < 0 || request.job().threads() > 256) {
     problems.Add("job.threads", "must be in [0, 256]", "0 selects the server's default");
   }
+  CheckSettings(request.job(), problems);
   if (request.request_id().size() > 64) problems.Add("request_id", "is longer than 64 characters");
+}
+
+// The states of a request as one group of a filter.
+std::vector<JobCondition> AnyState(const v1::ListJobsRequest& request, Problems& problems) {
+  std::vector<JobCondition> conditions;
+  for (int i = 0; i < request.states_size(); ++i) {
+    const int state = request.states(i);
+    if (state == v1::Job::STATE_UNSPECIFIED || !v1::Job::State_IsValid(state)) {
+      problems.Add(IndexPath("states", static_cast<std::size_t>(i)), "is not a state of a job");
+    }
+    conditions.push_back({.field = JobField::kState, .number = state});
+  }
+  if (conditions.size() > 32) problems.Add("states", "are more than 32");
+  return conditions;
+}
+
+// The answer of PauseJob and ResumeJob.
+grpc::Status AnswerUnlessOver(const std::string& name, const std::optional<JobView>& view, v1::Job& response) {
+  if (!view) return NotFound("job", name);
+  if (IsFinal(view->record.state) || view->record.state == JobState::kCancelling) {
+    return FailedPrecondition("JOB_FINAL", {name}, "the job has ended or is being cancelled");
+  }
+  response = ToMessage(*view);
+  return grpc::Status::OK;
 }
 
 grpc::Status BadJobName() { return InvalidArgument("name", "must be jobs/{id}"); }
@@ -36,14 +65,30 @@ grpc::ServerUnaryReactor* JobServiceImpl::CreateJob(grpc::CallbackServerContext*
     reactor->Finish(Unavailable("OVERLOADED", "too many jobs are being submitted", std::chrono::seconds(2)));
     return reactor;
   }
-  return RunStoppable(context_, context_.slow, "CreateJob",
-                      [this, request, response, limit = DetailsLimit(*call)](const std::stop_token& stop) {
-                        return Create(*request, *response, limit, stop);
-                      });
+  auto* reactor = new StoppableReactor;
+  if (context_.streams.draining()) {
+    reactor->Finish(ShuttingDown());
+    return reactor;
+  }
+  const auto checked = std::make_shared<CheckedJob>();
+  context_.slow.Post([this, reactor, request, response, checked, limit = DetailsLimit(*call), stop = reactor->stop()] {
+    const grpc::Status status =
+        Guarded(context_.log, "CreateJob", [&] { return CheckJob(*request, *checked, limit, stop); });
+    if (!status.ok() || request->validate_only()) {
+      response->set_scene_name(request->job().scene().name());
+      response->set_threads(request->job().threads());
+      return reactor->Finish(status);
+    }
+    // Threads that wait for the disk, so that many jobs share a commit.
+    context_.commits.Post([this, reactor, request, response, checked] {
+      reactor->Finish(Guarded(context_.log, "CreateJob", [&] { return StoreJob(*request, *checked, *response); }));
+    });
+  });
+  return reactor;
 }
 
-grpc::Status JobServiceImpl::Create(const v1::CreateJobRequest& request, v1::Job& response, std::size_t details_limit,
-                                    const std::stop_token& stop) {
+grpc::Status JobServiceImpl::CheckJob(const v1::CreateJobRequest& request, CheckedJob& checked,
+                                      std::size_t details_limit, const std::stop_token& stop) {
   ThrowIfStopped(stop);
   Problems problems;
   v1::Job job = request.job();
@@ -60,24 +105,23 @@ grpc::Status JobServiceImpl::Create(const v1::CreateJobRequest& request, v1::Job
   CheckRequest(request, problems);
   CheckInputs(job, "job.inputs", problems);
   Profile profile;
-  std::shared_ptr<const Scene> scene;
-  if (job.has_scene()) scene = Translate(job.scene(), profile, stop, problems);
+  if (job.has_scene()) checked.scene = Translate(job.scene(), profile, stop, problems);
   if (!problems.empty()) return InvalidArgument(problems, details_limit);
-  if (request.validate_only()) {
-    response.set_scene_name(request.job().scene().name());
-    response.set_threads(request.job().threads());
-    return grpc::Status::OK;
-  }
-  JobRecord record;
+  JobRecord& record = checked.record;
   record.scene_name = request.job().scene().name();
   record.threads = request.job().threads();
   record.spec = SpecOf(job);
   record.profile = EncodeProfileOfCheck(profile).SerializeAsString();
   record.request_id = request.request_id();
-  record.request_digest = Hex(Sha256Of(SpecOf(request.job())));
-  const std::string digest = record.request_digest;
+  record.request_digest = DigestOf(request.job());
+  CopySettings(request.job(), record);
+  return grpc::Status::OK;
+}
+
+grpc::Status JobServiceImpl::StoreJob(const v1::CreateJobRequest& request, CheckedJob& checked, v1::Job& response) {
+  const std::string digest = checked.record.request_digest;
   bool repeated = false;
-  const JobView view = context_.jobs.Submit(std::move(record), &repeated, std::move(scene));
+  const JobView view = context_.jobs.Submit(std::move(checked.record), &repeated, std::move(checked.scene));
   if (repeated && view.record.request_digest != digest) {
     return AlreadyExists("REQUEST_ID_REUSED", "job", JobName(view.record.id),
                          "request_id " + request.request_id() + " was used for another job");
@@ -130,34 +174,75 @@ grpc::ServerUnaryReactor* JobServiceImpl::ListJobs(grpc::CallbackServerContext* 
 grpc::Status JobServiceImpl::List(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
   Problems problems;
   if (request.page_size() < 0 || request.page_size() > 1000) problems.Add("page_size", "must be in [0, 1000]");
-  std::vector<JobState> states;
-  std::string filter;
-  for (int i = 0; i < request.states_size(); ++i) {
-    const int state = request.states(i);
-    if (state < v1::Job::STATE_QUEUED || state > v1::Job::STATE_CANCELLED) {
-      problems.Add(IndexPath("states", static_cast<std::size_t>(i)), "is not a state of a job");
-    }
-    states.push_back(static_cast<JobState>(state));
-    filter += static_cast<char>('0' + state);
+  const int page_size = request.page_size() == 0 ? 50 : request.page_size();
+  JobQuery query = {.filter = ParseJobFilter(request.filter(), UnixTimeUs(), problems), .limit = page_size + 1};
+  ParseJobOrder(request.order_by(), query, problems);
+  std::string list = request.filter() + '\n' + request.order_by() + '\n';
+  if (const std::vector<JobCondition> states = AnyState(request, problems); !states.empty()) {
+    query.filter.groups.push_back(states);
+    for (const int state : request.states()) list += std::to_string(state) + ",";
   }
-  std::optional<std::string> before = std::string();
-  if (!request.page_token().empty()) before = ParsePageToken(request.page_token(), filter);
-  if (!before) problems.Add("page_token", "is not from an earlier answer to this request");
+  if (!request.page_token().empty()) {
+    query.after = ParsePageToken(request.page_token(), list);
+    if (!query.after) problems.Add("page_token", "is not from an earlier answer to this request");
+  }
   if (!problems.empty()) return InvalidArgument(problems);
 
-  const int page_size = request.page_size() == 0 ? 50 : request.page_size();
-  const std::vector<JobView> views = context_.jobs.List(page_size + 1, *before, states);
+  const std::vector<JobView> views = context_.jobs.Find(query);
   for (const JobView& view : views) {
     if (response.jobs_size() == page_size) {  // at least one more exists
-      const std::string& last = response.jobs(page_size - 1).name();
-      response.set_next_page_token(MakePageToken(*ParseJobName(last), filter));
+      const JobRecord& last = views[static_cast<std::size_t>(page_size) - 1].record;
+      response.set_next_page_token(MakePageToken(PlaceOf(last, query.order), list));
       break;
     }
-    v1::Job& job = *response.add_jobs() = ToMessage(view);
-    job.clear_profile();  // as large as everything else
-    job.clear_warnings();
+    *response.add_jobs() = ToListedMessage(view);
   }
   return grpc::Status::OK;
+}
+
+grpc::ServerWriteReactor<grpc::ByteBuffer>* JobServiceImpl::WatchJobs(grpc::CallbackServerContext*,
+                                                                      const grpc::ByteBuffer* request) {
+  auto parsed = ParseRequest<v1::WatchJobsRequest>(*request);
+  if (!parsed) return new EndedStream(NotAMessage());
+  return OutStream::Launch(std::make_shared<JobWatchStream>(context_, std::move(*parsed)));
+}
+
+grpc::ServerUnaryReactor* JobServiceImpl::UpdateJob(grpc::CallbackServerContext* call,
+                                                    const v1::UpdateJobRequest* request, v1::Job* response) {
+  return RunUnary(context_, context_.quick, call, "UpdateJob",
+                  [this, request, response] { return Update(*request, *response); });
+}
+
+grpc::Status JobServiceImpl::Update(const v1::UpdateJobRequest& request, v1::Job& response) {
+  Problems problems;
+  const std::optional<std::string> id = ParseJobName(request.job().name());
+  if (!id) problems.Add("job.name", "must be jobs/{id}");
+  CheckUpdate(request, problems);
+  if (!problems.empty()) return InvalidArgument(problems);
+  const std::optional<JobView> view =
+      context_.jobs.ChangeSettings(*id, [&](JobRecord& record) { ApplyUpdate(request, record, problems); });
+  if (!problems.empty()) return InvalidArgument(problems);
+  if (!view) return NotFound("job", request.job().name());
+  response = ToMessage(*view);
+  return grpc::Status::OK;
+}
+
+grpc::ServerUnaryReactor* JobServiceImpl::PauseJob(grpc::CallbackServerContext* call,
+                                                   const v1::PauseJobRequest* request, v1::Job* response) {
+  return RunUnary(context_, context_.quick, call, "PauseJob", [this, request, response] {
+    const std::optional<std::string> id = ParseJobName(request->name());
+    if (!id) return BadJobName();
+    return AnswerUnlessOver(request->name(), context_.jobs.Pause(*id), *response);
+  });
+}
+
+grpc::ServerUnaryReactor* JobServiceImpl::ResumeJob(grpc::CallbackServerContext* call,
+                                                    const v1::ResumeJobRequest* request, v1::Job* response) {
+  return RunUnary(context_, context_.quick, call, "ResumeJob", [this, request, response] {
+    const std::optional<std::string> id = ParseJobName(request->name());
+    if (!id) return BadJobName();
+    return AnswerUnlessOver(request->name(), context_.jobs.Resume(*id), *response);
+  });
 }
 
 grpc::ServerUnaryReactor* JobServiceImpl::CancelJob(grpc::CallbackServerContext* call,

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <grpcpp/support/byte_buffer.h>
+
 #include "core/base/problems.h"
 #include "core/base/profile.h"
 #include "fascicle/v1/simulation_service.grpc.pb.h"
@@ -17,8 +19,10 @@ struct Scene;
 
 namespace fascicle::server {
 
-// Submits, shows, cancels, restarts, verifies and deletes jobs.
-class JobServiceImpl : public v1::JobService::CallbackService {
+using JobServiceBase = v1::JobService::WithRawCallbackMethod_WatchJobs<v1::JobService::CallbackService>;
+
+// Submits, shows, changes, cancels, restarts, verifies and deletes jobs.
+class JobServiceImpl : public JobServiceBase {
  public:
   explicit JobServiceImpl(RpcContext& context) : context_(context) {}
 
@@ -28,6 +32,14 @@ class JobServiceImpl : public v1::JobService::CallbackService {
                                    v1::Job* response) override;
   grpc::ServerUnaryReactor* ListJobs(grpc::CallbackServerContext* call, const v1::ListJobsRequest* request,
                                      v1::ListJobsResponse* response) override;
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchJobs(grpc::CallbackServerContext* call,
+                                                        const grpc::ByteBuffer* request) override;
+  grpc::ServerUnaryReactor* UpdateJob(grpc::CallbackServerContext* call, const v1::UpdateJobRequest* request,
+                                      v1::Job* response) override;
+  grpc::ServerUnaryReactor* PauseJob(grpc::CallbackServerContext* call, const v1::PauseJobRequest* request,
+                                     v1::Job* response) override;
+  grpc::ServerUnaryReactor* ResumeJob(grpc::CallbackServerContext* call, const v1::ResumeJobRequest* request,
+                                      v1::Job* response) override;
   grpc::ServerUnaryReactor* CancelJob(grpc::CallbackServerContext* call, const v1::CancelJobRequest* request,
                                       v1::Job* response) override;
   grpc::ServerUnaryReactor* DeleteJob(grpc::CallbackServerContext* call, const v1::DeleteJobRequest* request,
@@ -38,9 +50,16 @@ class JobServiceImpl : public v1::JobService::CallbackService {
                                       v1::VerifyJobResponse* response) override;
 
  private:
-  grpc::Status Create(const v1::CreateJobRequest& request, v1::Job& response, std::size_t details_limit,
-                      const std::stop_token& stop);
+  // A job that can be stored.
+  struct CheckedJob {
+    JobRecord record;
+    std::shared_ptr<const Scene> scene;
+  };
+  grpc::Status CheckJob(const v1::CreateJobRequest& request, CheckedJob& checked, std::size_t details_limit,
+                        const std::stop_token& stop);
+  grpc::Status StoreJob(const v1::CreateJobRequest& request, CheckedJob& checked, v1::Job& response);
   grpc::Status List(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
+  grpc::Status Update(const v1::UpdateJobRequest& request, v1::Job& response);
   // `assets/{sha256}` of the scene's assets that the store lacks.
   std::vector<std::string> MissingAssets(const v1::Scene& scene);
   // The scene to run; null, with problems, if it is invalid.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cstdint>
 #include <cstdio>
 
 #include "core/base/digest.h"
@@ -21,10 +23,12 @@ std::optional<std::string_view> After(std::string_view prefix, std::string_view 
   return name.substr(prefix.size());
 }
 
-std::string CheckOf(std::string_view last_id, std::string_view filter) {
-  std::array<char, 9> hex;
-  std::snprintf(hex.data(), hex.size(), "%08x", static_cast<unsigned>(Crc32c(filter, Crc32c(last_id))));
-  return std::string(hex.data(), 8);
+constexpr std::size_t kCheckSize = 8;
+
+std::string CheckOf(std::string_view place, std::string_view list) {
+  std::array<char, kCheckSize + 1> hex;
+  std::snprintf(hex.data(), hex.size(), "%08x", static_cast<unsigned>(Crc32c(list, Crc32c(place))));
+  return std::string(hex.data(), kCheckSize);
 }
 
 }  // namespace
@@ -46,15 +50,22 @@ std::optional<std::string> ParseAssetName(std::string_view name) {
   return std::string(*hex);
 }
 
-std::string MakePageToken(std::string_view last_id, std::string_view filter) {
-  return CheckOf(last_id, filter) + std::string(last_id);
+std::string MakePageToken(const JobPlace& last, std::string_view list) {
+  const std::string place = std::to_string(last.number) + "." + last.id + "." + last.text;
+  return CheckOf(place, list) + place;
 }
 
-std::optional<std::string> ParsePageToken(std::string_view token, std::string_view filter) {
-  if (token.size() < 9) return std::nullopt;
-  const std::string_view id = token.substr(8);
-  if (!IsId(id) || token.substr(0, 8) != CheckOf(id, filter)) return std::nullopt;
-  return std::string(id);
+std::optional<JobPlace> ParsePageToken(std::string_view token, std::string_view list) {
+  if (token.size() < kCheckSize) return std::nullopt;
+  const std::string_view place = token.substr(kCheckSize);
+  if (token.substr(0, kCheckSize) != CheckOf(place, list)) return std::nullopt;
+  const std::size_t id = place.find('.') + 1, text = place.find('.', id) + 1;
+  if (id == 0 || text == 0) return std::nullopt;
+  JobPlace parsed = {.text = std::string(place.substr(text)), .id = std::string(place.substr(id, text - id - 1))};
+  const char* end_of_number = place.data() + id - 1;
+  const auto [end, error] = std::from_chars(place.data(), end_of_number, parsed.number);
+  if (error != std::errc() || end != end_of_number || !IsId(parsed.id)) return std::nullopt;
+  return parsed;
 }
 
 }  // namespace fascicle::server

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "server/store/job_query.h"
+
 namespace fascicle::server {
 
 // Resource names on the wire: `jobs/{id}` and `assets/{sha256}`.
@@ -17,10 +19,10 @@ std::string AssetName(std::string_view sha256_hex);
 // The 64 lower-case hexadecimal digits; nothing if `name` is not an asset name.
 std::optional<std::string> ParseAssetName(std::string_view name);
 
-// The position in a list of jobs: the last id returned, with a checksum over id and `filter` that detects invalid
-// tokens and those of another list.
-std::string MakePageToken(std::string_view last_id, std::string_view filter);
-std::optional<std::string> ParsePageToken(std::string_view token, std::string_view filter);
+// The place of the last job returned of a list, with a checksum over it and `list`, the description of that list, which
+// detects invalid tokens and those of another list.
+std::string MakePageToken(const JobPlace& last, std::string_view list);
+std::optional<JobPlace> ParsePageToken(std::string_view token, std::string_view list);
 
 }  // namespace fascicle::server
 

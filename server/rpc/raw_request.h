@@ -11,7 +11,7 @@
 
 namespace fascicle::server {
 
-// For the raw methods that answer with a stream.
+// Calls whose messages are bytes for gRPC: their requests, and answers without a stream.
 
 // A stream that ends at once with a status.
 class EndedStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {

@@ -24,8 +24,15 @@ namespace fascicle::server {
 struct RpcSettings {
   int workers = 2;
   int default_threads = 1;
-  std::int64_t max_asset_size = std::int64_t{4} << 30;                             // [byte]
-  std::int64_t job_memory = std::numeric_limits<std::int64_t>::max();              // most memory of a job [byte]
+  std::int64_t max_asset_size = std::int64_t{4} << 30;                 // [byte]
+  std::int64_t job_memory = std::numeric_limits<std::int64_t>::max();  // most memory of a job [byte]
+  // Limits of owners and what is kept, as in JobManagerOptions.
+  bool oversubscribe = false;
+  int max_queued_per_owner = 0;
+  int max_running_per_owner = 0;
+  std::int64_t max_stored_per_owner = 0;  // [byte]
+  std::int64_t default_ttl_s = 0;
+  std::int64_t disk_budget = 0;                                                    // [byte]
   std::chrono::milliseconds heartbeat_interval = std::chrono::seconds(10);         // at most
   std::chrono::milliseconds progress_interval = std::chrono::milliseconds(1'000);  // while a job progresses
   std::chrono::milliseconds transfer_idle = std::chrono::seconds(60);  // exports and imports end that pause for longer
@@ -36,8 +43,9 @@ struct RpcContext {
   Store& store;
   JobManager& jobs;
   ResultCache& results;
-  Executor& quick;  // reads and short writes
-  Executor& slow;   // translation of scenes, uploads
+  Executor& quick;    // reads and short writes
+  Executor& slow;     // translation of scenes, uploads
+  Executor& commits;  // storing new jobs: many threads that wait for the disk together
   OpenStreams& streams;
   spdlog::logger& log;
   RpcSettings settings;

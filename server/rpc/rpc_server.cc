@@ -31,6 +31,7 @@ constexpr int kLongestIdle = 600'000;          // [ms]; connections without a ca
 
 constexpr int kQuickThreads = 4;
 constexpr int kSlowThreads = 2;
+constexpr int kCommitThreads = 32;
 
 void Configure(grpc::ServerBuilder& builder) {
   builder.SetMaxReceiveMessageSize(kLargestMessage);
@@ -54,8 +55,9 @@ struct RpcServer::Impl {
   Impl(Store& store, JobManager& jobs, ResultCache& results, std::shared_ptr<spdlog::logger> log,
        const RpcSettings& settings)
       : logger(std::move(log)),
-        context{store, jobs, results, quick, slow, streams, *logger, settings},
+        context{store, jobs, results, quick, slow, commits, streams, *logger, settings},
         quick(kQuickThreads, [this](const std::string& what) { logger->error("executor: {}", what); }),
+        commits(kCommitThreads, [this](const std::string& what) { logger->error("executor: {}", what); }),
         slow(kSlowThreads, [this](const std::string& what) { logger->error("executor: {}", what); }) {}
 
   // Reports whether jobs can be accepted, again and again. While the store has a problem, only what is stored is
@@ -90,7 +92,8 @@ struct RpcServer::Impl {
   LogServiceImpl log_service{context};
   // Destroyed in reverse order: every call ends, then the last tasks of the executors, then the objects they use.
   Executor quick;
-  Executor slow;
+  Executor commits;
+  Executor slow;  // before those to which it posts
   std::unique_ptr<grpc::Server> server;
   int port = 0;
   bool stopped = false;

@@ -1,6 +1,7 @@
 #include "server/store/asset_directory.h"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -19,6 +20,12 @@ void CreateFolder(const std::string& path) {
   std::error_code error;
   if (fs::create_directory(path, error)) SyncParent(path);
   if (error) throw StoreError(path + ": " + error.message());
+}
+
+bool IsUnused(const fs::path& asset) {
+  std::error_code error;
+  const fs::file_time_type used = fs::last_write_time(asset, error);
+  return !error && used < fs::file_time_type::clock::now() - std::chrono::hours(1);
 }
 
 void Rename(const std::string& from, const std::string& to) {
@@ -87,8 +94,29 @@ std::string AssetDirectory::PathOf(std::string_view sha256_hex) const {
 }
 
 bool AssetDirectory::HasAsset(std::string_view sha256_hex) {
+  const std::lock_guard lock(use_mutex_);
+  std::error_code error;
+  if (!IsSha256Hex(sha256_hex) || !fs::is_regular_file(PathOf(sha256_hex), error)) return false;
+  fs::last_write_time(PathOf(sha256_hex), fs::file_time_type::clock::now(), error);
+  return true;
+}
+
+std::vector<AssetRecord> AssetDirectory::ListUnusedAssets() {
+  std::vector<AssetRecord> unused;
+  std::error_code error;
+  for (auto entry = fs::recursive_directory_iterator(directory_, error); entry != fs::recursive_directory_iterator();
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!IsSha256Hex(name) || !IsUnused(entry->path())) continue;
+    unused.push_back({name, static_cast<std::int64_t>(entry->file_size(error))});
+  }
+  return unused;
+}
+
+bool AssetDirectory::RemoveUnusedAsset(std::string_view sha256_hex) {
+  const std::lock_guard lock(use_mutex_);
   std::error_code ignored;
-  return IsSha256Hex(sha256_hex) && fs::is_regular_file(PathOf(sha256_hex), ignored);
+  return IsSha256Hex(sha256_hex) && IsUnused(PathOf(sha256_hex)) && fs::remove(PathOf(sha256_hex), ignored);
 }
 
 std::unique_ptr<AssetStore::Upload> AssetDirectory::BeginUpload(std::string_view sha256_hex, std::int64_t size) {

@@ -4,9 +4,11 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "server/store/store.h"
 
@@ -15,8 +17,8 @@ namespace fascicle::server {
 // Whether the text is 64 digits 0-9a-f; nothing else may become part of a path.
 bool IsSha256Hex(std::string_view text);
 
-// Assets as files: assets/ab/{sha256}, first written as assets/uploads/{number}. Thread-safe; an upload belongs to one
-// thread.
+// Assets as files: assets/ab/{sha256}, first written as assets/uploads/{number}. The time of a file's modification is
+// that of its last use. Thread-safe; an upload belongs to one thread.
 class AssetDirectory final : public AssetStore {
  public:
   // Creates the directory and removes the files of interrupted uploads.
@@ -25,6 +27,8 @@ class AssetDirectory final : public AssetStore {
   bool HasAsset(std::string_view sha256_hex) override;
   std::unique_ptr<Upload> BeginUpload(std::string_view sha256_hex, std::int64_t size) override;
   std::optional<std::string> ReadAsset(std::string_view sha256_hex) override;
+  std::vector<AssetRecord> ListUnusedAssets() override;
+  bool RemoveUnusedAsset(std::string_view sha256_hex) override;
 
  private:
   class FileUpload;
@@ -33,6 +37,7 @@ class AssetDirectory final : public AssetStore {
 
   const std::string directory_;
   std::atomic<std::int64_t> next_upload_ = 0;
+  std::mutex use_mutex_;  // no asset is removed while its use is noted
 };
 
 }  // namespace fascicle::server

@@ -1,9 +1,27 @@
 #include "server/store/control_database.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
 namespace fascicle::server {
+namespace {
+
+constexpr std::size_t kKeptRemovals = 10'000;
+
+std::deque<std::int64_t> RemovalsOf(Database& database) {
+  std::deque<std::int64_t> revisions;
+  Statement statement = database.Prepare("SELECT revision FROM removals WHERE job_id <> '' ORDER BY revision");
+  Rows rows = statement.Query();
+  while (rows.Next()) revisions.push_back(rows.Int(0));
+  return revisions;
+}
+
+constexpr const char* kNewestRevision =
+    "SELECT max((SELECT ifnull(max(revision), 0) FROM jobs), (SELECT ifnull(max(revision), 0) FROM removals))";
+constexpr const char* kForgotten = "SELECT ifnull(max(revision), 0) FROM removals WHERE job_id = ''";
+
+}  // namespace
 
 ControlDatabase::ControlDatabase(const ControlFiles& files)
     : database_(OpenControl(files)),
@@ -11,7 +29,11 @@ ControlDatabase::ControlDatabase(const ControlFiles& files)
       copy_(database_, "copy"),
       writes_(database_),
       readers_([path = files.main] { return std::make_unique<JobReader>(path); }),
-      copy_readers_([path = files.copy] { return std::make_unique<JobReader>(path); }) {}
+      copy_readers_([path = files.copy] { return std::make_unique<JobReader>(path); }),
+      next_revision_(database_.QueryInt(kNewestRevision) + 1),
+      revision_(next_revision_ - 1),
+      forgotten_(database_.QueryInt(kForgotten)),
+      removals_(RemovalsOf(database_)) {}
 
 template <class Read>
 auto ControlDatabase::ReadWith(const Read& read) {
@@ -22,14 +44,27 @@ auto ControlDatabase::ReadWith(const Read& read) {
   }
 }
 
+template <class Write>
+void ControlDatabase::Change(const Write& write) {
+  std::int64_t own = 0;
+  writes_.Run([&] {
+    own = next_revision_++;
+    write(own);
+  });
+  // Revisions are given in the order of the commits: all below this one are durable, too.
+  std::int64_t newest = revision_;
+  while (newest < own && !revision_.compare_exchange_weak(newest, own)) {
+  }
+}
+
 bool ControlDatabase::CreateJob(const JobRecord& job, JobRecord* existing) {
   std::string taken_by;
-  writes_.Run([&] {
+  Change([&](std::int64_t revision) {
     taken_by.clear();
     if (!job.request_id.empty()) taken_by = main_.FindRequest(job.request_id);
     if (!taken_by.empty()) return;
-    main_.Insert(job);
-    copy_.Insert(job);
+    main_.Insert(job, revision);
+    copy_.Insert(job, revision);
   });
   if (taken_by.empty()) return true;
   std::optional<JobRecord> found = GetJob(taken_by);
@@ -42,34 +77,86 @@ std::optional<JobRecord> ControlDatabase::GetJob(std::string_view id) {
   return ReadWith([&](JobReader& reader) { return reader.Get(id); });
 }
 
+std::optional<JobRecord> ControlDatabase::FindRequest(std::string_view request_id) {
+  return ReadWith([&](JobReader& reader) { return reader.FindRequest(request_id); });
+}
+
 std::vector<JobRecord> ControlDatabase::ListJobs(int limit, std::string_view before_id,
                                                  const std::vector<JobState>& states) {
   return ReadWith([&](JobReader& reader) { return reader.List(limit, before_id, states); });
 }
 
+std::vector<JobRecord> ControlDatabase::FindJobs(const JobQuery& query) {
+  return ReadWith([&](JobReader& reader) { return reader.Find(query); });
+}
+
+std::int64_t ControlDatabase::StoredBytesOf(const std::optional<std::string>& owner) {
+  return ReadWith([&](JobReader& reader) { return reader.StoredBytesOf(owner); });
+}
+
 void ControlDatabase::UpdateJob(const JobRecord& job) {
-  writes_.Run([&] {
-    main_.Update(job);
-    copy_.Update(job);
+  Change([&](std::int64_t revision) {
+    main_.Update(job, revision);
+    copy_.Update(job, revision);
   });
 }
 
-bool ControlDatabase::DeleteJob(std::string_view id) {
-  bool deleted = false;
-  writes_.Run([&] {
-    deleted = main_.Delete(id);
-    copy_.Delete(id);
+bool ControlDatabase::UpdateSettings(const JobRecord& job) {
+  bool is_there = false;
+  Change([&](std::int64_t revision) {
+    is_there = main_.UpdateSettings(job, revision);
+    copy_.UpdateSettings(job, revision);
   });
-  return deleted;
+  return is_there;
+}
+
+bool ControlDatabase::DeleteJob(std::string_view id) {
+  bool is_deleted = false;
+  std::int64_t removal = 0;
+  Change([&](std::int64_t revision) {
+    removal = revision;
+    is_deleted = main_.Delete(id, revision);
+    copy_.Delete(id, revision);
+  });
+  if (is_deleted) NoteRemoval(removal);
+  return is_deleted;
+}
+
+void ControlDatabase::NoteRemoval(std::int64_t revision) {
+  {
+    const std::lock_guard lock(removals_mutex_);
+    removals_.push_back(revision);
+    if (removals_.size() < 2 * kKeptRemovals) return;
+    const auto kept = removals_.end() - kKeptRemovals;
+    forgotten_ = *(kept - 1);
+    removals_.erase(removals_.begin(), kept);
+  }
+  writes_.Run([&, last = forgotten_.load()] {
+    main_.ForgetRemovals(last);
+    copy_.ForgetRemovals(last);
+  });
+}
+
+std::optional<JobChanges> ControlDatabase::ChangesAfter(std::int64_t revision, std::int64_t deletions_after,
+                                                        int limit) {
+  const std::int64_t last = revision_;
+  deletions_after = std::max(revision, deletions_after);
+  if (revision > last) return std::nullopt;
+  JobChanges changes = ReadWith([&](JobReader& reader) {
+    return reader.Changes({.after = revision, .deletions_after = deletions_after, .last = last, .limit = limit});
+  });
+  // Looked at afterwards: what was not forgotten then was there before.
+  if (deletions_after < forgotten_) return std::nullopt;
+  return changes;
 }
 
 bool ControlDatabase::HasJob(std::string_view id) {
   return ReadWith([&](JobReader& reader) { return reader.Has(id); });
 }
 
-std::unordered_set<std::string> ControlDatabase::AllIds() {
+std::unordered_set<std::string> ControlDatabase::IdsWithFrames() {
   return ReadWith([](JobReader& reader) {
-    const std::vector<std::string> ids = reader.Ids();
+    const std::vector<std::string> ids = reader.IdsWithFrames();
     return std::unordered_set<std::string>(ids.begin(), ids.end());
   });
 }

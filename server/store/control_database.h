@@ -1,6 +1,10 @@
 #ifndef FASCICLE_SERVER_STORE_CONTROL_DATABASE_H_
 #define FASCICLE_SERVER_STORE_CONTROL_DATABASE_H_
 
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,22 +28,39 @@ class ControlDatabase final : public JobStore {
 
   bool CreateJob(const JobRecord& job, JobRecord* existing) override;
   std::optional<JobRecord> GetJob(std::string_view id) override;
+  std::optional<JobRecord> FindRequest(std::string_view request_id) override;
   std::vector<JobRecord> ListJobs(int limit, std::string_view before_id, const std::vector<JobState>& states) override;
+  std::vector<JobRecord> FindJobs(const JobQuery& query) override;
+  std::int64_t StoredBytesOf(const std::optional<std::string>& owner) override;
   void UpdateJob(const JobRecord& job) override;
+  bool UpdateSettings(const JobRecord& job) override;
   bool DeleteJob(std::string_view id) override;
+  std::optional<JobChanges> ChangesAfter(std::int64_t revision, std::int64_t deletions_after, int limit) override;
+  std::int64_t Revision() override { return revision_; }
 
   bool HasJob(std::string_view id);
-  std::unordered_set<std::string> AllIds();
+  // All jobs but those whose frames were removed.
+  std::unordered_set<std::string> IdsWithFrames();
 
  private:
   // Calls read(reader) for control.db or, if that is damaged, for the copy.
   template <class Read>
   auto ReadWith(const Read& read);
+  // Makes a change durable: write(revision), with the number of this change.
+  template <class Write>
+  void Change(const Write& write);
+  // Forgets old ones if there are too many.
+  void NoteRemoval(std::int64_t revision);
 
   Database database_;
   JobWriter main_, copy_;
   GroupCommit writes_;
   ReaderPool<JobReader> readers_, copy_readers_;
+  std::int64_t next_revision_;           // of the thread that commits
+  std::atomic<std::int64_t> revision_;   // of the last durable change
+  std::atomic<std::int64_t> forgotten_;  // deletions up to this revision are not known
+  std::mutex removals_mutex_;            // guards removals_
+  std::deque<std::int64_t> removals_;    // revisions of the known deletions
 };
 
 }  // namespace fascicle::server

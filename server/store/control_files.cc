@@ -20,11 +20,13 @@ std::string ProblemOf(const std::string& path) {
   try {
     Database database = OpenJobs(path);
     {
-      Statement check = database.Prepare("PRAGMA quick_check(1)");
+      Statement check = database.Prepare("PRAGMA integrity_check(1)");  // of the indices, too
       Rows rows = check.Query();
       if (!rows.Next() || rows.Bytes(0) != "ok") return path + ": is damaged: " + rows.String(0);
     }
-    const std::string damaged = "SELECT count(*) FROM jobs WHERE checksum IS NOT " + JobChecksum();
+    const std::string damaged =
+        "SELECT (SELECT count(*) FROM jobs NOT INDEXED WHERE checksum IS NOT " + JobChecksum() +
+        ") + (SELECT count(*) FROM removals WHERE checksum IS NOT row_checksum(revision, job_id))";
     return database.QueryInt(damaged.c_str()) == 0 ? "" : path + ": has damaged records";
   } catch (const StoreError& error) {
     return error.what();
@@ -50,7 +52,7 @@ void Salvage(const std::string& from, Database& database) {
   Statement has = database.Prepare("SELECT 1 FROM jobs WHERE id = ?");
   const auto salvage_job = [&](JobReader& reader, const std::string& id) {
     try {
-      if (const std::optional<JobRecord> job = reader.Get(id)) writer.Insert(*job);
+      if (const std::optional<JobRecord> job = reader.Get(id)) writer.Insert(*job, job->revision);
     } catch (const DamageError&) {
     }
   };
@@ -63,13 +65,17 @@ void Salvage(const std::string& from, Database& database) {
   }
 }
 
-// Makes control.db again from the rows of both files.
+// Makes control.db again from the rows of both files. Which jobs were deleted is not known any more; revisions that
+// were given to later changes must not be given again.
 void Rebuild(const ControlFiles& files) {
+  constexpr std::int64_t kMostLost = 1'000'000;
   const std::string damaged = SetAside(files.main);
   Database database = OpenJobs(files.main);
   Transaction transaction(database);
   Salvage(damaged, database);
   Salvage(files.copy, database);
+  const std::int64_t newest = database.QueryInt("SELECT ifnull(max(revision), 0) FROM jobs");
+  JobWriter(database, "main").ForgetRemovals(newest + kMostLost);
   transaction.Commit();
 }
 
@@ -81,6 +87,9 @@ void Reconcile(Database& database) {
     database.Execute(
         "DELETE FROM copy.jobs WHERE id NOT IN (SELECT id FROM main.jobs);"
         "DELETE FROM copy.specs WHERE job_id NOT IN (SELECT id FROM main.jobs);"
+        "DELETE FROM copy.removals WHERE revision NOT IN (SELECT revision FROM main.removals);"
+        "REPLACE INTO copy.removals SELECT * FROM main.removals AS m WHERE checksum IS NOT "
+        "(SELECT checksum FROM copy.removals AS c WHERE c.revision = m.revision);"
         "REPLACE INTO copy.jobs SELECT * FROM main.jobs AS m WHERE checksum IS NOT "
         "(SELECT checksum FROM copy.jobs AS c WHERE c.id = m.id);"
         "REPLACE INTO copy.specs SELECT * FROM main.specs AS m WHERE checksum = row_checksum(job_id, spec) AND "

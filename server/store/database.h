@@ -59,10 +59,7 @@ class Statement {
   void Run(const Args&... args) {
     Query(args...).Next();
   }
-
- private:
-  friend class Database;
-  explicit Statement(sqlite3_stmt* statement) : statement_(statement) {}
+  // Binds one argument, counted from 1, for a Query without arguments.
   void Bind(int index, std::int64_t value);
   void Bind(int index, int value) { Bind(index, std::int64_t{value}); }
   void Bind(int index, double value);
@@ -78,6 +75,10 @@ class Statement {
       Bind(index, nullptr);
     }
   }
+
+ private:
+  friend class Database;
+  explicit Statement(sqlite3_stmt* statement) : statement_(statement) {}
 
   sqlite3_stmt* statement_;
 };

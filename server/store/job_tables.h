@@ -26,15 +26,31 @@ class JobWriter {
 
   // The id of the job with this request id; empty if there is none.
   std::string FindRequest(std::string_view request_id);
-  void Insert(const JobRecord& job);
-  // Throws DamageError if the stored row is damaged, whose checksum would otherwise be renewed.
-  void Update(const JobRecord& job);
+  // `revision`: the number of this change, here and below.
+  void Insert(const JobRecord& job, std::int64_t revision);
+  // Both throw DamageError if the stored row is damaged, whose checksum would otherwise be renewed.
+  void Update(const JobRecord& job, std::int64_t revision);
+  bool UpdateSettings(const JobRecord& job, std::int64_t revision);
   // False if there is no such job.
-  bool Delete(std::string_view id);
+  bool Delete(std::string_view id, std::int64_t revision);
+  // Forgets which jobs were deleted up to `revision`, and remembers that.
+  void ForgetRemovals(std::int64_t revision);
 
  private:
+  // False if there is no such job; DamageError if it is damaged.
+  bool IsThere(std::string_view id);
+
   Database& database_;
-  Statement find_request_, insert_job_, insert_spec_, is_intact_, update_, renew_checksum_, delete_;
+  Statement find_request_, insert_job_, insert_spec_, is_intact_, update_, update_settings_, renew_checksum_, delete_,
+      insert_removal_, forget_removals_;
+};
+
+// Changes with revisions above `after`, up to `last`; deletions above `deletions_after`.
+struct ChangeRange {
+  std::int64_t after = 0;
+  std::int64_t deletions_after = 0;
+  std::int64_t last = 0;
+  int limit = 0;
 };
 
 // Reads jobs of one file over a connection of its own. Not thread-safe. Throws DamageError for damaged rows.
@@ -43,14 +59,21 @@ class JobReader {
   explicit JobReader(const std::string& path);
 
   std::optional<JobRecord> Get(std::string_view id);
+  std::optional<JobRecord> FindRequest(std::string_view request_id);
   // As JobStore::ListJobs.
   std::vector<JobRecord> List(int limit, std::string_view before_id, const std::vector<JobState>& states);
+  std::vector<JobRecord> Find(const JobQuery& query);
+  std::int64_t StoredBytesOf(const std::optional<std::string>& owner);
+  JobChanges Changes(const ChangeRange& range);
   bool Has(std::string_view id);
   std::vector<std::string> Ids();
+  std::vector<std::string> IdsWithFrames();
 
  private:
+  JobChanges ReadChanges(const ChangeRange& range);
+
   Database database_;
-  Statement get_, list_, has_, ids_;
+  Statement get_, find_request_, list_, has_, ids_, with_frames_, stored_bytes_, stored_bytes_of_, changed_, deleted_;
 };
 
 }  // namespace fascicle::server

@@ -190,6 +190,7 @@ class MemoryStore final : public Store {
       if (auto frames = staged->second.lock()) stored.frames = std::move(frames);
       staged_.erase(staged);
     }
+    stored.record.revision = ++revision_;
     return true;
   }
 
@@ -198,6 +199,13 @@ class MemoryStore final : public Store {
     const auto found = jobs_.find(id);
     if (found == jobs_.end()) return std::nullopt;
     return found->second.record;
+  }
+
+  std::optional<JobRecord> FindRequest(std::string_view request_id) override {
+    const std::shared_lock lock(mutex_);
+    const auto found = ids_by_request_.find(request_id);
+    if (found == ids_by_request_.end()) return std::nullopt;
+    return jobs_.at(found->second).record;
   }
 
   std::vector<JobRecord> ListJobs(int limit, std::string_view before_id, const std::vector<JobState>& states) override {
@@ -213,19 +221,73 @@ class MemoryStore final : public Store {
     return records;
   }
 
+  std::vector<JobRecord> FindJobs(const JobQuery& query) override {
+    const std::shared_lock lock(mutex_);
+    std::vector<JobRecord> records;
+    for (const auto& [id, job] : jobs_) {
+      const bool is_later = !query.after || IsBefore(query, *query.after, PlaceOf(job.record, query.order));
+      if (is_later && query.filter.Passes(job.record)) records.push_back(job.record);
+    }
+    std::sort(records.begin(), records.end(), [&](const JobRecord& a, const JobRecord& b) {
+      return IsBefore(query, PlaceOf(a, query.order), PlaceOf(b, query.order));
+    });
+    records.resize(std::min(records.size(), static_cast<std::size_t>(std::max(query.limit, 0))));
+    for (JobRecord& record : records) record.spec.clear();
+    return records;
+  }
+
+  std::int64_t StoredBytesOf(const std::optional<std::string>& owner) override {
+    const std::shared_lock lock(mutex_);
+    std::int64_t bytes = 0;
+    for (const auto& [id, job] : jobs_) bytes += !owner || job.record.owner == *owner ? job.record.stored_bytes : 0;
+    return bytes;
+  }
+
   void UpdateJob(const JobRecord& job) override {
     const std::unique_lock lock(mutex_);
     const auto found = jobs_.find(job.id);
-    if (found == jobs_.end()) return;
-    JobRecord updated = job;  // the client's request stays as it was
+    if (found != jobs_.end()) Update(job, found->second.record);
+  }
+
+  bool UpdateSettings(const JobRecord& job) override {
+    const std::unique_lock lock(mutex_);
+    const auto found = jobs_.find(job.id);
+    if (found == jobs_.end()) return false;
     JobRecord& record = found->second.record;
-    updated.request_id = std::move(record.request_id);
-    updated.request_digest = std::move(record.request_digest);
-    updated.scene_name = std::move(record.scene_name);
-    updated.spec = std::move(record.spec);
-    updated.threads = record.threads;
-    updated.create_time_us = record.create_time_us;
-    record = std::move(updated);
+    record.labels = job.labels;
+    record.priority = job.priority;
+    record.ttl_s = job.ttl_s;
+    record.is_pinned = job.is_pinned;
+    record.revision = ++revision_;
+    return true;
+  }
+
+  std::optional<JobChanges> ChangesAfter(std::int64_t revision, std::int64_t deletions_after, int limit) override {
+    const std::shared_lock lock(mutex_);
+    if (revision > revision_) return std::nullopt;
+    std::map<std::int64_t, const JobRecord*> changed;
+    for (const auto& [id, job] : jobs_) {
+      if (job.record.revision > revision) changed[job.record.revision] = &job.record;
+    }
+    JobChanges changes;
+    changes.revision = revision_;
+    for (const auto& [number, record] : changed) {
+      changes.changed.push_back(*record);
+      changes.changed.back().spec.clear();
+      if (static_cast<int>(changes.changed.size()) < limit) continue;
+      changes.revision = number;
+      break;
+    }
+    const auto first = deletions_.upper_bound(std::max(revision, deletions_after));
+    for (auto deletion = first; deletion != deletions_.upper_bound(changes.revision); ++deletion) {
+      changes.deleted.push_back(deletion->second);
+    }
+    return changes;
+  }
+
+  std::int64_t Revision() override {
+    const std::shared_lock lock(mutex_);
+    return revision_;
   }
 
   bool DeleteJob(std::string_view id) override {
@@ -234,6 +296,7 @@ class MemoryStore final : public Store {
     if (found == jobs_.end()) return false;
     ids_by_request_.erase(found->second.record.request_id);
     jobs_.erase(found);
+    deletions_[++revision_] = id;
     return true;
   }
 
@@ -261,6 +324,15 @@ class MemoryStore final : public Store {
     return transfers_->path + "/" + std::to_string(next_transfer_++);
   }
 
+  bool RemoveFrames(const JobRecord& job) override {
+    const std::unique_lock lock(mutex_);
+    const auto found = jobs_.find(job.id);
+    if (found == jobs_.end() || found->second.frames.use_count() > 1) return false;
+    Update(job, found->second.record);
+    found->second.frames = std::make_shared<MemoryFrameStore>();
+    return true;
+  }
+
   bool HasAsset(std::string_view sha256_hex) override {
     const std::shared_lock lock(mutex_);
     return assets_.contains(sha256_hex);
@@ -276,6 +348,11 @@ class MemoryStore final : public Store {
     if (found == assets_.end()) return std::nullopt;
     return found->second;
   }
+
+  // Its assets are as old as the process.
+  std::vector<AssetRecord> ListUnusedAssets() override { return {}; }
+
+  bool RemoveUnusedAsset(std::string_view) override { return false; }
 
  private:
   struct StoredJob {
@@ -294,6 +371,23 @@ class MemoryStore final : public Store {
     }
     std::string path;
   };
+  // Needs mutex_. What UpdateJob does not write stays as it was.
+  void Update(const JobRecord& job, JobRecord& record) {
+    JobRecord updated = job;
+    updated.owner = std::move(record.owner);
+    updated.labels = std::move(record.labels);
+    updated.priority = record.priority;
+    updated.ttl_s = record.ttl_s;
+    updated.is_pinned = record.is_pinned;
+    updated.revision = ++revision_;
+    updated.request_id = std::move(record.request_id);
+    updated.request_digest = std::move(record.request_digest);
+    updated.scene_name = std::move(record.scene_name);
+    updated.spec = std::move(record.spec);
+    updated.threads = record.threads;
+    updated.create_time_us = record.create_time_us;
+    record = std::move(updated);
+  }
 
   class MemoryUpload final : public Upload {
    public:
@@ -323,7 +417,9 @@ class MemoryStore final : public Store {
 
   std::shared_mutex mutex_;
   std::map<std::string, StoredJob, std::less<>> jobs_;
-  std::map<std::string, std::string> ids_by_request_;
+  std::map<std::int64_t, std::string> deletions_;  // ids by revision
+  std::int64_t revision_ = 0;
+  std::map<std::string, std::string, std::less<>> ids_by_request_;
   std::map<std::string, std::string, std::less<>> assets_;
   std::map<std::string, std::weak_ptr<MemoryFrameStore>, std::less<>> staged_;  // of jobs that are not there yet
   std::optional<Transfers> transfers_;

@@ -60,12 +60,24 @@ class SqliteStore final : public Store {
     return true;
   }
   std::optional<JobRecord> GetJob(std::string_view id) override { return jobs_.GetJob(id); }
+  std::optional<JobRecord> FindRequest(std::string_view request_id) override { return jobs_.FindRequest(request_id); }
   std::vector<JobRecord> ListJobs(int limit, std::string_view before_id, const std::vector<JobState>& states) override {
     return jobs_.ListJobs(limit, before_id, states);
   }
+  std::vector<JobRecord> FindJobs(const JobQuery& query) override { return jobs_.FindJobs(query); }
+  std::int64_t StoredBytesOf(const std::optional<std::string>& owner) override { return jobs_.StoredBytesOf(owner); }
   void UpdateJob(const JobRecord& job) override {
     WithReserve([&] { jobs_.UpdateJob(job); });
   }
+  bool UpdateSettings(const JobRecord& job) override {
+    bool is_there = false;
+    WithReserve([&] { is_there = jobs_.UpdateSettings(job); });
+    return is_there;
+  }
+  std::optional<JobChanges> ChangesAfter(std::int64_t revision, std::int64_t deletions_after, int limit) override {
+    return jobs_.ChangesAfter(revision, deletions_after, limit);
+  }
+  std::int64_t Revision() override { return jobs_.Revision(); }
 
   bool DeleteJob(std::string_view id) override {
     const std::lock_guard lock(mutex_);
@@ -74,14 +86,21 @@ class SqliteStore final : public Store {
     bool is_deleted = false;
     WithReserve([&] { is_deleted = jobs_.DeleteJob(id); });
     if (!is_deleted) return false;
-    const auto open = open_frames_.find(std::string(id));
-    const std::shared_ptr<FrameDatabase> frames = open == open_frames_.end() ? nullptr : open->second.lock();
-    if (open != open_frames_.end()) open_frames_.erase(open);
-    if (frames != nullptr) {
+    if (const std::shared_ptr<FrameDatabase> frames = TakeOpenFrames(id)) {
       frames->RemoveWhenClosed();
     } else {
       FrameDatabase::Remove(FramesPath(id));
     }
+    return true;
+  }
+
+  bool RemoveFrames(const JobRecord& job) override {
+    const std::lock_guard lock(mutex_);
+    const auto open = open_frames_.find(job.id);
+    if (open != open_frames_.end() && !open->second.expired()) return false;
+    // As above: a record without its file would be inconsistent.
+    WithReserve([&] { jobs_.UpdateJob(job); });
+    FrameDatabase::Remove(FramesPath(job.id));
     return true;
   }
 
@@ -120,6 +139,8 @@ class SqliteStore final : public Store {
     return assets_.BeginUpload(sha256_hex, size);
   }
   std::optional<std::string> ReadAsset(std::string_view sha256_hex) override { return assets_.ReadAsset(sha256_hex); }
+  std::vector<AssetRecord> ListUnusedAssets() override { return assets_.ListUnusedAssets(); }
+  bool RemoveUnusedAsset(std::string_view sha256_hex) override { return assets_.RemoveUnusedAsset(sha256_hex); }
 
   std::int64_t Room() override { return std::max<std::int64_t>(0, reserve_.free_bytes() - reserve_.least_free()); }
 
@@ -142,13 +163,22 @@ class SqliteStore final : public Store {
     }
   }
 
+  // The frames of a job if somebody has them open, which are then forgotten here. Needs mutex_.
+  std::shared_ptr<FrameDatabase> TakeOpenFrames(std::string_view id) {
+    const auto open = open_frames_.find(std::string(id));
+    if (open == open_frames_.end()) return nullptr;
+    std::shared_ptr<FrameDatabase> frames = open->second.lock();
+    open_frames_.erase(open);
+    return frames;
+  }
+
   std::string FramesPath(std::string_view id) const { return directory_ + "/jobs/" + std::string(id) + ".db"; }
 
-  // Removes files of jobs that are not in the control database, left by interrupted deletions. Keeps all of them if
-  // the control database was ever damaged: its list may be incomplete.
+  // Removes files of jobs that are not in the control database, or whose frames were removed, left by interruptions.
+  // Keeps all of them if the control database was ever damaged: its list may be incomplete.
   void RemoveOrphans() {
     if (fs::exists(directory_ + "/control.db.damaged-1")) return;
-    const std::unordered_set<std::string> ids = jobs_.AllIds();
+    const std::unordered_set<std::string> ids = jobs_.IdsWithFrames();
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(directory_ + "/jobs", error)) {
       const std::string name = entry.path().filename().string();

@@ -3,12 +3,15 @@
 
 #include <cstdint>
 #include <exception>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "server/store/job_query.h"
 
 namespace fascicle::server {
 
@@ -45,7 +48,9 @@ enum class JobState {
   kCancelling = 4,
   kSucceeded = 5,
   kFailed = 6,
-  kCancelled = 7
+  kCancelled = 7,
+  kPaused = 8,
+  kPausing = 9
 };
 inline bool IsFinal(JobState s) {
   return s == JobState::kSucceeded || s == JobState::kFailed || s == JobState::kCancelled;
@@ -76,6 +81,20 @@ struct JobRecord {
   // the place that it had reached then; see job_manager.cc.
   std::int64_t crash_score = 0;
   std::int64_t crash_place = -1;
+  std::string owner = {};                          // who submitted it; empty: nobody in particular
+  std::map<std::string, std::string> labels = {};  // keys without '=', keys and values without line feeds
+  int priority = 0;
+  std::int64_t ttl_s = 0;        // how long it is kept after its end [s]; 0: as the server decides
+  bool is_pinned = false;        // kept until somebody deletes it
+  std::int64_t first_frame = 0;  // frames before it were removed to make room
+  std::int64_t revision = 0;     // number of its last change among the changes of all jobs; set by the store
+};
+
+// Changes of jobs in the order in which they became durable.
+struct JobChanges {
+  std::vector<JobRecord> changed;    // without spec; each as it is now
+  std::vector<std::string> deleted;  // ids
+  std::int64_t revision = 0;         // of the last change that is included
 };
 
 // Jobs. Changes are durable (fsync) when a function returns.
@@ -86,14 +105,28 @@ class JobStore {
   // if the disk is almost full.
   virtual bool CreateJob(const JobRecord& job, JobRecord* existing) = 0;
   virtual std::optional<JobRecord> GetJob(std::string_view id) = 0;
+  // The job with a request id; nothing for an empty one.
+  virtual std::optional<JobRecord> FindRequest(std::string_view request_id) = 0;
   // Newest first, without `spec`: ids below `before_id` (empty: from the newest), states in `states` (empty: all).
   virtual std::vector<JobRecord> ListJobs(int limit, std::string_view before_id,
                                           const std::vector<JobState>& states) = 0;
-  // Writes state, failure, profile, warnings, attempt, generation, start and end time, progress, counts and crashes of
-  // a job. Does nothing if the job does not exist.
+  // Jobs that pass a filter, in the order asked for, without `spec`.
+  virtual std::vector<JobRecord> FindJobs(const JobQuery& query) = 0;
+  // What is stored of the jobs of an owner, or of all without an owner given [byte].
+  virtual std::int64_t StoredBytesOf(const std::optional<std::string>& owner) = 0;
+  // Writes state, failure, profile, warnings, attempt, generation, start and end time, progress, counts, first frame
+  // and crashes of a job. Does nothing if the job does not exist.
   virtual void UpdateJob(const JobRecord& job) = 0;
+  // Writes labels, priority, ttl and pin of a job. False if it does not exist.
+  virtual bool UpdateSettings(const JobRecord& job) = 0;
   // Removes the job with its frames. False if it does not exist.
   virtual bool DeleteJob(std::string_view id) = 0;
+  // Changes after `revision`, at most `limit` jobs; at revision 0 nothing had happened. Deletions up to revision
+  // `deletions_after` are left out. Nothing if deletions that belong to the answer were forgotten (at least the last
+  // 10,000 are remembered), or if `revision` is yet to come.
+  virtual std::optional<JobChanges> ChangesAfter(std::int64_t revision, std::int64_t deletions_after, int limit) = 0;
+  // Number of the last change that is durable. Cheap.
+  virtual std::int64_t Revision() = 0;
 };
 
 struct FrameRecord {
@@ -178,6 +211,11 @@ class FrameStore {
   virtual std::vector<SteeringRecord> ListSteering(std::int64_t start, int limit) = 0;
 };
 
+struct AssetRecord {
+  std::string sha256_hex;
+  std::int64_t size = 0;  // [byte]
+};
+
 // Files that scenes need, identified by digest.
 class AssetStore {
  public:
@@ -195,6 +233,10 @@ class AssetStore {
   virtual std::unique_ptr<Upload> BeginUpload(std::string_view sha256_hex, std::int64_t size) = 0;
   // Throws StoreError if the stored bytes are damaged.
   virtual std::optional<std::string> ReadAsset(std::string_view sha256_hex) = 0;
+  // All assets that nobody stored or asked for (HasAsset) within the last hour.
+  virtual std::vector<AssetRecord> ListUnusedAssets() = 0;
+  // Removes an asset. False if there is none, or if it was stored or asked for within the last hour.
+  virtual bool RemoveUnusedAsset(std::string_view sha256_hex) = 0;
 };
 
 // The complete store. The shared frame store of a job stays usable until it is released, even if the job is deleted.
@@ -207,6 +249,9 @@ class Store : public JobStore, public AssetStore {
   virtual std::shared_ptr<FrameStore> StageFrames(std::string_view job_id) = 0;
   // Path of a new file for a job that is exported or imported. The caller removes the file.
   virtual std::string NewTransferPath() = 0;
+  // Updates the record of a job that does not run, and removes its frames, geometry and checkpoints. False, without any
+  // change, if somebody has them open.
+  virtual bool RemoveFrames(const JobRecord& job) = 0;
   // Why nothing new should be stored, for users, such as a disk that is almost full; empty if all is well. Deleting
   // jobs and updating their records may still be possible. Cheap.
   virtual std::string Problem() = 0;

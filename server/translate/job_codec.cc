@@ -1,6 +1,9 @@
 #include "server/translate/job_codec.h"
 
+#include <set>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "server/translate/steering.h"
 
@@ -22,6 +25,13 @@ std::shared_ptr<const Scene> DecodeScene(const std::string& spec, AssetStore& as
   auto scene = TranslateScene(job.scene(), ReaderOf(assets), problems, {}, tools);
   if (scene == nullptr) throw std::runtime_error("the stored scene can't be built any more:\n" + problems.ToString());
   return scene;
+}
+
+std::set<std::string> AssetsOfSpec(const std::string& spec) {
+  v1::Job job;
+  if (!job.ParseFromString(spec)) throw std::runtime_error("a stored job can't be read");
+  const std::vector<std::string> assets = AssetsOf(job.scene());
+  return {assets.begin(), assets.end()};
 }
 
 }  // namespace
@@ -46,7 +56,8 @@ JobCodec MakeJobCodec(ResultCache* results) {
           .encode_profile = [](const RunProfile& profile) { return Serialize(EncodeProfile(profile)); },
           .encode_line = [](const LogLine& line) { return Serialize(EncodeLine(line)); },
           .inputs_of_spec = InputsOfSpec,
-          .decode_inputs = DecodeInputs};
+          .decode_inputs = DecodeInputs,
+          .assets_of = AssetsOfSpec};
 }
 
 }  // namespace fascicle::server

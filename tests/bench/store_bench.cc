@@ -1,7 +1,5 @@
 // Writing and reading frames of the store, and acknowledged submissions by several clients compared with plain SQLite
 // commits of the same durability (WAL, synchronous FULL, one row and one commit each, one connection).
-#include <sqlite3.h>
-
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "ratio.h"
+#include "raw_sqlite.h"
 #include "server/store/store.h"
 #include "tests/support/files.h"
 #include "tests/support/store_samples.h"
@@ -49,36 +48,6 @@ void WriteAndReadFrames() {
   std::printf("chunk read %.2f GB/s (1 MiB each, one thread)\n", 1e-9 * kFrames * kFrameSize / bench::Median(reads));
 }
 
-class RawSqlite {
- public:
-  explicit RawSqlite(const std::string& path) {
-    sqlite3_open(path.c_str(), &database_);
-    Run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
-        "CREATE TABLE jobs (id TEXT PRIMARY KEY, request_id TEXT UNIQUE, spec BLOB)");
-    sqlite3_prepare_v2(database_, "INSERT INTO jobs VALUES (?, ?, ?)", -1, &insert_, nullptr);
-  }
-  ~RawSqlite() {
-    sqlite3_finalize(insert_);
-    sqlite3_close(database_);
-  }
-
-  void Insert(const JobRecord& job) {
-    sqlite3_bind_text(insert_, 1, job.id.data(), static_cast<int>(job.id.size()), SQLITE_STATIC);
-    sqlite3_bind_text(insert_, 2, job.request_id.data(), static_cast<int>(job.request_id.size()), SQLITE_STATIC);
-    sqlite3_bind_blob(insert_, 3, job.spec.data(), static_cast<int>(job.spec.size()), SQLITE_STATIC);
-    if (sqlite3_step(insert_) != SQLITE_DONE) std::abort();
-    sqlite3_reset(insert_);
-  }
-
- private:
-  void Run(const char* sql) {
-    if (sqlite3_exec(database_, sql, nullptr, nullptr, nullptr) != SQLITE_OK) std::abort();
-  }
-
-  sqlite3* database_ = nullptr;
-  sqlite3_stmt* insert_ = nullptr;
-};
-
 JobRecord NextJob(std::atomic<int>& number) {
   JobRecord job = SampleJob(number++);
   job.request_id = job.id;
@@ -88,7 +57,7 @@ JobRecord NextJob(std::atomic<int>& number) {
 void CompareSubmissions() {
   testing::TemporaryFolder directory;
   const std::unique_ptr<Store> store = OpenSqliteStore(directory.path());
-  RawSqlite raw(directory / "raw.db");
+  bench::RawSqlite raw(directory / "raw.db");
   std::atomic<int> number = 0;
   const auto submit = [&](int clients) {
     std::vector<std::thread> threads;
@@ -103,7 +72,10 @@ void CompareSubmissions() {
     for (std::thread& thread : threads) thread.join();
   };
   const auto commit = [&] {
-    for (int i = 0; i < kSubmissions; ++i) raw.Insert(NextJob(number));
+    for (int i = 0; i < kSubmissions; ++i) {
+      const JobRecord job = NextJob(number);
+      raw.Insert(job.id, job.request_id, job.spec);
+    }
   };
   std::printf("%d submissions: A by the store with one client, B by raw SQLite\n", kSubmissions);
   bench::MedianRatio(

@@ -60,14 +60,41 @@ class FailingStore final : public Store {
     faults_->reads.Call();
     return behind_->GetJob(id);
   }
+  std::optional<JobRecord> FindRequest(std::string_view request_id) override {
+    faults_->reads.Call();
+    return behind_->FindRequest(request_id);
+  }
   std::vector<JobRecord> ListJobs(int limit, std::string_view before_id, const std::vector<JobState>& states) override {
     faults_->reads.Call();
     return behind_->ListJobs(limit, before_id, states);
+  }
+  std::vector<JobRecord> FindJobs(const JobQuery& query) override {
+    faults_->reads.Call();
+    return behind_->FindJobs(query);
+  }
+  std::int64_t StoredBytesOf(const std::optional<std::string>& owner) override {
+    faults_->reads.Call();
+    return behind_->StoredBytesOf(owner);
   }
   void UpdateJob(const JobRecord& job) override {
     faults_->job_writes.Call();
     behind_->UpdateJob(job);
   }
+  bool UpdateSettings(const JobRecord& job) override {
+    faults_->job_writes.Call();
+    return behind_->UpdateSettings(job);
+  }
+  std::optional<JobChanges> ChangesAfter(std::int64_t revision, std::int64_t deletions_after, int limit) override {
+    faults_->reads.Call();
+    return behind_->ChangesAfter(revision, deletions_after, limit);
+  }
+  std::int64_t Revision() override { return behind_->Revision(); }
+  bool RemoveFrames(const JobRecord& job) override {
+    faults_->job_writes.Call();
+    return behind_->RemoveFrames(job);
+  }
+  std::vector<AssetRecord> ListUnusedAssets() override { return behind_->ListUnusedAssets(); }
+  bool RemoveUnusedAsset(std::string_view sha256_hex) override { return behind_->RemoveUnusedAsset(sha256_hex); }
   bool DeleteJob(std::string_view id) override {
     faults_->job_writes.Call();
     return behind_->DeleteJob(id);

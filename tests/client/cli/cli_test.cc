@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -698,6 +699,91 @@ TEST_F(ServerTest, RunningJobsCanBeCancelledButNotDeleted) {
   EXPECT_EQ(json::parse(watched.out)["state"], "cancelled");
   for (const char* command : {"show", "cancel", "restart", "verify", "steer", "replay", "log", "delete", "watch"}) {
     EXPECT_EQ(Call({command, "jobs/none"}).exit_code, 2) << command;
+  }
+}
+
+TEST_F(ServerTest, JobsHaveOwnersLabelsAndPriorities) {
+  const std::string scene = File("scene.json", SceneText(5, 20));
+  const auto submit = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"submit", scene});
+    const Finished finished = Call(options);
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    return finished.out.substr(0, finished.out.find('\n'));
+  };
+  const std::string mine = submit({"--label", "study=left knee", "--label", "run=2", "--priority", "3", "--ttl", "2h"});
+  const std::string other = submit({"--owner", "bob", "--pin"});
+  for (const std::string& job : {mine, other}) EXPECT_EQ(Call({"watch", job, "--json"}).exit_code, 0);
+  json shown = json::parse(Call({"show", mine, "--json"}).out);
+  EXPECT_NE(shown["owner"], "bob");
+  EXPECT_EQ(shown["labels"]["study"], "left knee");
+  EXPECT_EQ(shown["priority"], 3);
+  EXPECT_EQ(shown["ttl_seconds"], 7200);
+  EXPECT_EQ(
+      Call({"update", mine, "--priority", "-1", "--label", "run=3", "--remove-label", "study", "--ttl", "0"}).exit_code,
+      0);
+  shown = json::parse(Call({"show", mine, "--json"}).out);
+  EXPECT_EQ(shown["labels"], json::parse(R"({"run": "3"})"));
+  EXPECT_EQ(shown["priority"], -1);
+  EXPECT_FALSE(shown.contains("ttl_seconds"));
+  EXPECT_EQ(Call({"update", mine}).exit_code, 2) << "nothing to change";
+  EXPECT_EQ(Call({"update", mine, "--label", "none"}).exit_code, 2);
+  EXPECT_EQ(Call({"update", mine, "--priority", "1000"}).exit_code, 2);
+
+  const auto listed = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"list", "--json"});
+    std::vector<std::string> names;
+    for (const json& job : Lines(Call(options).out)) names.push_back(job["job"]);
+    return names;
+  };
+  EXPECT_THAT(listed({"--filter", "labels.run=3 AND state=SUCCEEDED"}), ElementsAre(mine));
+  EXPECT_THAT(listed({"--order-by", "priority"}), ElementsAre(mine, other));
+  EXPECT_THAT(Call({"list"}).out, HasSubstr(" bob "));
+  const Finished wrong = Call({"list", "--filter", "owner=bob AND colour=red"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err,
+              AllOf(HasSubstr("filter: at character 15: there is no field colour"), HasSubstr("labels.KEY")));
+
+  EXPECT_THAT(Call({"delete", "--filter", "state=SUCCEEDED", "--dry-run"}).out, HasSubstr("would delete " + mine));
+  EXPECT_EQ(listed({}).size(), 2u);
+  EXPECT_EQ(Call({"delete", "--filter", "state=SUCCEEDED AND age<1h"}).exit_code, 0);
+  EXPECT_THAT(listed({}), ElementsAre(other)) << "it is pinned";
+  EXPECT_EQ(Call({"delete"}).exit_code, 2);
+  EXPECT_EQ(Call({"delete", other, "--filter", "owner=bob"}).exit_code, 2);
+  EXPECT_EQ(Call({"delete", "--filter", "age>"}).exit_code, 2);
+  const json info = json::parse(Call({"info", "--json"}).out);
+  EXPECT_EQ(info["workers"], 2);
+  EXPECT_EQ(info["max_queued_jobs_per_owner"], 10000);
+  EXPECT_THAT(Call({"info"}).out, HasSubstr("queued"));
+}
+
+TEST_F(ServerTest, PausedJobsGoOnAndAWatchOfAllJobsTellsIt) {
+  ChildProcess watch({Program("fascicle"), "--server", address_, "list", "--watch", "--json"});
+  const std::string job = Submit(1000, 1000);
+  const auto wait_for = [&](const std::string& state) {
+    for (std::string line = watch.ReadLine(); !line.empty(); line = watch.ReadLine()) {
+      const json told = json::parse(line);
+      if (told.value("job", "") == job && told["state"] == state) return true;
+    }
+    return false;
+  };
+  ASSERT_TRUE(wait_for("running"));
+  EXPECT_EQ(Call({"pause", job}).exit_code, 0);
+  EXPECT_TRUE(wait_for("paused"));
+  EXPECT_EQ(Call({"delete", job}).exit_code, 2);
+  EXPECT_EQ(Call({"resume", job}).exit_code, 0);
+  EXPECT_TRUE(wait_for("running"));
+  EXPECT_EQ(Call({"cancel", job}).exit_code, 0);
+  EXPECT_TRUE(wait_for("cancelled"));
+  EXPECT_EQ(Call({"pause", job}).exit_code, 2);
+  EXPECT_EQ(Call({"resume", job}).exit_code, 2);
+  EXPECT_EQ(Call({"delete", job}).exit_code, 0);
+  EXPECT_EQ(json::parse(watch.ReadLine())["removed"], job);
+  watch.Signal(SIGINT);
+  EXPECT_EQ(watch.Wait().exit_code, 4);
+  for (const char* command : {"pause", "resume", "update"}) {
+    std::vector<std::string> arguments = {command, "jobs/none"};
+    if (arguments[0] == "update") arguments.emplace_back("--pin");
+    EXPECT_EQ(Call(arguments).exit_code, 2) << command;
   }
 }
 

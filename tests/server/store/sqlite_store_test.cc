@@ -6,12 +6,15 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <thread>
 
 #include "server/store/database.h"
 #include "server/store/group_commit.h"
+#include "server/store/job_tables.h"
 #include "server/store/store.h"
 #include "tests/support/files.h"
 #include "tests/support/store_samples.h"
@@ -120,6 +123,122 @@ TEST_F(SqliteStoreTest, JobsOfFormat1AreTakenOver) {
   }
   EXPECT_EQ(Open()->GetJob(id)->profile, "where");
   EXPECT_EQ(Open()->ListJobs(1, "", {}).at(0).profile, "where");
+}
+
+// control.db in format 4, with a copy: its jobs have neither owners nor revisions, and get revisions.
+TEST_F(SqliteStoreTest, JobsOfFormat4AreTakenOver) {
+  constexpr int kJobs = 300;
+  for (const char* file : {"control.db", "control.copy.db"}) {
+    Database old = OpenFormatted(directory_ / file, kControlApplicationId, ControlFormats().first(4));
+    for (int i = 0; i < kJobs; ++i) {
+      old.Execute(("INSERT INTO jobs VALUES ('" + SampleJob(i).id +
+                   "', NULL, x'01', 'old', 3, 5, x'', 1, 1, 5, 6, 7, 0.5, 0.25, 8, 9, 10, x'', x'', 0, -1, 0);"
+                   "INSERT INTO specs VALUES ('" +
+                   SampleJob(i).id + "', x'0203', 0)")
+                      .c_str());
+    }
+    old.Execute(
+        "UPDATE specs SET checksum = row_checksum(job_id, spec);"
+        "UPDATE jobs SET checksum = row_checksum(id, request_id, request_digest, scene_name, threads, state, failure, "
+        "attempt, generation, create_time_us, start_time_us, end_time_us, fraction, time, step, frame_count, "
+        "stored_bytes, profile, warnings, crash_score, crash_place)");
+    // A damage that was there before does not become the truth.
+    const bool is_main = std::string_view(file) == "control.db";
+    if (is_main) old.Execute(("UPDATE jobs SET scene_name = 'wrong' WHERE id = '" + SampleJob(7).id + "'").c_str());
+  }
+  std::int64_t revision = 0;
+  {
+    const std::unique_ptr<Store> store = Open();
+    revision = store->Revision();
+    EXPECT_GE(revision, kJobs);
+    const JobChanges changes = store->ChangesAfter(0, revision, 1000).value();
+    ASSERT_EQ(changes.changed.size(), std::size_t{kJobs});
+    for (int i = 0; i < kJobs; ++i) EXPECT_EQ(changes.changed[static_cast<std::size_t>(i)].id, SampleJob(i).id);
+    JobRecord job = *store->GetJob(SampleJob(5).id);
+    EXPECT_EQ(job.spec, "\x02\x03");
+    EXPECT_EQ(job.owner, "");
+    EXPECT_EQ(store->GetJob(SampleJob(7).id)->scene_name, "old");
+    job.labels = {{"a", "b"}};
+    EXPECT_TRUE(store->UpdateSettings(job));
+    JobQuery query = {.limit = 10};
+    query.filter.groups = {{{.field = JobField::kLabel, .text = "b", .key = "a"}}};
+    ASSERT_EQ(store->FindJobs(query).size(), 1u);
+  }
+  EXPECT_TRUE(fs::exists(directory_ / "control.db.damaged-1"));
+  EXPECT_TRUE(fs::exists(directory_ / "control.db.format-4.backup"));
+  EXPECT_EQ(Open()->Revision(), revision + 1);
+}
+
+// Revisions go on where they were, and deletions are remembered, over restarts.
+TEST_F(SqliteStoreTest, ChangesAreToldAfterReopening) {
+  std::int64_t before = 0;
+  {
+    const std::unique_ptr<Store> store = Open();
+    for (int i = 1; i <= 2; ++i) store->CreateJob(SampleJob(i), &existing_);
+    before = store->Revision();
+    store->DeleteJob(SampleJob(2).id);
+  }
+  const std::unique_ptr<Store> store = Open();
+  EXPECT_EQ(store->Revision(), before + 1);
+  store->UpdateJob(SampleJob(1));
+  const JobChanges changes = *store->ChangesAfter(before, 0, 10);
+  ASSERT_EQ(changes.changed.size(), 1u);
+  ASSERT_EQ(changes.deleted.size(), 1u);
+  EXPECT_EQ(changes.deleted.front(), SampleJob(2).id);
+}
+
+// After a damage it is not known which jobs were deleted: who watched before must begin anew.
+TEST_F(SqliteStoreTest, ADamagedControlDatabaseGivesNoRevisionTwice) {
+  std::int64_t before = 0;
+  {
+    const std::unique_ptr<Store> store = Open();
+    for (int i = 1; i <= 2; ++i) store->CreateJob(SampleJob(i), &existing_);
+    store->DeleteJob(SampleJob(2).id);
+    before = store->Revision();
+  }
+  fs::resize_file(directory_ / "control.db", 5000);
+  const std::unique_ptr<Store> store = Open();
+  EXPECT_TRUE(store->GetJob(SampleJob(1).id).has_value());
+  EXPECT_GT(store->Revision(), before);
+  EXPECT_FALSE(store->ChangesAfter(before, 0, 10).has_value());
+  EXPECT_EQ(store->ChangesAfter(0, store->Revision(), 10)->changed.size(), 1u);
+}
+
+// Many threads change jobs while others read what has changed: nobody misses a change.
+TEST_F(SqliteStoreTest, ReadersOfChangesMissNone) {
+  constexpr int kWriters = 4, kJobs = 40;
+  const std::unique_ptr<Store> store = Open();
+  std::atomic<int> writers = kWriters;
+  std::vector<std::thread> threads;
+  for (int t = 0; t < kWriters; ++t) {
+    threads.emplace_back([&, t] {
+      for (int i = 0; i < kJobs; ++i) {
+        JobRecord existing, job = SampleJob(t * kJobs + i);
+        store->CreateJob(job, &existing);
+        job.step = 1;
+        store->UpdateJob(job);
+        if (i % 3 == 0) store->DeleteJob(job.id);
+      }
+      --writers;
+    });
+  }
+  std::map<std::string, std::int64_t> known;
+  std::int64_t revision = 0;
+  for (bool is_last = false; !is_last;) {
+    is_last = writers == 0;
+    while (true) {
+      const JobChanges changes = *store->ChangesAfter(revision, 0, 7);
+      for (const JobRecord& job : changes.changed) known[job.id] = job.step;
+      for (const std::string& id : changes.deleted) known.erase(id);
+      if (changes.revision == revision) break;
+      revision = changes.revision;
+    }
+  }
+  for (std::thread& thread : threads) thread.join();
+  std::map<std::string, std::int64_t> expected;
+  for (const JobRecord& job : store->ListJobs(1000, "", {})) expected[job.id] = job.step;
+  EXPECT_EQ(known, expected);
+  EXPECT_EQ(known.size(), std::size_t{kWriters * (kJobs - (kJobs + 2) / 3)});
 }
 
 TEST_F(SqliteStoreTest, DeletingAJobRemovesItsFile) {

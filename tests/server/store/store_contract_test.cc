@@ -2,7 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <iterator>
+#include <numeric>
+#include <random>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -59,13 +63,190 @@ void ExpectEqual(const JobRecord& a, const JobRecord& b) {
   EXPECT_EQ(a.step, b.step);
   EXPECT_EQ(a.frame_count, b.frame_count);
   EXPECT_EQ(a.stored_bytes, b.stored_bytes);
+  EXPECT_EQ(a.owner, b.owner);
+  EXPECT_EQ(a.labels, b.labels);
+  EXPECT_EQ(a.priority, b.priority);
+  EXPECT_EQ(a.ttl_s, b.ttl_s);
+  EXPECT_EQ(a.is_pinned, b.is_pinned);
+  EXPECT_EQ(a.first_frame, b.first_frame);
 }
 
 TEST_P(StoreContract, KeepsEveryFieldOfAJob) {
   JobRecord job = SampleJob(1);
   job.request_id = "a request";
+  job.owner = "ann";
+  job.labels = {{"a", ""}, {"b.c", "x = y"}};
+  job.priority = -3;
+  job.ttl_s = 12;
+  job.is_pinned = true;
+  job.first_frame = 4;
   ASSERT_TRUE(store_->CreateJob(job, &existing_));
   ExpectEqual(store_->GetJob(job.id).value(), job);
+  ExpectEqual(store_->FindRequest("a request").value(), job);
+  EXPECT_FALSE(store_->FindRequest("another").has_value());
+  EXPECT_FALSE(store_->FindRequest("").has_value());
+}
+
+// State and settings are changed by different threads, each of which has read the record before.
+TEST_P(StoreContract, UpdatesOfStateAndSettingsDoNotUndoEachOther) {
+  JobRecord job = SampleJob(1);
+  job.owner = "ann";
+  ASSERT_TRUE(store_->CreateJob(job, &existing_));
+  JobRecord state = job, settings = job;
+  state.state = JobState::kRunning;
+  settings.labels = {{"a", "b"}};
+  settings.priority = 7;
+  settings.is_pinned = true;
+  settings.ttl_s = 60;
+  store_->UpdateJob(state);
+  EXPECT_TRUE(store_->UpdateSettings(settings));
+  state.frame_count = 3;
+  store_->UpdateJob(state);
+  const JobRecord found = *store_->GetJob(job.id);
+  EXPECT_EQ(found.state, JobState::kRunning);
+  EXPECT_EQ(found.frame_count, 3);
+  EXPECT_EQ(found.labels, settings.labels);
+  EXPECT_EQ(found.priority, 7);
+  EXPECT_TRUE(found.is_pinned);
+  EXPECT_EQ(found.ttl_s, 60);
+  EXPECT_EQ(found.owner, "ann");
+  EXPECT_FALSE(store_->UpdateSettings(SampleJob(2)));
+}
+
+constexpr const char* kKeys[] = {"l", "kl", "l.k", "m"};  // parts of each other
+
+// A job whose fields are chosen at random from few values, so that many jobs are equal in some.
+JobRecord RandomJob(int number, std::mt19937& random) {
+  JobRecord job = SampleJob(number);
+  const auto pick = [&](unsigned count) { return static_cast<int>(random() % count); };
+  job.state = static_cast<JobState>(1 + pick(9));
+  job.owner = std::string(1, static_cast<char>('a' + pick(3)));
+  job.scene_name = std::string(1, static_cast<char>('p' + pick(3))) + "%_'\"";
+  for (int i = pick(3); i > 0; --i) job.labels[kKeys[pick(3)]] = std::to_string(pick(2));
+  job.priority = pick(3) - 1;
+  job.start_time_us = pick(3) * 10;
+  job.end_time_us = pick(3) * 20;
+  job.ttl_s = pick(3);
+  job.stored_bytes = pick(4);
+  job.frame_count = pick(4);
+  job.is_pinned = pick(2) == 1;
+  return job;
+}
+
+JobCondition RandomCondition(std::mt19937& random) {
+  const auto pick = [&](unsigned count) { return static_cast<int>(random() % count); };
+  JobCondition condition;
+  condition.field = static_cast<JobField>(1 + pick(13));
+  condition.relation = static_cast<JobCondition::Relation>(pick(6));
+  condition.number = pick(4) * (pick(2) == 0 ? 1 : 10);
+  condition.is_negated = pick(4) == 0;
+  if (condition.field == JobField::kCreated) condition.number = SampleJob(pick(80)).create_time_us;
+  if (condition.field == JobField::kOwner) condition.text = std::string(1, static_cast<char>('a' + pick(4)));
+  if (condition.field == JobField::kName) condition.text = pick(2) == 0 ? "p%_'\"" : "_'";
+  if (IsText(condition.field)) condition.relation = static_cast<JobCondition::Relation>(pick(2));
+  if (IsText(condition.field) && pick(3) == 0) condition.relation = JobCondition::Relation::kContains;
+  if (condition.field == JobField::kLabel) {
+    condition.key = kKeys[pick(4)];
+    condition.text = std::to_string(pick(3));
+  }
+  return condition;
+}
+
+// Random filters and orders, by pages, against a look at every job.
+TEST_P(StoreContract, FindsTheJobsThatPassInTheirOrder) {
+  constexpr JobField kOrders[] = {JobField::kId,       JobField::kStarted,     JobField::kEnded,
+                                  JobField::kPriority, JobField::kStoredBytes, JobField::kFrames,
+                                  JobField::kOwner,    JobField::kName,        JobField::kState};
+  std::mt19937 random(17);
+  std::vector<JobRecord> jobs;
+  for (int i = 0; i < 80; ++i) {
+    jobs.push_back(RandomJob(i, random));
+    ASSERT_TRUE(store_->CreateJob(jobs.back(), &existing_));
+  }
+  std::size_t found_at_all = 0;
+  for (int round = 0; round < 150; ++round) {
+    JobQuery query;
+    for (auto groups = random() % 3; groups > 0; --groups) {
+      query.filter.groups.emplace_back();
+      for (auto terms = 1 + random() % 3; terms > 0; --terms) {
+        query.filter.groups.back().push_back(RandomCondition(random));
+      }
+    }
+    query.order = kOrders[random() % std::size(kOrders)];
+    query.is_descending = random() % 2 == 0;
+    query.limit = 7;
+    std::vector<JobPlace> expected;
+    for (const JobRecord& job : jobs) {
+      if (query.filter.Passes(job)) expected.push_back(PlaceOf(job, query.order));
+    }
+    std::sort(expected.begin(), expected.end(),
+              [&](const JobPlace& a, const JobPlace& b) { return IsBefore(query, a, b); });
+    std::vector<std::string> expected_ids, found_ids;
+    for (const JobPlace& place : expected) expected_ids.push_back(place.id);
+    while (true) {
+      const std::vector<JobRecord> page = store_->FindJobs(query);
+      for (const JobRecord& job : page) found_ids.push_back(job.id);
+      if (page.size() < 7) break;
+      query.after = PlaceOf(page.back(), query.order);
+      EXPECT_EQ(page.back().spec, "");
+    }
+    EXPECT_EQ(found_ids, expected_ids) << "round " << round;
+    found_at_all += found_ids.size();
+  }
+  EXPECT_GT(found_at_all, 2000u);
+  EXPECT_EQ(store_->StoredBytesOf("b"),
+            std::accumulate(jobs.begin(), jobs.end(), std::int64_t{0},
+                            [](auto sum, auto& job) { return sum + (job.owner == "b" ? job.stored_bytes : 0); }));
+  EXPECT_GT(store_->StoredBytesOf(std::nullopt), store_->StoredBytesOf("b"));
+}
+
+TEST_P(StoreContract, TellsEveryChangeAfterARevision) {
+  const auto ids = [](const std::vector<JobRecord>& jobs) {
+    std::vector<std::string> names;
+    for (const JobRecord& job : jobs) names.push_back(job.id);
+    return names;
+  };
+  for (int i = 1; i <= 4; ++i) store_->CreateJob(SampleJob(i), &existing_);
+  const std::int64_t begin = store_->Revision();
+  JobChanges all = *store_->ChangesAfter(0, 0, 100);
+  EXPECT_THAT(ids(all.changed), ElementsAre(SampleJob(1).id, SampleJob(2).id, SampleJob(3).id, SampleJob(4).id));
+  EXPECT_EQ(all.revision, begin);
+  EXPECT_EQ(all.changed.front().spec, "");
+  store_->UpdateJob(SampleJob(3));
+  store_->DeleteJob(SampleJob(2).id);
+  store_->UpdateSettings(SampleJob(1));
+  const JobChanges later = *store_->ChangesAfter(begin, 0, 100);
+  EXPECT_THAT(ids(later.changed), ElementsAre(SampleJob(3).id, SampleJob(1).id));
+  EXPECT_THAT(later.deleted, ElementsAre(SampleJob(2).id));
+  EXPECT_EQ(later.revision, store_->Revision());
+  EXPECT_EQ(later.changed.back().revision, store_->Revision());
+  // In parts: each change once, in order.
+  const JobChanges part = *store_->ChangesAfter(begin, 0, 1);
+  EXPECT_THAT(ids(part.changed), ElementsAre(SampleJob(3).id));
+  EXPECT_THAT(part.deleted, IsEmpty());
+  const JobChanges rest = *store_->ChangesAfter(part.revision, 0, 100);
+  EXPECT_THAT(ids(rest.changed), ElementsAre(SampleJob(1).id));
+  EXPECT_THAT(rest.deleted, ElementsAre(SampleJob(2).id));
+  // Who begins anew need not hear of deletions before.
+  EXPECT_THAT(store_->ChangesAfter(0, store_->Revision(), 100)->deleted, IsEmpty());
+  EXPECT_THAT(store_->ChangesAfter(store_->Revision(), 0, 100)->changed, IsEmpty());
+  EXPECT_FALSE(store_->ChangesAfter(store_->Revision() + 1, 0, 100).has_value());
+}
+
+TEST_P(StoreContract, FramesCanBeRemovedWhenNobodyReadsThem) {
+  std::shared_ptr<FrameStore> frames = MakeFrames();
+  const SampleFrame frame = MakeSampleFrame(0, 100);
+  frames->PutFrame(frame.record, frame.bytes, "checkpoint");
+  JobRecord job = SampleJob(1);
+  job.frame_count = job.first_frame = 1;
+  EXPECT_FALSE(store_->RemoveFrames(job));
+  EXPECT_EQ(store_->GetJob(job.id)->first_frame, 0);
+  EXPECT_EQ(ReadFrame(*frames, 0), frame.bytes);
+  frames.reset();
+  EXPECT_TRUE(store_->RemoveFrames(job));
+  EXPECT_EQ(store_->GetJob(job.id)->first_frame, 1);
+  EXPECT_EQ(store_->OpenFrames(job.id)->frame_count(), 0);
+  EXPECT_FALSE(NewestCheckpoint(*store_->OpenFrames(job.id)).has_value());
 }
 
 TEST_P(StoreContract, KnowsNoJobThatWasNotCreated) {
