@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <mutex>
 #include <stdexcept>
 #include <string_view>
@@ -86,6 +87,18 @@ std::unique_ptr<ResultStore> OpenResults(const ServerOptions& options) {
   return OpenResultDirectory(options.data_directory + "/results", options.cache_size);
 }
 
+CallLimit AtMost(CallLimit limit, int in_all) { return {in_all, std::min(limit.of_connection, in_all)}; }
+
+Limits LimitsOf(const ServerOptions& options) {
+  Limits limits;
+  limits.connections = options.connections;
+  limits.streams = AtMost(limits.streams, options.streams);
+  limits.uploads = AtMost(limits.uploads, options.uploads);
+  limits.idle_upload = options.idle_upload;
+  limits.silent_connection = options.silent_connection;
+  return limits;
+}
+
 class Server : public EmbeddedServer {
  public:
   explicit Server(const ServerOptions& options)
@@ -121,6 +134,7 @@ class Server : public EmbeddedServer {
     settings.default_threads = options.default_threads;
     settings.max_asset_size = options.max_asset_size;
     settings.job_memory = options.job_memory > 0 ? options.job_memory : MostMemory();
+    settings.limits = LimitsOf(options);
     settings.heartbeat_interval = options.heartbeat_interval;
     settings.progress_interval = options.progress_interval;
     return settings;

@@ -27,22 +27,20 @@ std::optional<Message> Parse(const grpc::ByteBuffer& bytes) {
   return message;
 }
 
-grpc::Status NotAMessage() { return InvalidArgument("", "the request is not the message type of this call"); }
-
 }  // namespace
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::GetGeometry(grpc::CallbackServerContext*,
+grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::GetGeometry(grpc::CallbackServerContext* call,
                                                                           const grpc::ByteBuffer* request) {
   const auto parsed = Parse<v1::GetGeometryRequest>(*request);
   if (!parsed) return new EndedStream(NotAMessage());
-  return OutStream::Launch(std::make_shared<GeometryStream>(context_, parsed->name()));
+  return OutStream::Launch(*call, std::make_shared<GeometryStream>(context_, parsed->name()));
 }
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::StreamFrames(grpc::CallbackServerContext*,
+grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::StreamFrames(grpc::CallbackServerContext* call,
                                                                            const grpc::ByteBuffer* request) {
   auto parsed = Parse<v1::StreamFramesRequest>(*request);
   if (!parsed) return new EndedStream(NotAMessage());
-  return OutStream::Launch(std::make_shared<FrameStream>(context_, std::move(*parsed)));
+  return OutStream::Launch(*call, std::make_shared<FrameStream>(context_, std::move(*parsed)));
 }
 
 grpc::ServerUnaryReactor* FrameServiceImpl::ListFrames(grpc::CallbackServerContext* call,

@@ -29,13 +29,7 @@ grpc::Status BadJobName() { return InvalidArgument("name", "must be jobs/{id}");
 
 grpc::ServerUnaryReactor* JobServiceImpl::CreateJob(grpc::CallbackServerContext* call,
                                                     const v1::CreateJobRequest* request, v1::Job* response) {
-  constexpr std::size_t kMostWaiting = 64;
-  if (context_.slow.pending() > kMostWaiting) {
-    grpc::ServerUnaryReactor* reactor = call->DefaultReactor();
-    reactor->Finish(Unavailable("OVERLOADED", "too many jobs are being submitted", std::chrono::seconds(2)));
-    return reactor;
-  }
-  return RunStoppable(context_, context_.slow, "CreateJob",
+  return RunStoppable(context_, context_.slow, call, "CreateJob",
                       [this, request, response, limit = DetailsLimit(*call)](const std::stop_token& stop) {
                         return Create(*request, *response, limit, stop);
                       });
@@ -109,7 +103,7 @@ std::shared_ptr<const Scene> JobServiceImpl::Translate(const v1::Scene& scene, P
 
 grpc::ServerUnaryReactor* JobServiceImpl::GetJob(grpc::CallbackServerContext* call, const v1::GetJobRequest* request,
                                                  v1::Job* response) {
-  return RunUnary(context_, context_.quick, call, "GetJob", [this, request, response] {
+  return RunUnary(context_, context_.kept, call, "GetJob", [this, request, response] {
     const std::optional<std::string> id = ParseJobName(request->name());
     if (!id) return BadJobName();
     const std::optional<JobView> view = context_.jobs.Get(*id);
@@ -121,7 +115,7 @@ grpc::ServerUnaryReactor* JobServiceImpl::GetJob(grpc::CallbackServerContext* ca
 
 grpc::ServerUnaryReactor* JobServiceImpl::ListJobs(grpc::CallbackServerContext* call,
                                                    const v1::ListJobsRequest* request, v1::ListJobsResponse* response) {
-  return RunUnary(context_, context_.quick, call, "ListJobs",
+  return RunUnary(context_, context_.kept, call, "ListJobs",
                   [this, request, response] { return List(*request, *response); });
 }
 
@@ -160,7 +154,7 @@ grpc::Status JobServiceImpl::List(const v1::ListJobsRequest& request, v1::ListJo
 
 grpc::ServerUnaryReactor* JobServiceImpl::CancelJob(grpc::CallbackServerContext* call,
                                                     const v1::CancelJobRequest* request, v1::Job* response) {
-  return RunUnary(context_, context_.quick, call, "CancelJob", [this, request, response] {
+  return RunUnary(context_, context_.kept, call, "CancelJob", [this, request, response] {
     const std::optional<std::string> id = ParseJobName(request->name());
     if (!id) return BadJobName();
     const std::optional<JobView> view = context_.jobs.Cancel(*id);
@@ -208,9 +202,10 @@ grpc::ServerUnaryReactor* JobServiceImpl::RestartJob(grpc::CallbackServerContext
   });
 }
 
-grpc::ServerUnaryReactor* JobServiceImpl::VerifyJob(grpc::CallbackServerContext*, const v1::VerifyJobRequest* request,
+grpc::ServerUnaryReactor* JobServiceImpl::VerifyJob(grpc::CallbackServerContext* call,
+                                                    const v1::VerifyJobRequest* request,
                                                     v1::VerifyJobResponse* response) {
-  return RunStoppable(context_, context_.slow, "VerifyJob", [this, request, response](const std::stop_token& stop) {
+  return RunStoppable(context_, context_.checks, call, "VerifyJob", [this, request, response](const std::stop_token& stop) {
     const std::optional<std::string> id = ParseJobName(request->name());
     if (!id) return BadJobName();
     const std::optional<JobCheck> check = context_.jobs.Verify(*id, stop);

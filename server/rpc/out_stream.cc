@@ -4,9 +4,16 @@
 
 namespace fascicle::server {
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* OutStream::Launch(std::shared_ptr<OutStream> stream) {
+grpc::ServerWriteReactor<grpc::ByteBuffer>* OutStream::Launch(const grpc::CallbackServerContext& call,
+                                                              std::shared_ptr<OutStream> stream) {
   OutStream* reactor = stream.get();
   reactor->self_ = stream;
+  Connections::Entry entry = reactor->context_.connections.Enter(call.peer(), CallKind::kStream);
+  if (!entry.status.ok()) {
+    reactor->Abort(entry.status);
+    return reactor;
+  }
+  reactor->place_ = std::move(entry.place);
   const std::weak_ptr<OutStream> weak = stream;
   const bool added = reactor->context_.streams.Add(reactor, [weak](const grpc::Status& status) {
     if (const auto open = weak.lock()) open->Abort(status);

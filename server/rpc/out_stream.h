@@ -25,7 +25,8 @@ class OutStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std:
   OutStream(RpcContext& context, const char* method) : context_(context), method_(method) {}
 
   // Starts filling. Returns the reactor for gRPC, which lives until the call is done.
-  static grpc::ServerWriteReactor<grpc::ByteBuffer>* Launch(std::shared_ptr<OutStream> stream);
+  static grpc::ServerWriteReactor<grpc::ByteBuffer>* Launch(const grpc::CallbackServerContext& call,
+                                                            std::shared_ptr<OutStream> stream);
 
   // Call when there may be more to send: runs Fill on the executor. Any thread.
   void Wake();
@@ -60,6 +61,7 @@ class OutStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std:
 
   const char* const method_;
   std::shared_ptr<OutStream> self_;  // until OnDone
+  Connections::Place place_;
 
   mutable std::mutex mutex_;
   std::deque<grpc::ByteBuffer> ready_;
