@@ -75,6 +75,7 @@ std::int64_t MostMemory() {
 JobManagerOptions JobOptions(const ServerOptions& options, const std::shared_ptr<spdlog::logger>& log) {
   JobManagerOptions result = {options.workers, options.default_threads, options.checkpoint_interval};
   result.on_event = [log](const JobRecord& job, std::string_view event) { LogEvent(*log, job, event); };
+  result.niceness = options.niceness;
   if (!options.record_crashes || options.data_directory.empty()) return result;
   const std::string crashes = options.data_directory + "/crashes";
   result.crashes = TakeCrashes(crashes);

@@ -17,6 +17,7 @@ struct ServerOptions {
   std::string data_directory;          // empty: in memory
   int workers = 2;                     // 0: jobs stay in the queue, for a server that only reads
   int default_threads = 1;
+  int niceness = 0;  // of the threads that run jobs, beyond that of the process: others are answered sooner then
   bool record_crashes = false;  // in the data directory, for the next start; changes signal handlers of the process
   bool allow_remote = false;    // whether addresses other than loopback are allowed
 

@@ -12,6 +12,7 @@
 #include "server/jobs/crash_marks.h"
 #include "server/jobs/job_id.h"
 #include "server/jobs/job_run.h"
+#include "server/jobs/lower_priority.h"
 #include "server/jobs/notifier.h"
 #include "server/jobs/verify_job.h"
 
@@ -147,6 +148,7 @@ struct JobManager::Impl {
   }
 
   void Work() {
+    LowerPriority(options.niceness);
     while (const std::shared_ptr<ActiveJob> job = TakeNext()) {
       const JobOnThisThread mark(job->id());
       RunJob({store, codec, options, drain.get_token()}, *job, [this, &job] { notifier.Notify(job->id()); });

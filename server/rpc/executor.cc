@@ -3,10 +3,17 @@
 #include <exception>
 #include <utility>
 
+#include "server/jobs/lower_priority.h"
+
 namespace fascicle::server {
 
-Executor::Executor(int threads, OnError on_error) : on_error_(std::move(on_error)) {
-  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Work(); });
+Executor::Executor(int threads, OnError on_error, int niceness) : on_error_(std::move(on_error)) {
+  for (int i = 0; i < threads; ++i) {
+    threads_.emplace_back([this, niceness] {
+      LowerPriority(niceness);
+      Work();
+    });
+  }
 }
 
 Executor::~Executor() {

@@ -20,8 +20,9 @@ class Executor {
   using Task = std::function<void()>;
   using OnError = std::function<void(const std::string& what)>;
 
-  // `on_error` receives exceptions that escape from a task; it must not throw.
-  Executor(int threads, OnError on_error);
+  // `on_error` receives exceptions that escape from a task; it must not throw. `niceness` is that of the threads, beyond
+  // that of the process.
+  Executor(int threads, OnError on_error, int niceness = 0);
   // Runs the tasks posted without delay, drops delayed ones, and joins the threads.
   ~Executor();
   Executor(const Executor&) = delete;

@@ -18,6 +18,7 @@
 #include "server/rpc/limits.h"
 #include "server/rpc/open_streams.h"
 #include "server/rpc/running_checks.h"
+#include "server/rpc/turnstile.h"
 #include "server/store/store.h"
 #include "server/translate/result_cache.h"
 
@@ -41,10 +42,12 @@ struct RpcContext {
   ResultCache& results;
   Executor& kept;     // the calls that have a place when all else is busy
   Executor& quick;    // reads and short writes
+  Executor& streaming;  // filling streams
   Executor& slow;     // translation of scenes
   Executor& uploads;  // of assets
   Executor& checks;   // comparing stored jobs with their checksums
   OpenStreams& streams;
+  Turnstile& turnstile;
   Connections& connections;
   RunningChecks& running_checks;
   spdlog::logger& log;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <mutex>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include <grpc/grpc.h>
@@ -35,7 +36,9 @@ constexpr int kShortestPingInterval = 10'000;  // [ms]
 constexpr int kLongestIdle = 600'000;          // [ms]; connections without a call for longer are closed
 
 constexpr int kKeptThreads = 2;
-constexpr int kQuickThreads = 4;
+constexpr int kQuickThreads = 2;
+constexpr int kStreamingThreads = 4;
+constexpr int kStreamingNiceness = 5;  // small answers first
 constexpr int kSlowThreads = 2;
 constexpr int kUploadThreads = 2;
 constexpr int kCheckThreads = 1;
@@ -70,8 +73,8 @@ struct RpcServer::Impl {
        const RpcSettings& settings)
       : logger(std::move(log)),
         connections(Fitting(settings).limits, *logger),
-        context{store,  jobs, results, kept,        quick,          slow,    uploads,
-                checks, streams, connections, running_checks, *logger, Fitting(settings)} {}
+        context{store,  jobs, results, kept, quick, streaming, slow, uploads,
+                checks, streams, turnstile, connections, running_checks, *logger, Fitting(settings)} {}
 
   // Every second: reports whether jobs can be accepted (while the store has a problem, only what is stored is served),
   // stops checks that take too long, and returns memory.
@@ -106,10 +109,12 @@ struct RpcServer::Impl {
   FrameServiceImpl frame_service{context};
   ServerServiceImpl server_service{context};
   grpc::CallbackGenericService other_methods;  // refuses them
+  Turnstile turnstile{streaming, 2 * std::max(1u, std::thread::hardware_concurrency())};
   // Destroyed in reverse order: every call ends, then the last tasks of the executors, then the objects they use.
   const Executor::OnError on_error = [this](const std::string& what) { logger->error("executor: {}", what); };
   Executor kept{kKeptThreads, on_error};
   Executor quick{kQuickThreads, on_error};
+  Executor streaming{kStreamingThreads, on_error, kStreamingNiceness};
   Executor slow{kSlowThreads, on_error};
   Executor uploads{kUploadThreads, on_error};
   Executor checks{kCheckThreads, on_error};
