@@ -21,6 +21,7 @@ class CallWatch : public grpc::experimental::Interceptor {
  public:
   CallWatch(Connections& connections, grpc::experimental::ServerRpcInfo& info)
       : connections_(connections),
+        info_(info),
         method_(info.method()),
         connection_(connections.BeginCall(info.server_context()->peer())) {}
   ~CallWatch() override { connections_.EndCall(connection_); }
@@ -28,6 +29,10 @@ class CallWatch : public grpc::experimental::Interceptor {
   void Intercept(grpc::experimental::InterceptorBatchMethods* methods) override {
     if (methods->QueryInterceptionHookPoint(grpc::experimental::InterceptionHookPoints::PRE_SEND_STATUS)) {
       Explain(*methods);
+    }
+    if (methods->QueryInterceptionHookPoint(grpc::experimental::InterceptionHookPoints::POST_RECV_CLOSE) &&
+        info_.server_context()->IsCancelled()) {
+      connections_.NoteReset(connection_);
     }
     methods->Proceed();
   }
@@ -41,6 +46,7 @@ class CallWatch : public grpc::experimental::Interceptor {
   }
 
   Connections& connections_;
+  grpc::experimental::ServerRpcInfo& info_;
   const std::string method_;
   const Connections::Handle connection_;
 };

@@ -15,6 +15,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kReservedConnections = 16;  // beyond the limit, for kept calls
 constexpr std::chrono::seconds kShortestIdle(5);
+// A connection may reset many calls at once, for example when its user closes a window, and some all the time.
+constexpr double kMostResets = 400;
+constexpr double kResetsPerSecond = 100;
 // HTTP/2 allows a connection 256 calls at once; more are unfinished only if it resets them.
 constexpr int kMostUnfinished = 1024;       // of a connection
 constexpr int kManyUnfinished = 8192;       // in all
@@ -64,6 +67,8 @@ struct Connections::Connection {
   std::int64_t calls = 0;
   std::array<int, kCallKinds> used = {};
   Clock::time_point last_use = Clock::now();
+  double resets = 0;  // not forgiven yet
+  Clock::time_point last_reset = last_use;
 };
 
 Connections::Connections(const Limits& limits, spdlog::logger& log)
@@ -113,7 +118,7 @@ void Connections::EndSilent() {
   silent_ += static_cast<int>(silent.size());
   if ((flooding_ == 0 && silent_ == 0) || now - last_line_ < std::chrono::seconds(10)) return;
   last_line_ = now;
-  if (flooding_ > 0) log_.warn("{} connections ended: they started calls faster than these can end", flooding_);
+  if (flooding_ > 0) log_.warn("{} connections ended: they reset calls or started too many", flooding_);
   if (silent_ > 0) log_.info("{} connections ended: they made no call", silent_);
   flooding_ = silent_ = 0;
 }
@@ -126,11 +131,17 @@ Connections::Handle Connections::BeginCall(const std::string& peer) {
   ++connection->calls;
   connection->last_use = Clock::now();
   const int most = unfinished_ > kManyUnfinished ? kMostUnfinishedOfMany : kMostUnfinished;
-  if (connection->unfinished > most && !connection->ended) {
-    End(connection);
-    ++flooding_;
-  }
+  if (connection->unfinished > most) EndFlood(connection);
   return connection;
+}
+
+void Connections::NoteReset(const Handle& connection) {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  const double forgiven = kResetsPerSecond * std::chrono::duration<double>(now - connection->last_reset).count();
+  connection->resets = std::max(0.0, connection->resets - forgiven) + 1;
+  connection->last_reset = now;
+  if (connection->resets > kMostResets) EndFlood(connection);
 }
 
 void Connections::EndCall(const Handle& connection) {
@@ -166,10 +177,20 @@ Connections::Handle Connections::Find(const std::string& peer) const {
 
 void Connections::End(const Handle& connection) {
   connection->ended = true;
-  if (connection->socket >= 0) shutdown(connection->socket, SHUT_RDWR);
+  if (connection->socket >= 0) {
+    shutdown(connection->socket, SHUT_RDWR);
+    while (recv(connection->socket, nullptr, 1 << 24, MSG_TRUNC | MSG_DONTWAIT) > 0) {  // what gRPC would still read
+    }
+  }
   // Another one may have the name by now: gRPC has closed its descriptor.
   const auto found = by_peer_.find(connection->peer);
   if (found != by_peer_.end() && found->second == connection) by_peer_.erase(found);
+}
+
+void Connections::EndFlood(const Handle& connection) {
+  if (connection->ended) return;
+  End(connection);
+  ++flooding_;
 }
 
 }  // namespace fascicle::server

@@ -45,9 +45,11 @@ class Connections {
   // Ends connections that never made a call, and logs what was ended. Call every second.
   void EndSilent();
 
-  // A call of `peer` (as gRPC names it) from its first byte to its end, whether served or not. A connection that starts
-  // calls faster than they can end is ended: gRPC 1.51 keeps 12 KB of each call that is reset, until it can write.
+  // A call of `peer` (as gRPC names it), whether served or not. A connection that resets many calls, or starts more than
+  // can end, is ended: gRPC 1.51 keeps 12 KB of each until it has time for it, and all others wait behind them.
   Handle BeginCall(const std::string& peer);
+  // Its client has given it up.
+  void NoteReset(const Handle& connection);
   void EndCall(const Handle& connection);
 
   // A place for a call of `peer`.
@@ -57,6 +59,7 @@ class Connections {
   // The functions below need `mutex_`.
   Handle Find(const std::string& peer) const;
   void End(const Handle& connection);
+  void EndFlood(const Handle& connection);
 
   const Limits limits_;
   spdlog::logger& log_;

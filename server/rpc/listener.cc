@@ -23,6 +23,8 @@ namespace fascicle::server {
 namespace {
 
 constexpr int kBacklog = 1024;
+// Bytes that wait for gRPC on a connection (the kernel doubles it): it reads all that is there before it works on it.
+constexpr int kReceiveBuffer = 128 << 10;
 
 using Addresses = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
 
@@ -61,6 +63,7 @@ int ListenOn(const addrinfo& info) {
   const int on = 1;
   setsockopt(found, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   if (info.ai_family == AF_INET6) setsockopt(found, IPPROTO_IPV6, IPV6_V6ONLY, &on, sizeof on);
+  setsockopt(found, SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof kReceiveBuffer);  // accepted sockets inherit it
   if (bind(found, info.ai_addr, info.ai_addrlen) == 0 && listen(found, kBacklog) == 0) return found;
   close(found);
   return -1;

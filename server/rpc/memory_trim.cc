@@ -27,12 +27,10 @@ void MemoryTrim::Look() {
   }
   const std::int64_t resident = Resident();
   if (least_ == 0 || resident < least_) least_ = resident;
-  if (!again_ && resident < least_ + kMuch) return;
+  if (resident < least_ + kMuch) return;
 #ifdef __GLIBC__
   malloc_trim(0);
 #endif
-  least_ = Resident();
-  again_ = resident - least_ > kMuch / 4;
   rest_ = kRest;
 }
 

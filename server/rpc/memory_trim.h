@@ -13,8 +13,7 @@ class MemoryTrim {
   void Look();
 
  private:
-  std::int64_t least_ = 0;  // resident memory when least was resident since the last trim [byte]
-  bool again_ = false;      // the last trim returned so much that another may, too
+  std::int64_t least_ = 0;  // resident memory when it was least [byte]
   int rest_ = 0;            // calls to skip
 };
 

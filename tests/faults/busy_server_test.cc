@@ -33,9 +33,10 @@ class BusyServerTest : public ::testing::Test {
     stored_ = stubs_->Submit(LargeFrames(6));  // 16 MiB
     ASSERT_TRUE(stubs_->AwaitState(stored_, v1::Job::STATE_SUCCEEDED, 120s));
   }
-  // Jobs that keep all workers busy.
+  // Jobs that keep all workers busy; the first stores a frame now and then, the others many.
   void Solve() {
-    for (int i = 0; i < kWorkers; ++i) solving_.push_back(stubs_->Submit(LargeSteps(100'000)));
+    solving_.push_back(stubs_->Submit(SwingingBox(1e5, 1)));
+    while (solving_.size() < kWorkers) solving_.push_back(stubs_->Submit(LargeSteps(100'000)));
     for (const std::string& job : solving_) ASSERT_TRUE(stubs_->AwaitFrames(job, 1));
   }
   // Steps made by all solving jobs so far.
@@ -70,6 +71,57 @@ TEST_F(BusyServerTest, EverybodyIsAnswered) {
   EXPECT_GT(streams.bytes(), bytes);
   EXPECT_LE(health.Quantile(0.99), 0.05 * Allowance());
   EXPECT_LE(get.Quantile(0.99), 0.1 * Allowance());
+}
+
+// [byte/s] and [steps/s], over `span`.
+struct Rates {
+  double bytes = 0, steps = 0;
+};
+
+class ReadersTest : public BusyServerTest {
+ protected:
+  // The speed of ten readers and of the solving jobs at present.
+  Rates Measure(const StreamClients& fast) {
+    const std::int64_t bytes = fast.bytes(), steps = Steps();
+    std::this_thread::sleep_for(Span());
+    const double seconds = std::chrono::duration<double>(Span()).count();
+    return {static_cast<double>(fast.bytes() - bytes) / seconds, static_cast<double>(Steps() - steps) / seconds};
+  }
+  // Ten fast readers beside `count` others, and without them.
+  void Compare(const v1::StreamFramesRequest& request, int count, bool stalled, const char* what) {
+    const StreamClients fast(address_, AllFramesOf(stored_), 10);
+    std::this_thread::sleep_for(500ms);
+    const Rates alone = Measure(fast);
+    const std::int64_t before = server_.ResidentBytes();
+    Rates beside;
+    double each = 0;
+    {
+      const StreamClients others(address_, request, count, stalled);
+      std::this_thread::sleep_for(1s);
+      beside = Measure(fast);
+      each = static_cast<double>(server_.ResidentBytes() - before) / count / (1 << 20);
+      EXPECT_EQ(others.failures(), 0);
+    }
+    const Rates after = Measure(fast);  // the machine may have become slower or faster meanwhile
+    const double bytes = beside.bytes / (0.5 * (alone.bytes + after.bytes));
+    const double steps = beside.steps / (0.5 * (alone.steps + after.steps));
+    std::printf("beside %d %s: fast readers at %.0f %% of %.0f MB/s alone, solving at %.0f %%, %.2f MiB for each\n", count,
+                what, 100 * bytes, 1e-6 * alone.bytes, 100 * steps, each);
+    EXPECT_EQ(fast.failures(), 0);
+    EXPECT_LE(each, 8);
+    EXPECT_GE(bytes, 0.8 / Allowance());
+    EXPECT_GE(steps, 0.95 / Allowance());
+  }
+};
+
+TEST_F(ReadersTest, StalledOnesCostLittle) {
+  Solve();
+  Compare(AllFramesOf(stored_), IsRelease() ? 100 : 20, true, "stalled readers");
+}
+
+TEST_F(ReadersTest, WatchersOfOneJobCostLittle) {
+  Solve();
+  Compare(AllFramesOf(solving_[0]), IsRelease() ? 500 : 100, false, "watchers of a job");
 }
 
 }  // namespace
