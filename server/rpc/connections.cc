@@ -15,6 +15,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kReservedConnections = 16;  // beyond the limit, for kept calls
 constexpr std::chrono::seconds kShortestIdle(5);
+constexpr int kUploadBuffer = 1 << 20;  // bytes that may wait for gRPC once files are uploaded; see listener.cc
 // A connection may reset many calls at once, for example when its user closes a window, and some all the time.
 constexpr double kMostResets = 400;
 constexpr double kResetsPerSecond = 100;
@@ -162,6 +163,9 @@ Connections::Entry Connections::Enter(const std::string& peer, CallKind kind) {
   if (used_[i] >= limit.in_all) return {nullptr, NoneLeft(kind, limit.in_all)};
   ++connection->used[i];
   ++used_[i];
+  if (kind == CallKind::kUpload) {
+    setsockopt(connection->socket, SOL_SOCKET, SO_RCVBUF, &kUploadBuffer, sizeof kUploadBuffer);
+  }
   const auto leave = [this, connection, i](void*) {
     const std::lock_guard leaving(mutex_);
     --connection->used[i];

@@ -17,7 +17,7 @@ using fascicle::testing::TemporaryFolder;
 
 bool IsRelease() { return std::getenv("FASCICLE_BUSY_SECONDS") != nullptr; }
 std::chrono::milliseconds Span() {
-  return IsRelease() ? std::chrono::seconds(std::atoi(std::getenv("FASCICLE_BUSY_SECONDS"))) : 2500ms;
+  return IsRelease() ? std::chrono::seconds(std::atoi(std::getenv("FASCICLE_BUSY_SECONDS"))) : 1500ms;
 }
 // Other programs may use the machine of a short run.
 double Allowance() { return IsRelease() ? 1 : 4; }
@@ -30,12 +30,12 @@ class BusyServerTest : public ::testing::Test {
     address_ = server_.AwaitAddress();
     ASSERT_NE(address_, "");
     stubs_.emplace(address_);
-    stored_ = stubs_->Submit(LargeFrames(6));  // 16 MiB
+    stored_ = stubs_->Submit(LargeFrames(4));  // 11 MiB
     ASSERT_TRUE(stubs_->AwaitState(stored_, v1::Job::STATE_SUCCEEDED, 120s));
   }
   // Jobs that keep all workers busy; the first stores a frame now and then, the others many.
   void Solve() {
-    solving_.push_back(stubs_->Submit(SwingingBox(1e5, 1)));
+    solving_.push_back(stubs_->Submit(SwingingBox(1000, 1)));
     while (solving_.size() < kWorkers) solving_.push_back(stubs_->Submit(LargeSteps(100'000)));
     for (const std::string& job : solving_) ASSERT_TRUE(stubs_->AwaitFrames(job, 1));
   }

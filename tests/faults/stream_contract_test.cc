@@ -131,7 +131,7 @@ TEST(StreamContract, HoldsForEveryHistory) {
   std::vector<std::string> jobs;
   {
     Stubs stubs(listen);
-    const int frames = 300 + Disconnects();
+    const int frames = 100 + Disconnects() / 2;
     for (int i = 0; i < kJobs; ++i) jobs.push_back(stubs.Submit(LargeSteps(frames)));
   }
   std::atomic<int> cuts = Disconnects();
@@ -148,7 +148,7 @@ TEST(StreamContract, HoldsForEveryHistory) {
   int restarts = 0;
   while (left > 0) {
     std::this_thread::sleep_for(std::chrono::milliseconds(700 + random() % 1500));
-    if (left == 0 || restarts >= 3 + Disconnects() / 50) continue;
+    if (left == 0 || restarts >= 2 + Disconnects() / 50) continue;
     ++restarts;
     server->Signal(restarts % 2 == 0 ? SIGTERM : SIGKILL);
     ASSERT_TRUE(server->Wait(10s).has_value());
