@@ -17,6 +17,9 @@ bool IsKnown(const std::string& method) {
   return google::protobuf::DescriptorPool::generated_pool()->FindMethodByName(name) != nullptr;
 }
 
+// gRPC's reflection is served by threads of its own, where IsCancelled would call the interceptors again, without end.
+bool HasThread(const std::string& method) { return method.starts_with("/grpc.reflection."); }
+
 class CallWatch : public grpc::experimental::Interceptor {
  public:
   CallWatch(Connections& connections, grpc::experimental::ServerRpcInfo& info)
@@ -31,7 +34,7 @@ class CallWatch : public grpc::experimental::Interceptor {
       Explain(*methods);
     }
     if (methods->QueryInterceptionHookPoint(grpc::experimental::InterceptionHookPoints::POST_RECV_CLOSE) &&
-        info_.server_context()->IsCancelled()) {
+        !HasThread(method_) && info_.server_context()->IsCancelled()) {
       connections_.NoteReset(connection_);
     }
     methods->Proceed();

@@ -17,7 +17,7 @@ using fascicle::testing::TemporaryFolder;
 
 bool IsRelease() { return std::getenv("FASCICLE_BUSY_SECONDS") != nullptr; }
 std::chrono::milliseconds Span() {
-  return IsRelease() ? std::chrono::seconds(std::atoi(std::getenv("FASCICLE_BUSY_SECONDS"))) : 1500ms;
+  return IsRelease() ? std::chrono::seconds(std::atoi(std::getenv("FASCICLE_BUSY_SECONDS"))) : 1000ms;
 }
 // Other programs may use the machine of a short run.
 double Allowance() { return IsRelease() ? 1 : 4; }
