@@ -78,6 +78,15 @@ std::variant<Config, int> ParseArguments(int argc, const char* const* argv, std:
       ->transform(CLI::AsSizeValue(false))
       ->check(CLI::NonNegativeNumber)
       ->default_str("2 % of the disk, from 4MiB to 1GiB");
+  app.add_option("--connections", config.server.connections, "Clients that can be connected at the same time")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  app.add_option("--streams", config.server.streams, "Streams of frames at the same time")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  app.add_option("--uploads", config.server.uploads, "Uploads at the same time")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
   app.add_option("--checkpoint", checkpoint, "Most work of a job that a crash can lose")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.01, 3600.0))

@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <mutex>
 #include <stdexcept>
 #include <string_view>
@@ -85,6 +86,7 @@ JobManagerOptions JobOptions(const ServerOptions& options, const std::shared_ptr
   result.retention_interval = options.retention_interval;
   result.on_note = [log](const std::string& note) { log->info("{}", note); };
   result.on_event = [log](const JobRecord& job, std::string_view event) { LogEvent(*log, job, event); };
+  result.niceness = options.niceness;
   if (!options.record_crashes || options.data_directory.empty()) return result;
   const std::string crashes = options.data_directory + "/crashes";
   result.crashes = TakeCrashes(crashes);
@@ -95,6 +97,18 @@ JobManagerOptions JobOptions(const ServerOptions& options, const std::shared_ptr
 std::unique_ptr<ResultStore> OpenResults(const ServerOptions& options) {
   if (options.data_directory.empty()) return MakeMemoryResults(options.cache_size);
   return OpenResultDirectory(options.data_directory + "/results", options.cache_size);
+}
+
+CallLimit AtMost(CallLimit limit, int in_all) { return {in_all, std::min(limit.of_connection, in_all)}; }
+
+Limits LimitsOf(const ServerOptions& options) {
+  Limits limits;
+  limits.connections = options.connections;
+  limits.streams = AtMost(limits.streams, options.streams);
+  limits.uploads = AtMost(limits.uploads, options.uploads);
+  limits.idle_upload = options.idle_upload;
+  limits.silent_connection = options.silent_connection;
+  return limits;
 }
 
 class Server : public EmbeddedServer {
@@ -138,6 +152,7 @@ class Server : public EmbeddedServer {
     settings.default_ttl_s = options.default_ttl.count();
     settings.disk_budget = options.disk_budget;
     settings.job_memory = options.job_memory > 0 ? options.job_memory : MostMemory();
+    settings.limits = LimitsOf(options);
     settings.heartbeat_interval = options.heartbeat_interval;
     settings.progress_interval = options.progress_interval;
     settings.transfer_idle = options.transfer_idle;

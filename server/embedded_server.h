@@ -26,6 +26,7 @@ struct ServerOptions {
   std::chrono::seconds default_ttl = std::chrono::seconds(0);               // of jobs after their end
   std::int64_t disk_budget = 0;                                             // for frames and geometry [byte]
   std::chrono::milliseconds retention_interval = std::chrono::seconds(10);  // between looks for what can be removed
+  int niceness = 0;  // of the threads that run jobs, beyond that of the process: others are answered sooner then
   bool record_crashes = false;  // in the data directory, for the next start; changes signal handlers of the process
   bool allow_remote = false;    // whether addresses other than loopback are allowed
 
@@ -34,6 +35,11 @@ struct ServerOptions {
       0;  // most memory of a job, estimated before it is accepted [byte]; 0: 80 % of the machine's
   std::int64_t least_free_disk = -1;  // free disk space below which jobs wait [byte]; negative: 2 % of the disk
   std::int64_t cache_size = std::int64_t{2} << 30;                                 // of results kept for reuse [byte]
+  int connections = 1000;  // of clients at once; fewer if the process may not open twice as many files
+  int streams = 2000;      // of frames and geometries at once
+  int uploads = 64;        // at once
+  std::chrono::milliseconds idle_upload = std::chrono::seconds(60);                // an idle upload ends after this
+  std::chrono::milliseconds silent_connection = std::chrono::seconds(30);          // one that makes no call, too
   std::chrono::milliseconds checkpoint_interval = std::chrono::seconds(2);         // of running jobs
   std::chrono::milliseconds heartbeat_interval = std::chrono::seconds(10);         // of frame streams, at most
   std::chrono::milliseconds progress_interval = std::chrono::milliseconds(1'000);  // the same while a job progresses

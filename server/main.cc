@@ -56,6 +56,7 @@ int Serve(const fascicle::server::Config& config, const std::shared_ptr<spdlog::
   fascicle::server::ServerOptions options = config.server;
   options.log = log;
   options.record_crashes = true;
+  options.niceness = 10;
   if (options.allow_remote)
     log->warn("remote clients are allowed, without TLS or login: use it in trusted networks only");
   const auto server = fascicle::server::EmbeddedServer::Start(options);

@@ -11,8 +11,8 @@
 #include "client/lib/transfer.h"
 #include "client/lib/upload.h"
 #include "client/lib/watch.h"
-#include "client/lib/watch_log.h"
 #include "client/lib/watch_jobs.h"
+#include "client/lib/watch_log.h"
 
 namespace fascicle::client {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "fascicle/v1/log_service.grpc.pb.h"
 #include "fascicle/v1/simulation_service.grpc.pb.h"
-#include "fascicle/v1/transfer_service.grpc.pb.h"
 #include "fascicle/v1/steering_service.grpc.pb.h"
+#include "fascicle/v1/transfer_service.grpc.pb.h"
 
 namespace fascicle::client {
 

@@ -14,6 +14,7 @@
 #include "server/jobs/job_id.h"
 #include "server/jobs/job_queue.h"
 #include "server/jobs/job_run.h"
+#include "server/jobs/lower_priority.h"
 #include "server/jobs/notifier.h"
 #include "server/jobs/retention.h"
 #include "server/jobs/verify_job.h"
@@ -258,6 +259,7 @@ struct JobManager::Impl {
   }
 
   void Work() {
+    LowerPriority(options.niceness);
     while (true) {
       const Task task = TakeNext();
       if (task.job == nullptr) return;

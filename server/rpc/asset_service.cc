@@ -32,9 +32,9 @@ grpc::Status AssetServiceImpl::Find(const v1::FindMissingAssetsRequest& request,
   return problems.empty() ? grpc::Status::OK : InvalidArgument(problems);
 }
 
-grpc::ServerReadReactor<v1::UploadAssetRequest>* AssetServiceImpl::UploadAsset(grpc::CallbackServerContext*,
+grpc::ServerReadReactor<v1::UploadAssetRequest>* AssetServiceImpl::UploadAsset(grpc::CallbackServerContext* call,
                                                                                v1::UploadAssetResponse* response) {
-  return AssetUpload::Launch(std::make_shared<AssetUpload>(context_, *response));
+  return AssetUpload::Launch(*call, std::make_shared<AssetUpload>(context_, *response));
 }
 
 }  // namespace fascicle::server

@@ -7,15 +7,23 @@
 
 namespace fascicle::server {
 
-grpc::ServerReadReactor<v1::UploadAssetRequest>* AssetUpload::Launch(std::shared_ptr<AssetUpload> upload) {
+grpc::ServerReadReactor<v1::UploadAssetRequest>* AssetUpload::Launch(const grpc::CallbackServerContext& call,
+                                                                     std::shared_ptr<AssetUpload> upload) {
   AssetUpload* reactor = upload.get();
   reactor->self_ = upload;
+  Connections::Entry entry = reactor->context_.connections.Enter(call.peer(), CallKind::kUpload);
+  if (!entry.status.ok()) {
+    reactor->FinishOnce(entry.status);
+    return reactor;
+  }
+  reactor->place_ = std::move(entry.place);
   const std::weak_ptr<AssetUpload> weak = upload;
   const bool added = reactor->context_.streams.Add(reactor, [weak](const grpc::Status& status) {
     if (const auto open = weak.lock()) open->FinishOnce(status);
   });
   if (added) {
     reactor->StartRead(&reactor->message_);
+    reactor->WatchIdle();
   } else {
     reactor->FinishOnce(ShuttingDown());
   }
@@ -23,10 +31,11 @@ grpc::ServerReadReactor<v1::UploadAssetRequest>* AssetUpload::Launch(std::shared
 }
 
 void AssetUpload::OnReadDone(bool ok) {
-  context_.slow.Post([upload = shared_from_this(), ok] {
+  context_.uploads.Post([upload = shared_from_this(), ok] {
     {
       std::lock_guard lock(upload->mutex_);
       if (upload->finished_) return;
+      upload->last_message_ = std::chrono::steady_clock::now();
     }
     const grpc::Status status =
         Guarded(upload->context_.log, "UploadAsset", [&] { return ok ? upload->Take() : upload->Commit(); });
@@ -98,7 +107,26 @@ void AssetUpload::OnDone() {
   context_.streams.Remove(this);
   // A broken upload leaves nothing. Removing its file is left to the executor and to the last owner of the upload,
   // because a message may still be in progress.
-  context_.slow.Post([upload = std::move(self_)] {});
+  context_.uploads.Post([upload = std::move(self_)] {});
+}
+
+void AssetUpload::WatchIdle() {
+  using std::chrono::milliseconds;
+  const milliseconds longest = context_.settings.limits.idle_upload;
+  milliseconds rest = longest;
+  {
+    std::lock_guard lock(mutex_);
+    if (finished_) return;
+    rest -= std::chrono::floor<milliseconds>(std::chrono::steady_clock::now() - last_message_);
+  }
+  if (rest <= milliseconds(0)) {
+    FinishOnce(DeadlineExceeded("IDLE_UPLOAD",
+                                "no part of the file has come for " + std::to_string(longest.count() / 1000) + " s"));
+    return;
+  }
+  context_.uploads.PostAfter(rest, [weak = weak_from_this()] {
+    if (const auto upload = weak.lock()) upload->WatchIdle();
+  });
 }
 
 }  // namespace fascicle::server

@@ -1,6 +1,7 @@
 #ifndef FASCICLE_SERVER_RPC_ASSET_UPLOAD_H_
 #define FASCICLE_SERVER_RPC_ASSET_UPLOAD_H_
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -19,7 +20,8 @@ class AssetUpload : public grpc::ServerReadReactor<v1::UploadAssetRequest>,
   AssetUpload(RpcContext& context, v1::UploadAssetResponse& response) : context_(context), response_(response) {}
 
   // Starts reading. Returns the reactor for gRPC, which lives until the call is done.
-  static grpc::ServerReadReactor<v1::UploadAssetRequest>* Launch(std::shared_ptr<AssetUpload> upload);
+  static grpc::ServerReadReactor<v1::UploadAssetRequest>* Launch(const grpc::CallbackServerContext& call,
+                                                                 std::shared_ptr<AssetUpload> upload);
 
   void OnReadDone(bool ok) override;
   void OnCancel() override { FinishOnce(grpc::Status::CANCELLED); }
@@ -32,6 +34,8 @@ class AssetUpload : public grpc::ServerReadReactor<v1::UploadAssetRequest>,
   grpc::Status Begin();
   grpc::Status Commit();
   void FinishOnce(const grpc::Status& status);
+  // Ends the call when no message has come for the longest time allowed; looks again at that time.
+  void WatchIdle();
 
   RpcContext& context_;
   v1::UploadAssetResponse& response_;
@@ -47,6 +51,8 @@ class AssetUpload : public grpc::ServerReadReactor<v1::UploadAssetRequest>,
 
   std::mutex mutex_;
   bool finished_ = false;
+  std::chrono::steady_clock::time_point last_message_ = std::chrono::steady_clock::now();
+  Connections::Place place_;
 };
 
 }  // namespace fascicle::server

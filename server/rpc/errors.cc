@@ -97,6 +97,13 @@ grpc::Status InvalidArgument(const std::string& reason, const std::string& field
   return MakeStatus(grpc::StatusCode::INVALID_ARGUMENT, reason, field + ": " + message, {&bad});
 }
 
+grpc::Status NotAMessage() { return InvalidArgument("", "the request is not the message type of this call"); }
+
+grpc::Status UnknownMethod(const std::string& method) {
+  return MakeStatus(grpc::StatusCode::UNIMPLEMENTED, "UNKNOWN_METHOD",
+                    Shortened("this server has no method " + OneLine(method)), {});
+}
+
 grpc::Status NotFound(const std::string& type, const std::string& name) {
   google::rpc::ResourceInfo resource;
   resource.set_resource_type("fascicle/" + type);
@@ -164,6 +171,10 @@ grpc::Status FramesRemoved(const std::string& job_name, std::int64_t first_frame
 }
 
 grpc::Status Cancelled() { return MakeStatus(grpc::StatusCode::CANCELLED, "CANCELLED", "the call was cancelled", {}); }
+
+grpc::Status DeadlineExceeded(const std::string& reason, const std::string& message) {
+  return MakeStatus(grpc::StatusCode::DEADLINE_EXCEEDED, reason, message, {});
+}
 
 grpc::Status Internal(const std::string& reason, const std::string& message) {
   return MakeStatus(grpc::StatusCode::INTERNAL, reason, message, {});

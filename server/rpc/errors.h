@@ -34,6 +34,11 @@ grpc::Status InvalidArgument(const std::string& field, const std::string& messag
 // Like InvalidArgument, with a specific reason.
 grpc::Status InvalidArgument(const std::string& reason, const std::string& field, const std::string& message);
 
+// The bytes of a request are not of its type.
+grpc::Status NotAMessage();
+// UNIMPLEMENTED: no service has `method`.
+grpc::Status UnknownMethod(const std::string& method);
+
 // NOT_FOUND with ResourceInfo. `type` is `job` or `asset`.
 grpc::Status NotFound(const std::string& type, const std::string& name);
 // ALREADY_EXISTS with ResourceInfo.
@@ -52,6 +57,7 @@ grpc::Status OutOfRange(const std::string& reason, const std::string& message);
 // OUT_OF_RANGE (FRAMES_REMOVED) with the oldest index.
 grpc::Status FramesRemoved(const std::string& job_name, std::int64_t first_frame);
 grpc::Status Cancelled();
+grpc::Status DeadlineExceeded(const std::string& reason, const std::string& message);
 grpc::Status Internal(const std::string& reason, const std::string& message);
 
 // Stored bytes are damaged.

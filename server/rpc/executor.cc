@@ -3,10 +3,17 @@
 #include <exception>
 #include <utility>
 
+#include "server/jobs/lower_priority.h"
+
 namespace fascicle::server {
 
-Executor::Executor(int threads, std::function<void(const std::string&)> on_error) : on_error_(std::move(on_error)) {
-  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Work(); });
+Executor::Executor(int threads, OnError on_error, int niceness) : on_error_(std::move(on_error)) {
+  for (int i = 0; i < threads; ++i) {
+    threads_.emplace_back([this, niceness] {
+      LowerPriority(niceness);
+      Work();
+    });
+  }
 }
 
 Executor::~Executor() {
@@ -32,11 +39,6 @@ void Executor::PostAfter(std::chrono::milliseconds delay, Task task) {
     delayed_.emplace(Clock::now() + delay, std::move(task));
   }
   wake_.notify_one();  // some thread must be told the new earliest time
-}
-
-std::size_t Executor::pending() const {
-  std::lock_guard lock(mutex_);
-  return ready_.size();
 }
 
 void Executor::Work() {

@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <cstddef>
 #include <deque>
 #include <functional>
 #include <map>
@@ -19,9 +18,11 @@ namespace fascicle::server {
 class Executor {
  public:
   using Task = std::function<void()>;
+  using OnError = std::function<void(const std::string& what)>;
 
-  // `on_error` receives exceptions that escape from a task; it must not throw.
-  Executor(int threads, std::function<void(const std::string& what)> on_error);
+  // `on_error` receives exceptions that escape from a task; it must not throw. `niceness` is that of the threads,
+  // beyond that of the process.
+  Executor(int threads, OnError on_error, int niceness = 0);
   // Runs the tasks posted without delay, drops delayed ones, and joins the threads.
   ~Executor();
   Executor(const Executor&) = delete;
@@ -29,8 +30,6 @@ class Executor {
 
   void Post(Task task);
   void PostAfter(std::chrono::milliseconds delay, Task task);
-  // Number of tasks that wait for a thread.
-  std::size_t pending() const;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -38,8 +37,8 @@ class Executor {
   void Work();
   void Run(const Task& task) noexcept;
 
-  const std::function<void(const std::string&)> on_error_;
-  mutable std::mutex mutex_;
+  const OnError on_error_;
+  std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<Task> ready_;
   std::multimap<Clock::time_point, Task> delayed_;

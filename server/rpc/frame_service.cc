@@ -12,18 +12,18 @@
 
 namespace fascicle::server {
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::GetGeometry(grpc::CallbackServerContext*,
+grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::GetGeometry(grpc::CallbackServerContext* call,
                                                                           const grpc::ByteBuffer* request) {
   const auto parsed = ParseRequest<v1::GetGeometryRequest>(*request);
   if (!parsed) return new EndedStream(NotAMessage());
-  return OutStream::Launch(std::make_shared<GeometryStream>(context_, parsed->name()));
+  return OutStream::Launch(*call, std::make_shared<GeometryStream>(context_, parsed->name()));
 }
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::StreamFrames(grpc::CallbackServerContext*,
+grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::StreamFrames(grpc::CallbackServerContext* call,
                                                                            const grpc::ByteBuffer* request) {
   auto parsed = ParseRequest<v1::StreamFramesRequest>(*request);
   if (!parsed) return new EndedStream(NotAMessage());
-  return OutStream::Launch(std::make_shared<FrameStream>(context_, deriver_, std::move(*parsed)));
+  return OutStream::Launch(*call, std::make_shared<FrameStream>(context_, deriver_, std::move(*parsed)));
 }
 
 grpc::ServerUnaryReactor* FrameServiceImpl::ListFrames(grpc::CallbackServerContext* call,

@@ -59,28 +59,27 @@ grpc::Status BadJobName() { return InvalidArgument("name", "must be jobs/{id}");
 
 grpc::ServerUnaryReactor* JobServiceImpl::CreateJob(grpc::CallbackServerContext* call,
                                                     const v1::CreateJobRequest* request, v1::Job* response) {
-  constexpr std::size_t kMostWaiting = 64;
-  if (context_.slow.pending() > kMostWaiting) {
-    grpc::ServerUnaryReactor* reactor = call->DefaultReactor();
-    reactor->Finish(Unavailable("OVERLOADED", "too many jobs are being submitted", std::chrono::seconds(2)));
-    return reactor;
-  }
   auto* reactor = new StoppableReactor;
-  if (context_.streams.draining()) {
-    reactor->Finish(ShuttingDown());
+  Connections::Entry entry = context_.Enter(*call, CallKind::kSubmission);
+  if (!entry.status.ok()) {
+    reactor->Finish(entry.status);
     return reactor;
   }
   const auto checked = std::make_shared<CheckedJob>();
-  context_.slow.Post([this, reactor, request, response, checked, limit = DetailsLimit(*call), stop = reactor->stop()] {
+  context_.slow.Post([this, reactor, request, response, checked, place = std::move(entry.place),
+                      limit = DetailsLimit(*call), stop = reactor->stop()] {
+    const std::chrono::milliseconds longest = context_.settings.limits.longest_check;
+    const RunningChecks::Watch watch(context_.running_checks, stop, longest);
     const grpc::Status status =
-        Guarded(context_.log, "CreateJob", [&] { return CheckJob(*request, *checked, limit, stop); });
+        Guarded(context_.log, "CreateJob", [&] { return CheckJob(*request, *checked, limit, stop.get_token()); });
+    if (watch.expired()) return reactor->Finish(TookTooLong(longest));
     if (!status.ok() || request->validate_only()) {
       response->set_scene_name(request->job().scene().name());
       response->set_threads(request->job().threads());
       return reactor->Finish(status);
     }
     // Threads that wait for the disk, so that many jobs share a commit.
-    context_.commits.Post([this, reactor, request, response, checked] {
+    context_.commits.Post([this, reactor, request, response, checked, place] {
       reactor->Finish(Guarded(context_.log, "CreateJob", [&] { return StoreJob(*request, *checked, *response); }));
     });
   });
@@ -155,7 +154,7 @@ std::shared_ptr<const Scene> JobServiceImpl::Translate(const v1::Scene& scene, P
 
 grpc::ServerUnaryReactor* JobServiceImpl::GetJob(grpc::CallbackServerContext* call, const v1::GetJobRequest* request,
                                                  v1::Job* response) {
-  return RunUnary(context_, context_.quick, call, "GetJob", [this, request, response] {
+  return RunUnary(context_, context_.kept, call, "GetJob", [this, request, response] {
     const std::optional<std::string> id = ParseJobName(request->name());
     if (!id) return BadJobName();
     const std::optional<JobView> view = context_.jobs.Get(*id);
@@ -167,7 +166,7 @@ grpc::ServerUnaryReactor* JobServiceImpl::GetJob(grpc::CallbackServerContext* ca
 
 grpc::ServerUnaryReactor* JobServiceImpl::ListJobs(grpc::CallbackServerContext* call,
                                                    const v1::ListJobsRequest* request, v1::ListJobsResponse* response) {
-  return RunUnary(context_, context_.quick, call, "ListJobs",
+  return RunUnary(context_, context_.kept, call, "ListJobs",
                   [this, request, response] { return List(*request, *response); });
 }
 
@@ -200,11 +199,11 @@ grpc::Status JobServiceImpl::List(const v1::ListJobsRequest& request, v1::ListJo
   return grpc::Status::OK;
 }
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* JobServiceImpl::WatchJobs(grpc::CallbackServerContext*,
+grpc::ServerWriteReactor<grpc::ByteBuffer>* JobServiceImpl::WatchJobs(grpc::CallbackServerContext* call,
                                                                       const grpc::ByteBuffer* request) {
   auto parsed = ParseRequest<v1::WatchJobsRequest>(*request);
   if (!parsed) return new EndedStream(NotAMessage());
-  return OutStream::Launch(std::make_shared<JobWatchStream>(context_, std::move(*parsed)));
+  return OutStream::Launch(*call, std::make_shared<JobWatchStream>(context_, std::move(*parsed)));
 }
 
 grpc::ServerUnaryReactor* JobServiceImpl::UpdateJob(grpc::CallbackServerContext* call,
@@ -247,7 +246,7 @@ grpc::ServerUnaryReactor* JobServiceImpl::ResumeJob(grpc::CallbackServerContext*
 
 grpc::ServerUnaryReactor* JobServiceImpl::CancelJob(grpc::CallbackServerContext* call,
                                                     const v1::CancelJobRequest* request, v1::Job* response) {
-  return RunUnary(context_, context_.quick, call, "CancelJob", [this, request, response] {
+  return RunUnary(context_, context_.kept, call, "CancelJob", [this, request, response] {
     const std::optional<std::string> id = ParseJobName(request->name());
     if (!id) return BadJobName();
     const std::optional<JobView> view = context_.jobs.Cancel(*id);
@@ -301,18 +300,20 @@ grpc::ServerUnaryReactor* JobServiceImpl::RestartJob(grpc::CallbackServerContext
   });
 }
 
-grpc::ServerUnaryReactor* JobServiceImpl::VerifyJob(grpc::CallbackServerContext*, const v1::VerifyJobRequest* request,
+grpc::ServerUnaryReactor* JobServiceImpl::VerifyJob(grpc::CallbackServerContext* call,
+                                                    const v1::VerifyJobRequest* request,
                                                     v1::VerifyJobResponse* response) {
-  return RunStoppable(context_, context_.slow, "VerifyJob", [this, request, response](const std::stop_token& stop) {
-    const std::optional<std::string> id = ParseJobName(request->name());
-    if (!id) return BadJobName();
-    const std::optional<JobCheck> check = context_.jobs.Verify(*id, stop);
-    if (!check) return NotFound("job", request->name());
-    response->set_frames(check->frames);
-    response->set_bytes(check->bytes);
-    for (const std::string& damage : check->damages) response->add_damages(damage);
-    return grpc::Status::OK;
-  });
+  return RunStoppable(context_, context_.checks, call, "VerifyJob",
+                      [this, request, response](const std::stop_token& stop) {
+                        const std::optional<std::string> id = ParseJobName(request->name());
+                        if (!id) return BadJobName();
+                        const std::optional<JobCheck> check = context_.jobs.Verify(*id, stop);
+                        if (!check) return NotFound("job", request->name());
+                        response->set_frames(check->frames);
+                        response->set_bytes(check->bytes);
+                        for (const std::string& damage : check->damages) response->add_damages(damage);
+                        return grpc::Status::OK;
+                      });
 }
 
 }  // namespace fascicle::server

@@ -20,9 +20,16 @@ JobUpload::JobUpload(RpcContext& context, OpenTransfers& transfers, v1::Job& res
 
 JobUpload::~JobUpload() = default;
 
-grpc::ServerReadReactor<v1::ImportJobRequest>* JobUpload::Launch(std::shared_ptr<JobUpload> upload) {
+grpc::ServerReadReactor<v1::ImportJobRequest>* JobUpload::Launch(const grpc::CallbackServerContext& call,
+                                                                 std::shared_ptr<JobUpload> upload) {
   JobUpload* reactor = upload.get();
   reactor->self_ = upload;
+  Connections::Entry entry = reactor->context_.connections.Enter(call.peer(), CallKind::kUpload);
+  if (!entry.status.ok()) {
+    reactor->FinishOnce(entry.status);
+    return reactor;
+  }
+  reactor->call_place_ = std::move(entry.place);
   const std::weak_ptr<JobUpload> weak = upload;
   const bool added = reactor->context_.streams.Add(reactor, [weak](const grpc::Status& status) {
     if (const auto open = weak.lock()) open->FinishOnce(status);

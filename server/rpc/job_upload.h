@@ -21,7 +21,8 @@ class JobUpload : public grpc::ServerReadReactor<v1::ImportJobRequest>, public s
   ~JobUpload() override;
 
   // Starts reading. Returns the reactor for gRPC, which lives until the call is done.
-  static grpc::ServerReadReactor<v1::ImportJobRequest>* Launch(std::shared_ptr<JobUpload> upload);
+  static grpc::ServerReadReactor<v1::ImportJobRequest>* Launch(const grpc::CallbackServerContext& call,
+                                                               std::shared_ptr<JobUpload> upload);
 
   void OnReadDone(bool ok) override;
   void OnCancel() override { FinishOnce(grpc::Status::CANCELLED); }
@@ -45,7 +46,8 @@ class JobUpload : public grpc::ServerReadReactor<v1::ImportJobRequest>, public s
   std::shared_ptr<JobUpload> self_;  // until OnDone
 
   v1::ImportJobRequest message_;
-  std::shared_ptr<void> place_;
+  std::shared_ptr<void> place_;       // among the transfers
+  std::shared_ptr<void> call_place_;  // among the calls
   std::unique_ptr<TransferFile> file_;
   std::unique_ptr<FileWriter> writer_;
   v1::ImportJobRequest begin_;  // the first message, without data

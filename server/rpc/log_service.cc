@@ -8,11 +8,11 @@
 
 namespace fascicle::server {
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* LogServiceImpl::StreamLog(grpc::CallbackServerContext*,
+grpc::ServerWriteReactor<grpc::ByteBuffer>* LogServiceImpl::StreamLog(grpc::CallbackServerContext* call,
                                                                       const grpc::ByteBuffer* request) {
   auto parsed = ParseRequest<v1::StreamLogRequest>(*request);
   if (!parsed) return new EndedStream(NotAMessage());
-  return OutStream::Launch(std::make_shared<LogStream>(context_, std::move(*parsed)));
+  return OutStream::Launch(*call, std::make_shared<LogStream>(context_, std::move(*parsed)));
 }
 
 }  // namespace fascicle::server

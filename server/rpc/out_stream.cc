@@ -3,10 +3,22 @@
 #include <utility>
 
 namespace fascicle::server {
+namespace {
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* OutStream::Launch(std::shared_ptr<OutStream> stream) {
+constexpr std::size_t kLarge = 64 << 10;  // messages that wait for their turn [byte]
+
+}  // namespace
+
+grpc::ServerWriteReactor<grpc::ByteBuffer>* OutStream::Launch(const grpc::CallbackServerContext& call,
+                                                              std::shared_ptr<OutStream> stream) {
   OutStream* reactor = stream.get();
   reactor->self_ = stream;
+  Connections::Entry entry = reactor->context_.connections.Enter(call.peer(), CallKind::kStream);
+  if (!entry.status.ok()) {
+    reactor->Abort(entry.status);
+    return reactor;
+  }
+  reactor->place_ = std::move(entry.place);
   const std::weak_ptr<OutStream> weak = stream;
   const bool added = reactor->context_.streams.Add(reactor, [weak](const grpc::Status& status) {
     if (const auto open = weak.lock()) open->Abort(status);
@@ -103,7 +115,7 @@ void OutStream::WakeAfter(std::chrono::milliseconds delay) {
     if (stopped_ || next_timer_ <= time) return;  // an earlier wake-up is scheduled
     next_timer_ = time;
   }
-  context_.quick.PostAfter(delay, [weak = weak_from_this(), time] {
+  context_.streaming.PostAfter(delay, [weak = weak_from_this(), time] {
     const auto stream = weak.lock();
     if (!stream) return;
     {
@@ -121,7 +133,11 @@ void OutStream::Pump(std::unique_lock<std::mutex>& lock) {
     ready_.pop_front();
     writing_ = true;
     lock.unlock();
-    StartWrite(&in_flight_);
+    if (in_flight_.Length() < kLarge) {
+      StartWrite(&in_flight_);
+    } else {
+      context_.turnstile.Enter(this, [stream = shared_from_this()] { stream->StartWrite(&stream->in_flight_); });
+    }
   } else if (last_) {
     finished_ = true;
     const grpc::Status status = *last_;
@@ -131,6 +147,7 @@ void OutStream::Pump(std::unique_lock<std::mutex>& lock) {
 }
 
 void OutStream::OnWriteDone(bool ok) {
+  context_.turnstile.Leave(this);
   bool low = false;
   {
     std::unique_lock lock(mutex_);
@@ -158,7 +175,7 @@ void OutStream::OnDone() {
     subscription.swap(subscription_);
   }
   // Destroying the subscription may wait for a call of its listener, so not on this thread.
-  if (subscription) context_.quick.Post([subscription = std::move(subscription)] {});
+  if (subscription) context_.streaming.Post([subscription = std::move(subscription)] {});
   self_.reset();
 }
 

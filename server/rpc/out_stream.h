@@ -25,7 +25,8 @@ class OutStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std:
   OutStream(RpcContext& context, const char* method) : context_(context), method_(method) {}
 
   // Starts filling. Returns the reactor for gRPC, which lives until the call is done.
-  static grpc::ServerWriteReactor<grpc::ByteBuffer>* Launch(std::shared_ptr<OutStream> stream);
+  static grpc::ServerWriteReactor<grpc::ByteBuffer>* Launch(const grpc::CallbackServerContext& call,
+                                                            std::shared_ptr<OutStream> stream);
 
   // Call when there may be more to send: runs Fill on the executor. Any thread.
   void Wake();
@@ -39,7 +40,7 @@ class OutStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std:
   // never concurrently with itself; called again after Wake, after each write, and by `subscription`.
   virtual void Fill() = 0;
   // Where Fill runs.
-  virtual Executor& executor() { return context_.quick; }
+  virtual Executor& executor() { return context_.streaming; }
 
   // The functions below are called from Fill only.
   bool HasRoom() const;
@@ -62,6 +63,7 @@ class OutStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std:
 
   const char* const method_;
   std::shared_ptr<OutStream> self_;  // until OnDone
+  Connections::Place place_;
 
   mutable std::mutex mutex_;
   std::deque<grpc::ByteBuffer> ready_;

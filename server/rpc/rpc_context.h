@@ -12,9 +12,13 @@
 #include <spdlog/logger.h>
 
 #include "server/jobs/job_manager.h"
+#include "server/rpc/connections.h"
 #include "server/rpc/errors.h"
 #include "server/rpc/executor.h"
+#include "server/rpc/limits.h"
 #include "server/rpc/open_streams.h"
+#include "server/rpc/running_checks.h"
+#include "server/rpc/turnstile.h"
 #include "server/store/store.h"
 #include "server/translate/result_cache.h"
 
@@ -26,6 +30,7 @@ struct RpcSettings {
   int default_threads = 1;
   std::int64_t max_asset_size = std::int64_t{4} << 30;                 // [byte]
   std::int64_t job_memory = std::numeric_limits<std::int64_t>::max();  // most memory of a job [byte]
+  Limits limits;
   // Limits of owners and what is kept, as in JobManagerOptions.
   bool oversubscribe = false;
   int max_queued_per_owner = 0;
@@ -43,12 +48,25 @@ struct RpcContext {
   Store& store;
   JobManager& jobs;
   ResultCache& results;
-  Executor& quick;    // reads and short writes
-  Executor& slow;     // translation of scenes, uploads
-  Executor& commits;  // storing new jobs: many threads that wait for the disk together
+  Executor& kept;       // the calls that have a place when all else is busy
+  Executor& quick;      // reads and short writes
+  Executor& streaming;  // filling streams
+  Executor& slow;       // translation of scenes
+  Executor& commits;    // storing new jobs: many threads that wait for the disk together
+  Executor& uploads;    // of assets
+  Executor& checks;     // comparing stored jobs with their checksums
   OpenStreams& streams;
+  Turnstile& turnstile;
+  Connections& connections;
+  RunningChecks& running_checks;
   spdlog::logger& log;
   RpcSettings settings;
+
+  // A place for a call, unless the server is being stopped or a limit is reached.
+  Connections::Entry Enter(const grpc::CallbackServerContext& call, CallKind kind) const {
+    if (streams.draining()) return {nullptr, ShuttingDown()};
+    return connections.Enter(call.peer(), kind);
+  }
 };
 
 // Answers a unary call with `body` (() -> grpc::Status) on an executor. Request and response stay valid until then.
@@ -56,19 +74,22 @@ template <class Body>
 grpc::ServerUnaryReactor* RunUnary(RpcContext& context, Executor& executor, grpc::CallbackServerContext* call,
                                    const char* method, Body body) {
   grpc::ServerUnaryReactor* reactor = call->DefaultReactor();
-  if (context.streams.draining()) {
-    reactor->Finish(ShuttingDown());
+  const CallKind kind = &executor == &context.kept ? CallKind::kKept : CallKind::kCall;
+  Connections::Entry entry = context.Enter(*call, kind);
+  if (!entry.status.ok()) {
+    reactor->Finish(entry.status);
     return reactor;
   }
-  executor.Post(
-      [&context, reactor, method, body = std::move(body)] { reactor->Finish(Guarded(context.log, method, body)); });
+  executor.Post([&context, reactor, place = std::move(entry.place), method, body = std::move(body)] {
+    reactor->Finish(Guarded(context.log, method, body));
+  });
   return reactor;
 }
 
 // The reactor of a call whose stop token is requested when the caller gives up.
 class StoppableReactor final : public grpc::ServerUnaryReactor {
  public:
-  std::stop_token stop() const { return stop_.get_token(); }
+  const std::stop_source& stop() const { return stop_; }
   void OnCancel() override { stop_.request_stop(); }
   void OnDone() override { delete this; }
 
@@ -76,17 +97,23 @@ class StoppableReactor final : public grpc::ServerUnaryReactor {
   std::stop_source stop_;
 };
 
-// Like RunUnary, with a body that takes the stop token of its call.
+// Like RunUnary, with a body that takes the stop token of its call: that is requested when the caller gives up, and
+// after the longest time allowed.
 template <class Body>
-grpc::ServerUnaryReactor* RunStoppable(RpcContext& context, Executor& executor, const char* method, Body body) {
+grpc::ServerUnaryReactor* RunStoppable(RpcContext& context, Executor& executor, grpc::CallbackServerContext* call,
+                                       const char* method, Body body) {
   auto* reactor = new StoppableReactor;
-  if (context.streams.draining()) {
-    reactor->Finish(ShuttingDown());
+  Connections::Entry entry = context.Enter(*call, CallKind::kSubmission);
+  if (!entry.status.ok()) {
+    reactor->Finish(entry.status);
     return reactor;
   }
-  executor.Post([&context, reactor, stop = reactor->stop(), method, body = std::move(body)] {
-    reactor->Finish(Guarded(context.log, method, [&] { return body(stop); }));
-  });
+  executor.Post(
+      [&context, reactor, place = std::move(entry.place), stop = reactor->stop(), method, body = std::move(body)] {
+        const RunningChecks::Watch watch(context.running_checks, stop, context.settings.limits.longest_check);
+        const grpc::Status status = Guarded(context.log, method, [&] { return body(stop.get_token()); });
+        reactor->Finish(watch.expired() ? TookTooLong(context.settings.limits.longest_check) : status);
+      });
   return reactor;
 }
 

@@ -4,6 +4,33 @@
 #include <thread>
 
 namespace fascicle::server {
+namespace {
+
+google::protobuf::Duration ToMessage(std::chrono::nanoseconds time) {
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
+  google::protobuf::Duration message;
+  message.set_seconds(seconds.count());
+  message.set_nanos(static_cast<int>((time - seconds).count()));
+  return message;
+}
+
+v1::ServerInfo::Limits ToMessage(const Limits& limits) {
+  v1::ServerInfo::Limits message;
+  message.set_connections(limits.connections);
+  message.set_streams(limits.streams.in_all);
+  message.set_streams_of_connection(limits.streams.of_connection);
+  message.set_uploads(limits.uploads.in_all);
+  message.set_uploads_of_connection(limits.uploads.of_connection);
+  message.set_submissions(limits.submissions.in_all);
+  message.set_submissions_of_connection(limits.submissions.of_connection);
+  message.set_calls(limits.calls.in_all);
+  message.set_calls_of_connection(limits.calls.of_connection);
+  *message.mutable_idle_upload() = ToMessage(limits.idle_upload);
+  *message.mutable_longest_check() = ToMessage(limits.longest_check);
+  return message;
+}
+
+}  // namespace
 
 grpc::ServerUnaryReactor* ServerServiceImpl::GetServerInfo(grpc::CallbackServerContext* call,
                                                            const v1::GetServerInfoRequest*, v1::ServerInfo* response) {
@@ -26,11 +53,8 @@ grpc::ServerUnaryReactor* ServerServiceImpl::GetServerInfo(grpc::CallbackServerC
   response->set_max_stored_bytes_per_owner(settings.max_stored_per_owner);
   if (settings.default_ttl_s > 0) response->mutable_default_ttl()->set_seconds(settings.default_ttl_s);
   response->set_disk_budget(settings.disk_budget);
-  const auto uptime = std::chrono::steady_clock::now() - start_;
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(uptime);
-  response->mutable_uptime()->set_seconds(seconds.count());
-  response->mutable_uptime()->set_nanos(
-      static_cast<int>(std::chrono::duration_cast<std::chrono::nanoseconds>(uptime - seconds).count()));
+  *response->mutable_uptime() = ToMessage(std::chrono::steady_clock::now() - start_);
+  *response->mutable_limits() = ToMessage(context_.settings.limits);
   grpc::ServerUnaryReactor* reactor = call->DefaultReactor();
   reactor->Finish(grpc::Status::OK);
   return reactor;

@@ -104,10 +104,25 @@ Finished ChildProcess::Wait() {
   return finished;
 }
 
-std::int64_t ChildProcess::ResidentBytes() const {
+std::int64_t ChildProcess::ResidentBytes() const { return StatusBytes("RssAnon:"); }
+
+std::int64_t ChildProcess::PeakBytes() const { return StatusBytes("VmHWM:"); }
+
+void ChildProcess::ForgetPeak() const { std::ofstream("/proc/" + std::to_string(pid_) + "/clear_refs") << 5; }
+
+double ChildProcess::CpuSeconds() const {
+  std::ifstream stat("/proc/" + std::to_string(pid_) + "/stat");
+  std::string skipped;
+  for (int i = 0; i < 13; ++i) stat >> skipped;  // the name of the program has no space
+  double user = 0, system = 0;
+  stat >> user >> system;
+  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+std::int64_t ChildProcess::StatusBytes(const std::string& entry) const {
   std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
   for (std::string word; status >> word;) {
-    if (word != "RssAnon:") continue;
+    if (word != entry) continue;
     std::int64_t kib = 0;
     status >> kib;
     return kib * 1024;

@@ -45,8 +45,15 @@ class ChildProcess {
   std::string ErrorOutput() const { return ReadFile(output_ / "err"); }
   // Resident memory of the process without files [byte].
   std::int64_t ResidentBytes() const;
+  // The largest resident memory, with files, since the start or the last ForgetPeak [byte].
+  std::int64_t PeakBytes() const;
+  void ForgetPeak() const;
+  // Processor time that it has used [s].
+  double CpuSeconds() const;
 
  private:
+  std::int64_t StatusBytes(const std::string& entry) const;
+
   TemporaryFolder output_;
   std::size_t read_ = 0;  // [byte] of the output, by ReadLine
   pid_t pid_ = -1;

@@ -1,0 +1,1 @@
+fascicle_fuzz(wire_fuzz SOURCES wire_fuzz.cc DEPS client/lib server/rpc core/base proto)
