@@ -13,6 +13,7 @@ struct ExcusedLine {
 
 inline constexpr const char* kBuilds = "installs packages, builds, or runs tests: this test is a part of that";
 inline constexpr const char* kFixedPort = "listens on a fixed port or writes outside of the test's folder";
+inline constexpr const char* kEnded = "needs a job that runs, and those of this test have ended; cli_test runs it";
 
 inline constexpr std::array kExcusedLines = {
     ExcusedLine{"deploy/demo", kBuilds},
@@ -30,6 +31,12 @@ inline constexpr std::array kExcusedLines = {
     ExcusedLine{"fascicled --data /srv/fascicle --workers 4", kFixedPort},
     ExcusedLine{"fascicled --data /srv/fascicle --workers 4 &", kFixedPort},
     ExcusedLine{"fascicled --listen 0.0.0.0:7300 --allow-remote", kFixedPort},
+    ExcusedLine{"fascicled --ttl 30d --disk-budget 200GB", kFixedPort},
+    ExcusedLine{"fascicle pause jobs/3f2a", kEnded},
+    ExcusedLine{"fascicle resume 3f2a", kEnded},
+    ExcusedLine{"fascicle resume jobs/3f2a", kEnded},
+    ExcusedLine{"fascicle pause jobs/...", kEnded},
+    ExcusedLine{"fascicle list --watch", "ends with Ctrl-C; cli_test runs it"},
     ExcusedLine{"fascicle completion zsh > \"${fpath[1]}/_fascicle\"", "needs zsh"},
 };
 
