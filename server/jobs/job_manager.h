@@ -49,7 +49,7 @@ struct JobManagerOptions {
   // after the change was stored.
   std::function<void(const JobRecord& job, std::string_view event)> on_event = [](const JobRecord&, std::string_view) {
   };
-  int niceness = 0;  // of the threads that run jobs, beyond that of the others
+  int niceness = 0;                       // of the threads that run jobs, beyond that of the others
   std::vector<std::string> crashes = {};  // ids of the jobs whose threads crashed the last process; see crash_marks.h
 };
 

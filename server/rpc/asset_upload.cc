@@ -120,8 +120,8 @@ void AssetUpload::WatchIdle() {
     rest -= std::chrono::floor<milliseconds>(std::chrono::steady_clock::now() - last_message_);
   }
   if (rest <= milliseconds(0)) {
-    FinishOnce(DeadlineExceeded("IDLE_UPLOAD", "no part of the file has come for " +
-                                                   std::to_string(longest.count() / 1000) + " s"));
+    FinishOnce(DeadlineExceeded("IDLE_UPLOAD",
+                                "no part of the file has come for " + std::to_string(longest.count() / 1000) + " s"));
     return;
   }
   context_.uploads.PostAfter(rest, [weak = weak_from_this()] {

@@ -21,7 +21,7 @@ class AssetUpload : public grpc::ServerReadReactor<v1::UploadAssetRequest>,
 
   // Starts reading. Returns the reactor for gRPC, which lives until the call is done.
   static grpc::ServerReadReactor<v1::UploadAssetRequest>* Launch(const grpc::CallbackServerContext& call,
-                                                            std::shared_ptr<AssetUpload> upload);
+                                                                 std::shared_ptr<AssetUpload> upload);
 
   void OnReadDone(bool ok) override;
   void OnCancel() override { FinishOnce(grpc::Status::CANCELLED); }

@@ -51,10 +51,10 @@ grpc::Status NoneLeft(CallKind kind, int most) {
 }
 
 grpc::Status NoneLeftOfConnection(CallKind kind, int most) {
-  return Unavailable("TOO_MANY_CALLS",
-                     "this connection has all of its " + std::to_string(most) + " " + NameOf(kind) +
-                         ": let some of them end",
-                     std::chrono::seconds(1));
+  return Unavailable(
+      "TOO_MANY_CALLS",
+      "this connection has all of its " + std::to_string(most) + " " + NameOf(kind) + ": let some of them end",
+      std::chrono::seconds(1));
 }
 
 }  // namespace

@@ -45,8 +45,8 @@ class Connections {
   // Ends connections that never made a call, and logs what was ended. Call every second.
   void EndSilent();
 
-  // A call of `peer` (as gRPC names it), whether served or not. A connection that resets many calls, or starts more than
-  // can end, is ended: gRPC 1.51 keeps 12 KB of each until it has time for it, and all others wait behind them.
+  // A call of `peer` (as gRPC names it), whether served or not. A connection that resets many calls, or starts more
+  // than can end, is ended: gRPC 1.51 keeps 12 KB of each until it has time for it, and all others wait behind them.
   Handle BeginCall(const std::string& peer);
   // Its client has given it up.
   void NoteReset(const Handle& connection);

@@ -20,8 +20,8 @@ class Executor {
   using Task = std::function<void()>;
   using OnError = std::function<void(const std::string& what)>;
 
-  // `on_error` receives exceptions that escape from a task; it must not throw. `niceness` is that of the threads, beyond
-  // that of the process.
+  // `on_error` receives exceptions that escape from a task; it must not throw. `niceness` is that of the threads,
+  // beyond that of the process.
   Executor(int threads, OnError on_error, int niceness = 0);
   // Runs the tasks posted without delay, drops delayed ones, and joins the threads.
   ~Executor();
@@ -30,6 +30,7 @@ class Executor {
 
   void Post(Task task);
   void PostAfter(std::chrono::milliseconds delay, Task task);
+
  private:
   using Clock = std::chrono::steady_clock;
 

@@ -205,16 +205,17 @@ grpc::ServerUnaryReactor* JobServiceImpl::RestartJob(grpc::CallbackServerContext
 grpc::ServerUnaryReactor* JobServiceImpl::VerifyJob(grpc::CallbackServerContext* call,
                                                     const v1::VerifyJobRequest* request,
                                                     v1::VerifyJobResponse* response) {
-  return RunStoppable(context_, context_.checks, call, "VerifyJob", [this, request, response](const std::stop_token& stop) {
-    const std::optional<std::string> id = ParseJobName(request->name());
-    if (!id) return BadJobName();
-    const std::optional<JobCheck> check = context_.jobs.Verify(*id, stop);
-    if (!check) return NotFound("job", request->name());
-    response->set_frames(check->frames);
-    response->set_bytes(check->bytes);
-    for (const std::string& damage : check->damages) response->add_damages(damage);
-    return grpc::Status::OK;
-  });
+  return RunStoppable(context_, context_.checks, call, "VerifyJob",
+                      [this, request, response](const std::stop_token& stop) {
+                        const std::optional<std::string> id = ParseJobName(request->name());
+                        if (!id) return BadJobName();
+                        const std::optional<JobCheck> check = context_.jobs.Verify(*id, stop);
+                        if (!check) return NotFound("job", request->name());
+                        response->set_frames(check->frames);
+                        response->set_bytes(check->bytes);
+                        for (const std::string& damage : check->damages) response->add_damages(damage);
+                        return grpc::Status::OK;
+                      });
 }
 
 }  // namespace fascicle::server

@@ -23,8 +23,9 @@ namespace fascicle::server {
 namespace {
 
 constexpr int kBacklog = 1024;
-// Bytes that may wait for gRPC (the kernel doubles it). gRPC 1.51 reads all calls that are there before it works on any:
-// 100,000 of them in a second were 15 s of work that everybody waited for, and 1.2 GB. Uploads get more (Connections).
+// Bytes that may wait for gRPC (the kernel doubles it). gRPC 1.51 reads all calls that are there before it works on
+// any: 100,000 of them in a second were 15 s of work that everybody waited for, and 1.2 GB. Uploads get more
+// (Connections).
 constexpr int kReceiveBuffer = 16 << 10;
 
 using Addresses = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
@@ -146,6 +147,8 @@ void Listener::Run() {
       if (ready == stop_) return;
       if (const auto found = open_.find(ready); found != open_.end()) {  // both directions are shut
         connections_->Close(found->second);
+        // While gRPC still has the connection open, epoll would go on to report it under a number that is used again.
+        epoll_ctl(epoll_, EPOLL_CTL_DEL, ready, nullptr);
         close(ready);
         open_.erase(found);
       } else {

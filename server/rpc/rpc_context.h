@@ -28,8 +28,8 @@ namespace fascicle::server {
 struct RpcSettings {
   int workers = 2;
   int default_threads = 1;
-  std::int64_t max_asset_size = std::int64_t{4} << 30;                             // [byte]
-  std::int64_t job_memory = std::numeric_limits<std::int64_t>::max();              // most memory of a job [byte]
+  std::int64_t max_asset_size = std::int64_t{4} << 30;                 // [byte]
+  std::int64_t job_memory = std::numeric_limits<std::int64_t>::max();  // most memory of a job [byte]
   Limits limits;
   std::chrono::milliseconds heartbeat_interval = std::chrono::seconds(10);         // at most
   std::chrono::milliseconds progress_interval = std::chrono::milliseconds(1'000);  // while a job progresses
@@ -40,12 +40,12 @@ struct RpcContext {
   Store& store;
   JobManager& jobs;
   ResultCache& results;
-  Executor& kept;     // the calls that have a place when all else is busy
-  Executor& quick;    // reads and short writes
+  Executor& kept;       // the calls that have a place when all else is busy
+  Executor& quick;      // reads and short writes
   Executor& streaming;  // filling streams
-  Executor& slow;     // translation of scenes
-  Executor& uploads;  // of assets
-  Executor& checks;   // comparing stored jobs with their checksums
+  Executor& slow;       // translation of scenes
+  Executor& uploads;    // of assets
+  Executor& checks;     // comparing stored jobs with their checksums
   OpenStreams& streams;
   Turnstile& turnstile;
   Connections& connections;
@@ -99,12 +99,12 @@ grpc::ServerUnaryReactor* RunStoppable(RpcContext& context, Executor& executor, 
     reactor->Finish(entry.status);
     return reactor;
   }
-  executor.Post([&context, reactor, place = std::move(entry.place), stop = reactor->stop(), method,
-                 body = std::move(body)] {
-    const RunningChecks::Watch watch(context.running_checks, stop, context.settings.limits.longest_check);
-    const grpc::Status status = Guarded(context.log, method, [&] { return body(stop.get_token()); });
-    reactor->Finish(watch.expired() ? TookTooLong(context.settings.limits.longest_check) : status);
-  });
+  executor.Post(
+      [&context, reactor, place = std::move(entry.place), stop = reactor->stop(), method, body = std::move(body)] {
+        const RunningChecks::Watch watch(context.running_checks, stop, context.settings.limits.longest_check);
+        const grpc::Status status = Guarded(context.log, method, [&] { return body(stop.get_token()); });
+        reactor->Finish(watch.expired() ? TookTooLong(context.settings.limits.longest_check) : status);
+      });
   return reactor;
 }
 

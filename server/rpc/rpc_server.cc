@@ -9,8 +9,8 @@
 #include <utility>
 
 #include <grpc/grpc.h>
-#include <grpcpp/generic/async_generic_service.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/generic/async_generic_service.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
@@ -26,7 +26,7 @@
 namespace fascicle::server {
 namespace {
 
-constexpr int kFilesOfServer = 128;  // file descriptors for other things than connections
+constexpr int kFilesOfServer = 128;       // file descriptors for other things than connections
 constexpr int kLargestMessage = 4 << 20;  // [byte]; frames and files are sent in chunks of 1 MiB
 constexpr int kConcurrentStreams = 256;   // per connection
 constexpr int kKeepaliveTime = 30'000;    // [ms]
@@ -73,8 +73,8 @@ struct RpcServer::Impl {
        const RpcSettings& settings)
       : logger(std::move(log)),
         connections(Fitting(settings).limits, *logger),
-        context{store,  jobs, results, kept, quick, streaming, slow, uploads,
-                checks, streams, turnstile, connections, running_checks, *logger, Fitting(settings)} {}
+        context{store,   jobs,      results,     kept,           quick,   streaming,        slow, uploads, checks,
+                streams, turnstile, connections, running_checks, *logger, Fitting(settings)} {}
 
   // Every second: reports whether jobs can be accepted (while the store has a problem, only what is stored is served),
   // stops checks that take too long, and returns memory.
