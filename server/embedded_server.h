@@ -34,7 +34,7 @@ struct ServerOptions {
   std::int64_t job_memory =
       0;  // most memory of a job, estimated before it is accepted [byte]; 0: 80 % of the machine's
   std::int64_t least_free_disk = -1;  // free disk space below which jobs wait [byte]; negative: 2 % of the disk
-  std::int64_t cache_size = std::int64_t{2} << 30;                                 // of results kept for reuse [byte]
+  std::int64_t cache_size = std::int64_t{2} << 30;  // of results kept for reuse [byte]
   int connections = 1000;  // of clients at once; fewer if the process may not open twice as many files
   int streams = 2000;      // of frames and geometries at once
   int uploads = 64;        // at once

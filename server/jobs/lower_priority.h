@@ -8,7 +8,7 @@
 
 namespace fascicle::server {
 
-// Makes the calling thread, and threads that it starts, give way to others of this machine: `steps` of niceness more.
+// Makes the calling thread, and threads that it starts, yield to others of this machine: `steps` of niceness more.
 // On Linux each thread has its own. Does nothing where that is not possible.
 inline void LowerPriority(int steps) {
   if (steps <= 0) return;

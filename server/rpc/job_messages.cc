@@ -18,6 +18,8 @@ google::protobuf::Timestamp TimestampOf(std::int64_t microseconds) {
   return timestamp;
 }
 
+namespace {
+
 // The same bytes for the same message.
 std::string SerializeAlways(const v1::Job& job) {
   std::string bytes;

@@ -147,6 +147,8 @@ void Listener::Run() {
       if (ready == stop_) return;
       if (const auto found = open_.find(ready); found != open_.end()) {  // both directions are shut
         connections_->Close(found->second);
+        // While gRPC still has the connection open, epoll would go on to report it under a number that is used again.
+        epoll_ctl(epoll_, EPOLL_CTL_DEL, ready, nullptr);
         close(ready);
         open_.erase(found);
       } else {

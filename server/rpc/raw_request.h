@@ -29,8 +29,6 @@ std::optional<Message> ParseRequest(const grpc::ByteBuffer& bytes) {
   return message;
 }
 
-inline grpc::Status NotAMessage() { return InvalidArgument("", "the request is not the message type of this call"); }
-
 }  // namespace fascicle::server
 
 #endif  // FASCICLE_SERVER_RPC_RAW_REQUEST_H_

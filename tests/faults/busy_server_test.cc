@@ -105,8 +105,8 @@ class ReadersTest : public BusyServerTest {
     const Rates after = Measure(fast);  // the machine may have become slower or faster meanwhile
     const double bytes = beside.bytes / (0.5 * (alone.bytes + after.bytes));
     const double steps = beside.steps / (0.5 * (alone.steps + after.steps));
-    std::printf("beside %d %s: fast readers at %.0f %% of %.0f MB/s alone, solving at %.0f %%, %.2f MiB for each\n", count,
-                what, 100 * bytes, 1e-6 * alone.bytes, 100 * steps, each);
+    std::printf("beside %d %s: fast readers at %.0f %% of %.0f MB/s alone, solving at %.0f %%, %.2f MiB for each\n",
+                count, what, 100 * bytes, 1e-6 * alone.bytes, 100 * steps, each);
     EXPECT_EQ(fast.failures(), 0);
     EXPECT_LE(each, 8);
     EXPECT_GE(bytes, 0.8 / Allowance());

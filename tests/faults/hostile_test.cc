@@ -34,7 +34,8 @@ class HostileTest : public ::testing::Test {
   void Start(int files = 0) {
     const std::string limit = files > 0 ? "ulimit -n " + std::to_string(files) + " && " : "";
     server_.emplace(std::vector<std::string>{
-        "/bin/sh", "-c", limit + "exec " + Program("fascicled") + " --listen 127.0.0.1:0 --data " + data_.path().string()});
+        "/bin/sh", "-c",
+        limit + "exec " + Program("fascicled") + " --listen 127.0.0.1:0 --data " + data_.path().string()});
     const std::string prefix = "listening on ";
     const std::string line = server_->ReadLine();
     ASSERT_TRUE(line.starts_with(prefix)) << server_->ErrorOutput();
@@ -83,8 +84,8 @@ class HostileTest : public ::testing::Test {
   // What one call of CreateJob cost the server.
   struct Cost {
     grpc::Status status;
-    std::size_t size = 0;  // of the message [byte]
-    double cpu = 0;        // [s]
+    std::size_t size = 0;   // of the message [byte]
+    double cpu = 0;         // [s]
     std::int64_t peak = 0;  // memory beyond that before [byte]
   };
   Cost Create(const v1::CreateJobRequest& request) {
@@ -138,7 +139,7 @@ TEST_F(HostileTest, ManyConnectionsLeaveRoomForOthers) {
   Start(256);
   std::vector<std::unique_ptr<RawHttp2>> idle;
   for (int i = 0; i < 600; ++i) idle.push_back(std::make_unique<RawHttp2>(address_));
-  // They are silent; after some seconds without a call the longest idle one gives way.
+  // They are silent; after some seconds without a call the longest idle one ends.
   std::this_thread::sleep_for(5500ms);
   for (int i = 0; i < 5; ++i) {
     Stubs another(address_);
@@ -218,11 +219,12 @@ TEST_F(HostileTest, HalfOpenConnectionsAndHalfMessages) {
 TEST_F(HostileTest, JunkNamesAndMessages) {
   Start();
   std::mt19937 random(8);
-  const std::vector<std::string> methods = {
-      "JobService/CreateJob",   "JobService/GetJob",         "JobService/ListJobs",
-      "JobService/CancelJob",   "JobService/DeleteJob",      "JobService/RestartJob",
-      "JobService/VerifyJob",   "FrameService/ListFrames",   "FrameService/StreamFrames",
-      "FrameService/GetGeometry", "AssetService/FindMissingAssets"};
+  const std::vector<std::string> methods = {"JobService/CreateJob",          "JobService/GetJob",
+                                            "JobService/ListJobs",           "JobService/CancelJob",
+                                            "JobService/DeleteJob",          "JobService/RestartJob",
+                                            "JobService/VerifyJob",          "FrameService/ListFrames",
+                                            "FrameService/StreamFrames",     "FrameService/GetGeometry",
+                                            "AssetService/FindMissingAssets"};
   std::string nested;  // a thousand groups within each other, and fields of fields
   for (int i = 0; i < 1000; ++i) nested = "\x0b" + nested + "\x0c";
   std::string fields = "x";

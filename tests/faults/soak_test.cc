@@ -72,7 +72,8 @@ class SoakTest : public ::testing::Test {
       switch (random() % 8) {
         case 0:
         case 1:
-          if (mine.size() < 8) mine.push_back(stubs->Submit(random() % 10 == 0 ? LargeSteps(40) : SwingingBox(0.05, 0.01)));
+          if (mine.size() < 8)
+            mine.push_back(stubs->Submit(random() % 10 == 0 ? LargeSteps(40) : SwingingBox(0.05, 0.01)));
           break;
         case 2:
         case 3: {
@@ -111,8 +112,8 @@ class SoakTest : public ::testing::Test {
     }
   }
   void Print(const char* what) {
-    std::printf("%s: %lld actions, memory %lld MiB growing by %.2f KiB/s (%.1f MiB in all), WAL %lld KiB at most\n", what,
-                static_cast<long long>(actions_), static_cast<long long>(server_.ResidentBytes() >> 20),
+    std::printf("%s: %lld actions, memory %lld MiB growing by %.2f KiB/s (%.1f MiB in all), WAL %lld KiB at most\n",
+                what, static_cast<long long>(actions_), static_cast<long long>(server_.ResidentBytes() >> 20),
                 growth_.Slope() / 1024, growth_.Amount() / (1 << 20), static_cast<long long>(wal_ >> 10));
   }
 

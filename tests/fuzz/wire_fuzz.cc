@@ -25,9 +25,9 @@ void Decode(std::string_view bytes, std::size_t split) {
     const std::vector<fascicle::client::BodyShape> shapes = fascicle::client::DecodeGeometry(geometry);
     for (int i = 0; i < frame.bodies_size() && i < static_cast<int>(shapes.size()); ++i) {
       const auto& shape = shapes[static_cast<std::size_t>(i)];
-      FASCICLE_CHECK(fascicle::client::DecodePositions(frame.bodies(i), shape.positions.size()).size() ==
-                         shape.positions.size(),
-                     "a position for each node");
+      FASCICLE_CHECK(
+          fascicle::client::DecodePositions(frame.bodies(i), shape.positions.size()).size() == shape.positions.size(),
+          "a position for each node");
       for (const auto& field : frame.bodies(i).fields()) fascicle::client::DecodeField(field, shape);
     }
   } catch (const std::exception& e) {
