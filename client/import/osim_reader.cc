@@ -518,7 +518,7 @@ class OsimReader {
   void TellOfSets(pugi::xml_node model) {
     for (const char* set : {"ConstraintSet", "ControllerSet", "ContactGeometrySet", "ProbeSet"}) {
       for (const pugi::xml_node node : model.child(set).child("objects").children()) {
-        if (node.type() == pugi::node_element) xml_.Tell(Notice::Kind::kNotTaken, node, "is not taken");
+        if (node.type() == pugi::node_element) xml_.Tell(Notice::Kind::kNotTaken, node, "is not supported");
       }
     }
   }

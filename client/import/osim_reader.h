@@ -15,7 +15,7 @@ namespace fascicle::client {
 // A skeleton of a model file, and what the file has besides.
 struct OsimModel {
   Skeleton skeleton;
-  std::vector<Notice> notices;  // what is not taken or changed, in the order of the file
+  std::vector<Notice> notices;  // what is not supported or changed, in the order of the file
 };
 
 // Reads an OpenSim model (.osim of version 3 or 4): bones with mass, inertia and surfaces; weld, pin, slider,

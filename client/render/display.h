@@ -9,8 +9,8 @@ namespace fascicle::client {
 // one (Xvfb) that this process starts. Xvfb does not listen on any network and ends with the display, or this process.
 class Display {
  public:
-  // The one that is open, if any: keep it for several pictures. Throws std::runtime_error with a message for users, such
-  // as that Xvfb is missing. From one thread.
+  // The one that is open, if any: keep it for several pictures. Throws std::runtime_error with a message for users,
+  // such as that Xvfb is missing. From one thread.
   static std::shared_ptr<Display> Open();
   virtual ~Display() = default;
   // Xlib's `Display*`.
