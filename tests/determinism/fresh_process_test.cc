@@ -34,15 +34,18 @@ TEST(FreshProcessTest, DirectSolvesDoNotDependOnTheEnvironment) {
   }
 }
 
+// The least and the best set of this machine; kernels are compared with all of them.
 TEST(FreshProcessTest, AnyInstructionSet) {
   constexpr const char* kNames[] = {"baseline", "avx2", "avx512"};
-  std::string first;
+  std::vector<InstructionSet> sets;
   for (const InstructionSet set : kInstructionSets) {
+    if (!IsAvailable(set)) continue;
+    if (sets.size() == 2) sets.pop_back();
+    sets.push_back(set);
+  }
+  std::string first;
+  for (const InstructionSet set : sets) {
     const auto number = static_cast<int>(set);
-    if (!IsAvailable(set)) {
-      std::printf("%s is not available here\n", kNames[number]);
-      continue;
-    }
     const std::string digests = DigestsOf("small", 2, {{"FASCICLE_INSTRUCTION_SET", kNames[number]}});
     const std::string heading = "instruction set " + std::to_string(number) + '\n';
     ASSERT_THAT(digests, ::testing::StartsWith(heading));

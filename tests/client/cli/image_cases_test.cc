@@ -42,7 +42,7 @@ class ImageCasesTest : public FascicleTest {
 };
 
 TEST_F(ImageCasesTest, AreMeshedAtTheirPlaceAndSize) {
-  int compared = 0;
+  int compared = 0, files = 0;
   for (const std::string folder : {"nifti_place", "nifti_values", "nifti_units", "metaimage", "nrrd", "dicom"}) {
     std::ifstream in(CasesFolder() / folder / "expected.json");
     const json expected = json::parse(in);
@@ -50,6 +50,8 @@ TEST_F(ImageCasesTest, AreMeshedAtTheirPlaceAndSize) {
       const std::string name = folder + "/" + file;
       // Values of that series do not hit their label.
       if (!right.contains("volume") || !fs::exists(CasesFolder() / name) || name == "dicom/per_slice_slope") continue;
+      // imaging_test reads all of them; here every third goes the whole way to a mesh.
+      if (++files % 3 != 0) continue;
       const Finished made = Mesh(name, right.contains("mask") ? 1 : right["label"].get<int>());
       ASSERT_EQ(made.exit_code, 0) << name << ": " << made.err << made.out;
       const json report = json::parse(made.out);
@@ -69,7 +71,7 @@ TEST_F(ImageCasesTest, AreMeshedAtTheirPlaceAndSize) {
       ++compared;
     }
   }
-  EXPECT_GT(compared, 60);
+  EXPECT_GT(compared, 20);
 }
 
 TEST_F(ImageCasesTest, AreRefusedWithTheCauseByMeshAndVoxelize) {
