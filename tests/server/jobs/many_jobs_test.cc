@@ -90,6 +90,9 @@ std::vector<JobQuery> Queries() {
 }
 
 TEST(ManyJobs, ListsAndRestartsTakeLittleTime) {
+#ifdef FASCICLE_SANITIZED
+  GTEST_SKIP() << "sanitized programs are slow";
+#endif
   const int count = NumberOfJobs();
   const bool is_release = count >= 10'000;
   testing::TemporaryFolder directory;
