@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "fascicle_fixture.h"
-#include "tests/support/server_process.h"
+#include "with_server.h"
 
 namespace fascicle::testing {
 namespace {
@@ -598,23 +598,9 @@ TEST_F(CliTest, CompletionKnowsCommandsAndOptions) {
 }
 
 // The same through an external server.
-class ServerTest : public CliTest {
+class ServerTest : public WithServer<CliTest> {
  protected:
-  void SetUp() override {
-    server_ = std::make_unique<ServerProcess>(
-        std::vector<std::string>{"--listen", "127.0.0.1:0", "--data", folder_ / "server"});
-    address_ = server_->AwaitAddress();
-    ASSERT_NE(address_, "") << server_->ErrorOutput();
-  }
-  Finished Call(const std::vector<std::string>& arguments) { return Fascicle(arguments, address_); }
-  std::string Submit(int frames, int steps) {
-    const Finished finished = Call({"submit", File("scene.json", SceneText(frames, steps))});
-    EXPECT_EQ(finished.exit_code, 0) << finished.err;
-    return finished.out.substr(0, finished.out.find('\n'));
-  }
-
-  std::unique_ptr<ServerProcess> server_;
-  std::string address_;
+  std::string Submit(int frames, int steps) { return SubmitText(SceneText(frames, steps)); }
 };
 
 TEST_F(ServerTest, AJobsWholeLife) {

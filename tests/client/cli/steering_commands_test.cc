@@ -7,9 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "fascicle_fixture.h"
 #include "tests/support/eventually.h"
-#include "tests/support/server_process.h"
+#include "with_server.h"
 
 namespace fascicle::testing {
 namespace {
@@ -34,23 +33,9 @@ std::string BlockText(double duration) {
          std::to_string(duration) + R"(, "output": {"frame_interval": 0.01}, "tet": {"stepping": "quasi_static"}})";
 }
 
-class SteeringCommandsTest : public FascicleTest {
+class SteeringCommandsTest : public WithServer<FascicleTest> {
  protected:
-  void SetUp() override {
-    server_ = std::make_unique<ServerProcess>(
-        std::vector<std::string>{"--listen", "127.0.0.1:0", "--data", folder_ / "server"});
-    address_ = server_->AwaitAddress();
-    ASSERT_NE(address_, "") << server_->ErrorOutput();
-  }
-  Finished Call(const std::vector<std::string>& arguments) { return Fascicle(arguments, address_); }
-  std::string Submit(double duration) {
-    const Finished finished = Call({"submit", File("scene.json", BlockText(duration))});
-    EXPECT_EQ(finished.exit_code, 0) << finished.err;
-    return finished.out.substr(0, finished.out.find('\n'));
-  }
-
-  std::unique_ptr<ServerProcess> server_;
-  std::string address_;
+  std::string Submit(double duration) { return SubmitText(BlockText(duration)); }
 };
 
 std::vector<json> Parse(const std::string& text) {
