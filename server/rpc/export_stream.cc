@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/base/stop.h"
 #include "fascicle/v1/transfer_service.pb.h"
@@ -11,6 +13,7 @@
 #include "server/rpc/job_messages.h"
 #include "server/rpc/names.h"
 #include "server/store/job_file.h"
+#include "server/translate/steering.h"
 
 namespace fascicle::server {
 
@@ -62,7 +65,12 @@ bool ExportStream::Open() {
     return false;
   }
   auto file = std::make_unique<TransferFile>(context_.store.NewTransferPath());
-  WriteJobFile(file->path(), ToMessageWithScene(*view).SerializeAsString(), *frames, [this] { return HasRoom(); });
+  v1::Job job = ToMessageWithScene(*view);
+  const auto steering = context_.jobs.ListSteering(*id, 1, std::numeric_limits<int>::max());
+  for (const SteeringRecord& input : steering ? steering->inputs : std::vector<SteeringRecord>()) {
+    *job.add_inputs() = InputForSpec(input);
+  }
+  WriteJobFile(file->path(), job.SerializeAsString(), *frames, [this] { return HasRoom(); });
   size_ = static_cast<std::int64_t>(std::filesystem::file_size(file->path()));
   in_.open(file->path(), std::ios::binary);
   file_ = std::move(file);

@@ -14,8 +14,8 @@ struct CallLimit {
 // What clients may use at once. Further calls are refused with UNAVAILABLE and RetryInfo.
 struct Limits {
   int connections = 1000;             // fewer if the process may not open twice as many files
-  CallLimit streams = {2000, 256};    // StreamFrames, GetGeometry
-  CallLimit uploads = {64, 16};       // UploadAsset
+  CallLimit streams = {2000, 256};    // frames, geometry, logs, exports, WatchJobs
+  CallLimit uploads = {64, 16};       // UploadAsset, ImportJob
   CallLimit submissions = {96, 48};   // CreateJob, VerifyJob
   CallLimit calls = {1000, 128};      // all others
   CallLimit kept_calls = {1000, 64};  // GetJob, ListJobs, CancelJob: they have threads and connections of their own

@@ -12,6 +12,7 @@
 #include "proto/frames/frame_fits.h"
 #include "server/rpc/job_messages.h"
 #include "server/rpc/names.h"
+#include "server/translate/steering.h"
 
 namespace fascicle::server {
 namespace {
@@ -30,6 +31,9 @@ v1::Job ReadJobMessage(JobFileReader& file) {
   if (!short_enough || !v1::Job::State_IsValid(job.state()) || job.threads() < 0 || job.threads() > 256) {
     throw JobFileError("the file describes a job that is not possible");
   }
+  Problems problems;
+  CheckInputs(job, "inputs", problems);
+  if (!problems.empty()) throw JobFileError("the file has inputs that the job can't have:\n" + problems.ToString());
   return job;
 }
 

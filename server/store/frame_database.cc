@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -159,6 +160,19 @@ FrameDatabase::~FrameDatabase() {
 void FrameDatabase::Remove(const std::string& path) {
   std::error_code ignored;  // the file is removed when the store is opened the next time
   for (const char* suffix : {"-wal", "-shm", ""}) std::filesystem::remove(path + suffix, ignored);
+}
+
+void FrameDatabase::RemoveAllButInputs(const std::string& path) {
+  // Closed, a database is without a write-ahead log, which would not fit the new file.
+  const std::vector<SteeringRecord> inputs =
+      FrameDatabase(path, nullptr).ListSteering(0, std::numeric_limits<int>::max());
+  if (inputs.empty()) return Remove(path);
+  const std::string kept = path + ".new";
+  Remove(kept);
+  for (FrameDatabase database(kept, nullptr); const SteeringRecord& input : inputs) database.PutSteering(input);
+  SyncFile(kept);
+  std::filesystem::rename(kept, path);
+  SyncParent(path);
 }
 
 void FrameDatabase::Count() {

@@ -45,6 +45,9 @@ class FrameDatabase final : public FrameStore {
 
   // Removes the file of a job and SQLite's files beside it.
   static void Remove(const std::string& path);
+  // Replaces the file of a job, which nobody has open, by one that has its inputs only, or by none if there are none.
+  // After a power cut, the one or the other is there.
+  static void RemoveAllButInputs(const std::string& path);
 
  private:
   struct Reader;

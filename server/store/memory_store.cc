@@ -329,7 +329,11 @@ class MemoryStore final : public Store {
     const auto found = jobs_.find(job.id);
     if (found == jobs_.end() || found->second.frames.use_count() > 1) return false;
     Update(job, found->second.record);
-    found->second.frames = std::make_shared<MemoryFrameStore>();
+    auto kept = std::make_shared<MemoryFrameStore>();
+    for (const SteeringRecord& input : found->second.frames->ListSteering(0, std::numeric_limits<int>::max())) {
+      kept->PutSteering(input);
+    }
+    found->second.frames = std::move(kept);
     return true;
   }
 

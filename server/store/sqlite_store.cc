@@ -100,7 +100,7 @@ class SqliteStore final : public Store {
     if (open != open_frames_.end() && !open->second.expired()) return false;
     // As above: a record without its file would be inconsistent.
     WithReserve([&] { jobs_.UpdateJob(job); });
-    FrameDatabase::Remove(FramesPath(job.id));
+    FrameDatabase::RemoveAllButInputs(FramesPath(job.id));
     return true;
   }
 

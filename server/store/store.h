@@ -249,8 +249,8 @@ class Store : public JobStore, public AssetStore {
   virtual std::shared_ptr<FrameStore> StageFrames(std::string_view job_id) = 0;
   // Path of a new file for a job that is exported or imported. The caller removes the file.
   virtual std::string NewTransferPath() = 0;
-  // Updates the record of a job that does not run, and removes its frames, geometry and checkpoints. False, without any
-  // change, if somebody has them open.
+  // Updates the record of a job that does not run, and removes its frames, geometry, checkpoints and log; its inputs
+  // stay. False, without any change, if somebody has them open.
   virtual bool RemoveFrames(const JobRecord& job) = 0;
   // Why nothing new should be stored, for users, such as a disk that is almost full; empty if all is well. Deleting
   // jobs and updating their records may still be possible. Cheap.

@@ -207,6 +207,18 @@ std::string EncodeSteering(const v1::SteeringInput& input) {
   return stored.SerializeAsString();
 }
 
+v1::SteeringInput InputForSpec(const SteeringRecord& record) {
+  v1::SteeringInput input;
+  if (!input.ParseFromString(record.input)) {
+    throw std::runtime_error("the stored input " + std::to_string(record.sequence) + " can't be read");
+  }
+  if (record.step) {
+    input.clear_at_time();
+    input.set_at_step(*record.step);
+  }
+  return input;
+}
+
 std::vector<SteeringRecord> InputsOfSpec(const std::string& spec) {
   v1::Job job;
   if (!job.ParseFromString(spec)) throw std::runtime_error("the stored job can't be read");

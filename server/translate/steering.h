@@ -37,6 +37,10 @@ void CheckInputs(v1::Job& job, const std::string& path, Problems& problems);
 // An input as it is stored: without what the server sets.
 std::string EncodeSteering(const v1::SteeringInput& input);
 
+// A stored input as a job brings it along: it takes effect with the step that is stored, if that is known. Throws
+// std::runtime_error if it can't be read.
+v1::SteeringInput InputForSpec(const SteeringRecord& record);
+
 // JobCodec::inputs_of_spec and decode_inputs.
 std::vector<SteeringRecord> InputsOfSpec(const std::string& spec);
 std::vector<SteeringInput> DecodeInputs(const std::string& spec, const std::vector<SteeringRecord>& inputs);

@@ -5,11 +5,13 @@
 #include <random>
 #include <string>
 
+#include "fascicle/v1/steering_service.grpc.pb.h"
 #include "fascicle/v1/transfer_service.grpc.pb.h"
 #include "proto/frames/frame_digest.h"
 #include "server/store/database.h"
 #include "tests/support/files.h"
 #include "tests/support/service_fixture.h"
+#include "tests/support/steered_scenes.h"
 
 namespace fascicle::service_test {
 namespace {
@@ -130,6 +132,53 @@ TEST_F(TransferTest, AJobOfAnotherServerIsAJobOfThisOne) {
   ASSERT_TRUE(there.stubs->jobs->VerifyJob(&verify, verified, &found).ok());
   EXPECT_EQ(found.frames(), 11);
   EXPECT_EQ(found.damages_size(), 0);
+}
+
+// The inputs of a job go with it: computed again over there, its frames are the same.
+TEST_F(TransferTest, ASteeredJobTakesItsInputsAlong) {
+  Place here, there;
+  v1::CreateJobRequest request;
+  *request.mutable_job()->mutable_scene() = SteeredBlock("tet { stepping: STEPPING_QUASI_STATIC }", kSoftMuscle);
+  request.mutable_job()->mutable_scene()->set_duration(0.1);
+  v1::SteeringInput& input = *request.mutable_job()->add_inputs();
+  input.set_sequence(1);
+  input.set_at_time(0.035);
+  v1::SteeredControl& control = *input.mutable_changes()->add_activations();
+  control.set_name("muscle");
+  control.set_value(0.3);
+  v1::Job job, imported;
+  ASSERT_TRUE(here.stubs->Create(request, job).ok());
+  ASSERT_TRUE(here.stubs->AwaitState(job.name(), v1::Job::STATE_SUCCEEDED));
+  std::string bytes;
+  ASSERT_TRUE(Export(*here.stubs, job.name(), bytes).ok());
+  const grpc::Status status = Import(*there.stubs, bytes, {}, imported);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+
+  const auto inputs_at = [&](Place& place) {
+    grpc::ClientContext context;
+    v1::ListSteeringRequest list;
+    list.set_name(job.name());
+    v1::ListSteeringResponse found;
+    EXPECT_TRUE(v1::SteeringService::NewStub(place.stubs->channel)->ListSteering(&context, list, &found).ok());
+    return found;
+  };
+  const v1::ListSteeringResponse before = inputs_at(here), after = inputs_at(there);
+  ASSERT_EQ(before.inputs_size(), 1);
+  ASSERT_EQ(after.inputs_size(), 1);
+  EXPECT_GT(before.inputs(0).step(), 1);
+  EXPECT_EQ(after.inputs(0).step(), before.inputs(0).step());
+
+  grpc::ClientContext context;
+  v1::RestartJobRequest restart;
+  restart.set_name(job.name());
+  restart.set_from_start(true);
+  v1::Job again;
+  ASSERT_TRUE(there.stubs->jobs->RestartJob(&context, restart, &again).ok());
+  ASSERT_TRUE(there.stubs->AwaitState(job.name(), v1::Job::STATE_SUCCEEDED));
+  EXPECT_EQ(there.stubs->Get(job.name()).generation(), imported.generation()) << "a frame was replaced";
+  const auto original = here.stubs->List(job.name()), computed = there.stubs->List(job.name());
+  ASSERT_EQ(computed.size(), original.size());
+  for (std::size_t k = 0; k < computed.size(); ++k) EXPECT_EQ(computed[k].digest(), original[k].digest()) << k;
 }
 
 TEST_F(TransferTest, ATakenNameIsReplacedAndARequestCountsOnce) {

@@ -237,6 +237,11 @@ TEST_P(StoreContract, FramesCanBeRemovedWhenNobodyReadsThem) {
   std::shared_ptr<FrameStore> frames = MakeFrames();
   const SampleFrame frame = MakeSampleFrame(0, 100);
   frames->PutFrame(frame.record, frame.bytes, "checkpoint");
+  SteeringRecord input;
+  input.sequence = 1;
+  input.step = 7;
+  input.input = "an input";
+  frames->PutSteering(input);
   JobRecord job = SampleJob(1);
   job.frame_count = job.first_frame = 1;
   EXPECT_FALSE(store_->RemoveFrames(job));
@@ -247,6 +252,11 @@ TEST_P(StoreContract, FramesCanBeRemovedWhenNobodyReadsThem) {
   EXPECT_EQ(store_->GetJob(job.id)->first_frame, 1);
   EXPECT_EQ(store_->OpenFrames(job.id)->frame_count(), 0);
   EXPECT_FALSE(NewestCheckpoint(*store_->OpenFrames(job.id)).has_value());
+  // Without its inputs, a restart would compute other frames.
+  const std::vector<SteeringRecord> inputs = store_->OpenFrames(job.id)->ListSteering(0, 10);
+  ASSERT_EQ(inputs.size(), 1u);
+  EXPECT_EQ(inputs[0].step, 7);
+  EXPECT_EQ(inputs[0].input, "an input");
 }
 
 TEST_P(StoreContract, KnowsNoJobThatWasNotCreated) {
