@@ -17,6 +17,8 @@ constexpr const char* kImportJobExamples =
     R"(  fascicle export 3f2a --database muscle.fascicle  on another server: the whole job as one file
   fascicle import-job muscle.fascicle              as a job of this server
   fascicle import-job muscle.fascicle --new-name   as a second job, beside the one of that name
+
+It is pinned: the server keeps it until somebody deletes it, or `fascicle update` unpins it.
 )";
 
 struct ImportJobOptions {

@@ -246,6 +246,7 @@ Result<v1::Job> Client::SubmitAgain(const std::string& name) {
   v1::CreateJobRequest request;
   request.mutable_job()->mutable_scene()->Swap(job.value().mutable_scene());
   request.mutable_job()->set_threads(job.value().threads());
+  request.mutable_job()->set_owner(job.value().owner());
   request.set_request_id(RandomRequestId());
   for (v1::SteeringInput& input : *steering.value().mutable_inputs()) {
     if (input.has_step()) {

@@ -11,6 +11,7 @@
 #include "proto/frames/frame_digest.h"
 #include "proto/frames/frame_fits.h"
 #include "server/rpc/job_messages.h"
+#include "server/rpc/job_settings.h"
 #include "server/rpc/names.h"
 #include "server/translate/steering.h"
 
@@ -32,8 +33,9 @@ v1::Job ReadJobMessage(JobFileReader& file) {
     throw JobFileError("the file describes a job that is not possible");
   }
   Problems problems;
-  CheckInputs(job, "inputs", problems);
-  if (!problems.empty()) throw JobFileError("the file has inputs that the job can't have:\n" + problems.ToString());
+  CheckSettings(job, problems);
+  CheckInputs(job, "job.inputs", problems);
+  if (!problems.empty()) throw JobFileError("the file describes a job that is not possible:\n" + problems.ToString());
   return job;
 }
 
@@ -53,6 +55,10 @@ JobRecord RecordOf(const v1::Job& job, const v1::ImportJobRequest& request) {
   record.request_id = request.request_id();
   record.scene_name = job.scene_name();
   record.spec = SpecOf(job);
+  CopySettings(job, record);
+  // Its end may be longer ago than jobs are kept here.
+  record.ttl_s = 0;
+  record.is_pinned = true;
   record.threads = job.threads();
   record.state = IsFinalState(job.state()) ? static_cast<JobState>(job.state()) : JobState::kCancelled;
   if (job.has_failure()) record.failure = job.failure().SerializeAsString();

@@ -116,15 +116,17 @@ void CheckHeader(const std::string& path) {
   if (!is_read || std::string_view(header.data(), 15) != "SQLite format 3") {
     throw JobFileError("the file is not a job that was exported: `fascicle export JOB --database FILE` writes one");
   }
-  if (header[18] != 1 || header[19] != 1) throw Damaged();
-}
-
-void CheckKind(Database& database) {
-  if (database.QueryInt("PRAGMA application_id") != kJobFileApplicationId) {
+  std::uint32_t application_id = 0;
+  for (std::size_t k = 68; k < 72; ++k) application_id = application_id << 8 | static_cast<unsigned char>(header[k]);
+  if (application_id != kJobFileApplicationId) {
     throw JobFileError(
         "the file is a database of another kind; a job in a server's data folder is exported first: `fascicle export "
         "FOLDER/jobs/ID --database FILE`");
   }
+  if (header[18] != 1 || header[19] != 1) throw Damaged();
+}
+
+void CheckFormat(Database& database) {
   const std::int64_t format = database.QueryInt("PRAGMA user_version");
   if (format != kJobFileFormat) {
     throw JobFileError("the file has format " + std::to_string(format) + "; this server knows " +
@@ -158,7 +160,7 @@ Database Open(const std::string& path) {
   CheckHeader(path);
   return Reading([&] {
     Database database(path, Database::Mode::kUntrusted);
-    CheckKind(database);
+    CheckFormat(database);
     CheckTables(database);
     return database;
   });

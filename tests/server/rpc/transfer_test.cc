@@ -140,6 +140,8 @@ TEST_F(TransferTest, ASteeredJobTakesItsInputsAlong) {
   v1::CreateJobRequest request;
   *request.mutable_job()->mutable_scene() = SteeredBlock("tet { stepping: STEPPING_QUASI_STATIC }", kSoftMuscle);
   request.mutable_job()->mutable_scene()->set_duration(0.1);
+  request.mutable_job()->set_owner("ann");
+  (*request.mutable_job()->mutable_labels())["study"] = "knee";
   v1::SteeringInput& input = *request.mutable_job()->add_inputs();
   input.set_sequence(1);
   input.set_at_time(0.035);
@@ -153,6 +155,9 @@ TEST_F(TransferTest, ASteeredJobTakesItsInputsAlong) {
   ASSERT_TRUE(Export(*here.stubs, job.name(), bytes).ok());
   const grpc::Status status = Import(*there.stubs, bytes, {}, imported);
   ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(imported.owner(), "ann");
+  EXPECT_EQ(imported.labels().at("study"), "knee");
+  EXPECT_TRUE(imported.pinned()) << "it may have ended longer ago than jobs are kept";
 
   const auto inputs_at = [&](Place& place) {
     grpc::ClientContext context;

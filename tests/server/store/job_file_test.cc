@@ -131,6 +131,9 @@ TEST_F(JobFileTest, OtherFilesAreRefusedInPlainWords) {
   EXPECT_NE(ReadingError(folder_ / "second").find("format 7"), std::string::npos);
   Database(folder_ / "second", Database::Mode::kReadWrite).Execute("PRAGMA application_id = 5");
   EXPECT_NE(ReadingError(folder_ / "second").find("another kind"), std::string::npos);
+  // As a server keeps it: with a write-ahead log.
+  Database(folder_ / "second", Database::Mode::kReadWrite).Execute("PRAGMA journal_mode = WAL");
+  EXPECT_NE(ReadingError(folder_ / "second").find("another kind"), std::string::npos);
 }
 
 TEST_F(JobFileTest, MoreThanAJobIsRefused) {
