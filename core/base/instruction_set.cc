@@ -22,7 +22,7 @@ InstructionSet FindPreferred() {
 }  // namespace
 
 bool IsAvailable(InstructionSet set) {
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(FASCICLE_BASELINE_KERNELS)
   switch (set) {
     case InstructionSet::kAvx2:
       return __builtin_cpu_supports("avx2");

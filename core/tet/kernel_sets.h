@@ -7,7 +7,7 @@
 namespace fascicle {
 
 extern const Kernels kBaselineKernels;
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(FASCICLE_BASELINE_KERNELS)
 extern const Kernels kAvx2Kernels;
 extern const Kernels kAvx512Kernels;
 #endif

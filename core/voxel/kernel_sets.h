@@ -7,7 +7,7 @@
 namespace fascicle {
 
 extern const VoxelKernels kBaselineVoxelKernels;
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(FASCICLE_BASELINE_KERNELS)
 extern const VoxelKernels kAvx2VoxelKernels;
 extern const VoxelKernels kAvx512VoxelKernels;
 #endif

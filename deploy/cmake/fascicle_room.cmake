@@ -46,7 +46,7 @@ endfunction()
 # Eigen is not used in these files and must not adapt its types to the set.
 function(fascicle_kernels sources)
   set(files kernels_baseline.cc)
-  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT FASCICLE_SANITIZE STREQUAL "thread")
     list(APPEND files kernels_avx2.cc kernels_avx512.cc)
     set_source_files_properties(kernels_avx2.cc PROPERTIES COMPILE_OPTIONS "-mavx2")
     set_source_files_properties(kernels_avx512.cc PROPERTIES
@@ -74,7 +74,9 @@ endfunction()
 #   fascicle_test(geometry_test SOURCES mesh_io_test.cc DEPS core/geometry [LABELS slow] [TIMEOUT 60]
 #                 [THREADED TetrahedralizeTest.*])
 #
-# THREADED names the tests in which threads meet; the thread sanitizer runs only these. The default is all.
+# THREADED names the tests in which threads meet; the thread sanitizer runs only these. The default is all. Programs with
+# the label slow are built by the target slow_tests and run whole; under the thread sanitizer these are also the programs
+# of rooms that determinism_test runs, too.
 # Tests find the project's root and anatomical data by tests/support/paths.h.
 function(fascicle_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS;LABELS;THREADED" ${ARGN})
@@ -87,7 +89,15 @@ function(fascicle_test name)
   else()
     target_precompile_headers(${name} REUSE_FROM fascicle_precompiled_core_test)
   endif()
-  add_dependencies(tests ${name})
+  if(FASCICLE_SANITIZE STREQUAL "thread" AND NOT name MATCHES "^(base|determinism|store|jobs)_test$")
+    list(APPEND ARG_LABELS slow)
+  endif()
+  if(slow IN_LIST ARG_LABELS)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+    add_dependencies(slow_tests ${name})
+  else()
+    add_dependencies(tests ${name})
+  endif()
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
@@ -99,6 +109,9 @@ function(fascicle_test name)
     endif()
     add_test(NAME ${name} COMMAND ${name} --gtest_filter=${filter})
     set_tests_properties(${name} PROPERTIES TIMEOUT 900 LABELS "${ARG_LABELS}")
+  elseif(slow IN_LIST ARG_LABELS)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 7200 LABELS "${ARG_LABELS}")
   else()
     gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
   endif()

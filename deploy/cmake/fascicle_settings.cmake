@@ -36,6 +36,10 @@ if(FASCICLE_SANITIZE)
   add_compile_options(-fsanitize=${FASCICLE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g1)
   add_link_options(-fsanitize=${FASCICLE_SANITIZE})
 endif()
+if(FASCICLE_SANITIZE STREQUAL "thread")
+  # Threads meet in the same way in every instruction set, and each takes a minute to compile.
+  add_compile_definitions(FASCICLE_BASELINE_KERNELS)
+endif()
 if(FASCICLE_SANITIZE MATCHES "address" AND NOT FASCICLE_FUZZ)
   target_sources(fascicle_settings INTERFACE
     $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${CMAKE_CURRENT_LIST_DIR}/sanitized_program.cc>)
