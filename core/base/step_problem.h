@@ -19,6 +19,7 @@ enum class StepProblem {
   kNoEquilibrium,      // Newton's method of implicit and quasi-static steps
   kNotSolved,          // the linear solve of voxels
   kLeftGrid,           // a body has reached the boundary of its grid
+  kInaccurate,         // the error of an implicit step
   kVelocitiesNotFound  // the linear solve for volumes, supports and implicit elasticity on grids
 };
 

@@ -37,15 +37,16 @@ struct TetMethod {
   Precision precision = Precision::kDouble;
   std::optional<double> time_step;  // [s]; automatic when absent
   LinearSolver linear_solver = LinearSolver::kAutomatic;
-  double newton_tolerance = 1e-8;  // relative force at which Newton iterations end
-  double safety = 0.9;             // fraction of the stable step
-  double solver_tolerance = 1e-8;  // relative residual of the linear solves of damping
-  double spectral_radius = 1;      // of kNewmark at infinite frequency; 1: undamped
+  double newton_tolerance = 1e-8;    // relative force at which Newton iterations end
+  double safety = 0.9;               // fraction of the stable step
+  double solver_tolerance = 1e-8;    // relative residual of the linear solves of damping
+  double spectral_radius = 1;        // of kNewmark at infinite frequency; 1: undamped
+  std::optional<double> step_error;  // largest error of an implicit step with inertia, see core/tet/step_error.h
 };
 template <>
 inline constexpr auto kFieldNames<TetMethod> = FieldNames("stepping", "element", "volume", "precision", "time_step",
                                                           "linear_solver", "newton_tolerance", "safety",
-                                                          "solver_tolerance", "spectral_radius");
+                                                          "solver_tolerance", "spectral_radius", "step_error");
 
 enum class VoxelStepping { kStatic, kDynamic };
 

@@ -66,6 +66,11 @@ ProblemText TextOf(StepProblem problem, Method method) {
           "NOT_CONVERGED", "no equilibrium was found, even with the step reduced to a few ten-thousandths",
           "the listed elements are farthest from it: check whether the body can bear this load there; load, move or "
           "activate more slowly, or use a stepping with inertia (backward_euler), which can simulate snap-through"};
+    case StepProblem::kInaccurate:
+      return {"STEP_TOO_SMALL",
+              "the error of a step exceeds step_error, even with the step reduced to a few "
+              "ten-thousandths",
+              "use a larger step_error; a load or motion that jumps needs any"};
     case StepProblem::kUnstable:
       return {"STEP_TOO_SMALL", "the motion gains energy, even with the step reduced to a thousandth",
               "omit time_step to use a stable step, or use a smaller safety"};

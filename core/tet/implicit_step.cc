@@ -135,16 +135,30 @@ StepProposal TetSolver::ProposeImplicit(const TetState& state, double end) const
 
 void TetSolver::AcceptImplicit(TetState& state, const StepReport& report, double dt) {
   next_.next_step = report.iterations <= kEasyIterations ? 2 * dt : dt;
+  if (report.error >= 0) {
+    const double allowed = NextLength(ErrorTermAt(state), report.error, *method_.step_error) * dt;
+    next_.next_step = std::min(next_.next_step, allowed);
+  }
   std::swap(state, next_);
 }
 
-bool TetSolver::CutImplicit(TetState& state, double dt) const {
+bool TetSolver::CutImplicit(TetState& state, const StepReport& report, double dt) const {
   state.next_step = dt / 2;
+  if (report.problem == StepProblem::kInaccurate) {
+    state.next_step = std::min(NextLength(ErrorTermAt(state), report.error, *method_.step_error), 0.9) * dt;
+  }
   const Scene& scene = model_.scene();
   // Steps end at frames.
   double longest = std::min(scene.duration, scene.output.frame_interval);
   if (method_.time_step) longest = std::min(longest, *method_.time_step);
-  return !(dt / 2 < kShortestStep * longest);
+  return !(state.next_step < kShortestStep * longest);
+}
+
+// The leading error of the step that begins at a state.
+ErrorTerm TetSolver::ErrorTermAt(const TetState& now) const {
+  if (method_.stepping == Stepping::kNewmark) return {std::abs(1.0 / 6 - Alpha(method_.spectral_radius).beta), true, 3};
+  if (method_.stepping == Stepping::kBdf2 && now.step > 0) return {2.0 / 9, true, 3};
+  return {0.5, false, 2};
 }
 
 StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step, TetState& next) {
@@ -228,6 +242,10 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
       const Vec3 free = model_.mass()[n] * model_.inverse_mass()[n];
       next.force[n] += free.cwiseProduct(own[n] - mean[n]);
     }
+  }
+  if (ControlsError()) {
+    report.error = ErrorOfStep(model_, ErrorTermAt(now), now, next);
+    if (report.error > *method_.step_error) report.problem = StepProblem::kInaccurate;
   }
   if (is_static) report.strain = LargestStepStrain(model_, now.positions, next.positions);
   next.stable = now.stable;

@@ -145,14 +145,14 @@ StepReport TetSolver::Step(TetState& state, const Controls& now, const Controls&
     IsImplicit() ? AcceptImplicit(state, report, dt) : AcceptExplicit(state, report);
     return report;
   }
-  report.try_shorter = CutStep(state, now, dt);
+  report.try_shorter = CutStep(state, now, report, dt);
   if (!report.try_shorter) FindWhere(state, next, report);
   return report;
 }
 
 // Makes the next proposal shorter; false if it would be too short.
-bool TetSolver::CutStep(TetState& state, const Controls& now, double dt) {
-  if (IsImplicit()) return CutImplicit(state, dt);
+bool TetSolver::CutStep(TetState& state, const Controls& now, const StepReport& report, double dt) {
+  if (IsImplicit()) return CutImplicit(state, report, dt);
   if (state.cuts >= kMaxCuts) return false;
   if (state.stable.found_at != state.step) RefreshStableStep(state, now);
   ++state.cuts;

@@ -14,6 +14,7 @@
 #include "core/tet/newton.h"
 #include "core/tet/stable_step.h"
 #include "core/tet/state.h"
+#include "core/tet/step_error.h"
 #include "core/tet/step_strain.h"
 
 namespace fascicle {
@@ -29,6 +30,7 @@ struct StepReport {
   // Curvature of the energy along this step's motion times dt^2: a Rayleigh quotient of M^-1 K. The central difference
   // method is unstable if it stays above 4.
   double stiffness_of_motion = 0;
+  double error = -1;  // of an implicit step whose error is controlled, see step_error.h; otherwise negative
   BadElements bad;    // where a step failed
   StepStrain strain;  // of quasi-static steps
 };
@@ -97,8 +99,10 @@ class TetSolver {
                  const NodalVector& x) const;
   StepProposal ProposeExplicit(TetState& state, const Controls& now, double end);
   StepProposal ProposeImplicit(const TetState& state, double end) const;
+  bool ControlsError() const { return method_.step_error && method_.stepping != Stepping::kQuasiStatic; }
+  ErrorTerm ErrorTermAt(const TetState& now) const;
   void AcceptImplicit(TetState& state, const StepReport& report, double dt);
-  bool CutImplicit(TetState& state, double dt) const;
+  bool CutImplicit(TetState& state, const StepReport& report, double dt) const;
   bool IsImplicit() const { return method_.stepping != Stepping::kExplicit && method_.stepping != Stepping::kMixed; }
   void CompleteState(const Controls& start, TetState& state);
   void SettleMiddles(const Controls& start, TetState& state);
@@ -131,7 +135,7 @@ class TetSolver {
   double TargetStep(const TetState& state) const;
   StepProblem Judge(const TetState& now, const TetState& next, const StepReport& report) const;
   void AcceptExplicit(TetState& state, const StepReport& report);
-  bool CutStep(TetState& state, const Controls& now, double dt);
+  bool CutStep(TetState& state, const Controls& now, const StepReport& report, double dt);
   void FindWhere(const TetState& state, const Controls& next, StepReport& report) const;
 
   const TetModel& model_;

@@ -75,6 +75,7 @@ TetMethod TranslateTetMethod(const v1::Scene& scene) {
   method.safety = scene.tet().safety();
   method.solver_tolerance = scene.tet().solver_tolerance();
   method.spectral_radius = scene.tet().spectral_radius();
+  if (scene.tet().has_step_error()) method.step_error = scene.tet().step_error();
   return method;
 }
 

@@ -64,6 +64,9 @@ void AddNotesOnMethod(const v1::Scene& scene, std::vector<std::string>& notes) {
   }
   if (!is_mixed) AddNotes(scene.tet(), "tet", {"solver_tolerance"}, "without mixed stepping", notes);
   if (stepping != v1::STEPPING_NEWMARK) AddNotes(scene.tet(), "tet", {"spectral_radius"}, "without Newmark", notes);
+  if (is_explicit || is_mixed || stepping == v1::STEPPING_QUASI_STATIC) {
+    AddNotes(scene.tet(), "tet", {"step_error"}, "without implicit stepping with inertia", notes);
+  }
   if (scene.voxel().stepping() != v1::VOXEL_STEPPING_DYNAMIC) {
     AddNotes(scene.voxel(), "voxel", {"time_step", "start_loaded"}, "in static stepping", notes);
   }

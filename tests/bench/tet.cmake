@@ -1,5 +1,6 @@
 # Forces and whole steps of the tet method.
 fascicle_bench(tet_bench SOURCES tet_bench.cc DEPS fascicle_tet_scenes)
+fascicle_bench(motion_bench SOURCES motion_bench.cc DEPS fascicle_tet_scenes)
 
 # Programs of others are compared with where they are installed (deploy/setup bench).
 fascicle_bench(tet_force_bench SOURCES tet_force_bench.cc DEPS fascicle_tet_scenes)

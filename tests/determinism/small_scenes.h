@@ -108,6 +108,13 @@ inline NamedScene ViscoelasticScene(const std::string& name, Stepping stepping, 
   return named;
 }
 
+inline NamedScene ControlledScene(const std::string& name, Stepping stepping, ElementOrder element) {
+  NamedScene named = TetScene(name, stepping, element);
+  named.name += "_step_error";
+  named.scene.tet.step_error = 1e-5;
+  return named;
+}
+
 inline NamedScene VoxelSceneOf(const std::string& name, VoxelStepping stepping, Material law) {
   return {"voxel_" + name, BentBricks(stepping, std::move(law))};
 }
@@ -133,6 +140,7 @@ inline std::vector<NamedScene> SmallScenes() {
   scenes.push_back(ViscoelasticScene("newmark", Stepping::kNewmark, ElementOrder::kLinear));
   scenes.push_back(ViscoelasticScene("quasi_static", Stepping::kQuasiStatic, ElementOrder::kQuadratic));
   const Material linear = LinearElastic(std::array{1e5, 0.3}), corotated = CorotatedLinear(std::array{1e5, 0.3});
+  scenes.push_back(ControlledScene("bdf2", Stepping::kBdf2, ElementOrder::kLinear));
   scenes.push_back(VoxelSceneOf("static", VoxelStepping::kStatic, linear));
   scenes.push_back(VoxelSceneOf("dynamic", VoxelStepping::kDynamic, linear));
   scenes.push_back(VoxelSceneOf("corotated_static", VoxelStepping::kStatic, corotated));
