@@ -1,5 +1,7 @@
 #include "core/eulerian/body_stepper.h"
 
+#include <Eigen/Geometry>
+
 #include <limits>
 #include <optional>
 
@@ -17,7 +19,10 @@ constexpr int kBand = 4;  // layers of nodes around the solid where the map is e
 constexpr int kVelocityBand = kBand + 2;
 constexpr double kCourant = 0.4;       // fraction of a cell that waves travel in a step
 constexpr double kImplicit = 10;       // factor on that for implicit elasticity
-constexpr double kMostTravel = 0.5;    // fraction of a cell that the solid moves in a step
+// The same for bodies whose grid travels. While they fly they hardly deform, and nothing needs shorter steps.
+constexpr double kImplicitTravelling = 300;
+constexpr double kMostTravel = 0.5;    // fraction of a cell that the solid moves through the grid in a step
+constexpr double kMostTurn = 0.1;      // angle by which a grid turns in a step [rad]
 constexpr double kLeastStep = 1e-6;    // relative to the step for waves at rest
 constexpr double kMostSurfaceGap = 1;  // largest distance between the map and its surface [cells]
 constexpr std::size_t kMostNamed = 16;
@@ -62,6 +67,7 @@ EulerianState BodyStepper::InitialState(const std::function<Vec3(const Vec3&)>& 
 StepProblem BodyStepper::Prepare(const EulerianState& state, const BodyControls& now,
                                  std::vector<std::int64_t>& bad_cells) {
   const StageTimer timer(profile_, "forces");
+  frame_ = GridFrame(state.pose, body_->travels);
   UpdateCells(*body_, state, *team_, cells_);
   if (!cells_.valid) {
     for (const std::size_t c : cells_.solid) {
@@ -73,7 +79,17 @@ StepProblem BodyStepper::Prepare(const EulerianState& state, const BodyControls&
   bad_cells = CellsAtSide();
   if (!bad_cells.empty()) return StepProblem::kLeftGrid;
   SetForces(*body_, state, now, cells_, *team_, roles_, forces_);
+  if (body_->travels) rigid_ = RigidPartOf(body_->grid, forces_, state.v, *team_);
   return StepProblem::kNone;
+}
+
+double BodyStepper::FastestBeside(const std::vector<Vec3>& v, const RigidVelocity& rigid) const {
+  double fastest = 0;
+  for (std::size_t n = 0; n < v.size(); ++n) {
+    if (forces_.mass[n] == 0) continue;
+    fastest = std::max(fastest, (v[n] - rigid.At(body_->grid.NodePosition(body_->grid.NodeAt(n)))).norm());
+  }
+  return fastest;
 }
 
 std::vector<std::int64_t> BodyStepper::CellsAtSide() const {
@@ -88,14 +104,12 @@ std::vector<std::int64_t> BodyStepper::CellsAtSide() const {
 }
 
 StepLength BodyStepper::FindStepLength(const EulerianState& state, const BodyControls& now) {
-  double fastest = 0;
-  for (std::size_t n = 0; n < state.v.size(); ++n) {
-    if (forces_.mass[n] > 0) fastest = std::max(fastest, state.v[n].norm());
-  }
+  const double fastest = FastestBeside(state.v, rigid_), spin = rigid_.spin.norm();
   const double h = body_->grid.spacing;
   StepLength step;
   waves_ = step.waves = kCourant * h / FastestWave(*body_, state, now, cells_, *team_);
-  step.stable = (body_->implicit_elasticity ? kImplicit : 1) * step.waves;
+  step.stable = (body_->implicit_elasticity ? body_->travels ? kImplicitTravelling : kImplicit : 1) * step.waves;
+  if (spin > 0) step.stable = std::min(step.stable, kMostTurn / spin);
   if (body_->time_step) step.stable = std::min(step.stable, *body_->time_step);
   if (fastest > 0) step.stable = std::min(step.stable, kMostTravel * h / fastest);
   if (body_->mass_damping > 0) step.stable = std::min(step.stable, 1 / body_->mass_damping);
@@ -110,7 +124,20 @@ void BodyStepper::AdvectVelocities(const EulerianState& state, double dt) {
   made_.momentum = momentum.sum + dt * force.sum;
   made_.moment = momentum.moment + dt * force.moment;
   const StageTimer timer(profile_, "advection of velocities");
-  AdvectField(now_, now_, state, dt, made_.v);
+  if (body_->travels) {
+    AdvectField(now_, ThroughGrid(now_, rigid_), state, dt, made_.v);
+  } else {
+    AdvectField(now_, now_, state, dt, made_.v);
+  }
+}
+
+// The velocities of the material through a grid that moves rigidly.
+std::vector<Vec3> BodyStepper::ThroughGrid(const std::vector<Vec3>& v, const RigidVelocity& rigid) const {
+  std::vector<Vec3> result(v.size());
+  team_->For(v.size(), kStepGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) result[n] = v[n] - rigid.At(body_->grid.NodePosition(body_->grid.NodeAt(n)));
+  });
+  return result;
 }
 
 // Restores the momentum of an unsupported body; returns that momentum.
@@ -131,7 +158,8 @@ void BodyStepper::Accelerate(const EulerianState& state, const BodyControls& now
       if (roles_.IsPrescribed(n)) {
         const RigidMotion& from = now.motions[roles_.support[n]];
         const RigidMotion& to = next.motions[roles_.support[n]];
-        const Vec3 prescribed = (to.PositionOf(state.X[n]) - from.PositionOf(state.X[n])) / dt;
+        const Vec3 prescribed =
+            frame_.VectorInGrid((to.PositionOf(state.X[n]) - from.PositionOf(state.X[n])) / dt);
         impulses_[n] = forces_.mass[n] * (prescribed - v[n]) - dt * forces_.force[n];
         v[n] = prescribed;
       } else if (roles_.inside[n] != 0) {
@@ -148,6 +176,9 @@ VelocityProgram::Part BodyStepper::PartOf(const EulerianState& state, const Body
 
 void BodyStepper::TakeVelocities(const VelocityProgram& program, std::size_t body) {
   program.TakeBody(body, made_.v, made_.pressure, impulses_);
+  const Resultant impulse = program.ContactImpulse(body);
+  made_.momentum += impulse.sum;
+  made_.moment += impulse.moment;
 }
 
 StepProblem BodyStepper::FinishVelocities(double dt) {
@@ -156,9 +187,10 @@ StepProblem BodyStepper::FinishVelocities(double dt) {
   made_.moments = made_.reactions;
   for (std::size_t n = 0; n < impulses_.size(); ++n) {
     if (!roles_.IsPrescribed(n)) continue;
-    const Vec3 force = impulses_[n] / dt;
+    const Vec3 force = frame_.VectorInWorld(impulses_[n] / dt);
+    const Vec3 place = frame_.PointInWorld(body_->grid.NodePosition(body_->grid.NodeAt(n)));
     made_.reactions[roles_.support[n]] += force;
-    made_.moments[roles_.support[n]] += body_->grid.NodePosition(body_->grid.NodeAt(n)).cross(force);
+    made_.moments[roles_.support[n]] += place.cross(force);
   }
   if (!AllFinite(v)) return StepProblem::kNotFinite;
   for (const NodeRoles::Constrained& constrained : roles_.constrained) {
@@ -187,17 +219,20 @@ void BodyStepper::AdvectField(const std::vector<Vec3>& field, const std::vector<
 }
 
 // Moves material points with v, to near their position on the next map.
-void BodyStepper::AdvectPoints(const EulerianState& state, double dt, std::vector<Vec3>& points) {
-  const KnownField v = {&made_.v, &state.known};
+void BodyStepper::AdvectPoints(const std::vector<Vec3>& velocity, const EulerianState& state, double dt,
+                               std::vector<Vec3>& points) {
+  const KnownField v = {&velocity, &state.known};
   team_->For(points.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      if (const auto velocity = Interpolate(body_->grid, v, points[k])) points[k] += dt * *velocity;
+      if (const auto of_point = Interpolate(body_->grid, v, points[k])) points[k] += dt * *of_point;
     }
   });
 }
 
 StepProblem BodyStepper::Move(const EulerianState& state, const BodyControls& next, double dt) {
   const EulerianGrid& grid = body_->grid;
+  const std::optional<RigidVelocity> rigid =
+      body_->travels ? std::optional(RigidPartOf(grid, forces_, made_.v, *team_)) : std::nullopt;
   std::vector<Vec3>& v = made_.v;
   std::optional<Band> band;
   {
@@ -208,9 +243,12 @@ StepProblem BodyStepper::Move(const EulerianState& state, const BodyControls& ne
     band.emplace(grid, has_velocity, kVelocityBand, *team_);
     band->Extend(kVelocityBand, 0, *team_, v);
   }
+  std::vector<Vec3> relative;
+  if (rigid) relative = ThroughGrid(v, *rigid);
+  const std::vector<Vec3>& flow = rigid ? relative : v;
   {
     const StageTimer timer(profile_, "advection of the map");
-    AdvectField(state.X, v, state, dt, made_.X);
+    AdvectField(state.X, flow, state, dt, made_.X);
   }
   {
     const StageTimer timer(profile_, "extrapolation of the map");
@@ -222,8 +260,8 @@ StepProblem BodyStepper::Move(const EulerianState& state, const BodyControls& ne
     made_.surface = state.surface;
     made_.plastic = state.plastic;
     made_.plastic_places = state.plastic_places;
-    AdvectPoints(state, dt, made_.surface);
-    AdvectPoints(state, dt, made_.plastic_places);
+    AdvectPoints(flow, state, dt, made_.surface);
+    AdvectPoints(flow, state, dt, made_.plastic_places);
     if (!(FindSurface(*body_, *team_, made_) < kMostSurfaceGap * grid.spacing)) return StepProblem::kInvertedElement;
   }
   if (body_->plasticity) {
@@ -232,7 +270,30 @@ StepProblem BodyStepper::Move(const EulerianState& state, const BodyControls& ne
   }
   made_.momentum_mass = MassOf(forces_, *team_);
   made_.pose = state.pose;
+  if (rigid) Travel(*rigid, dt);
   return StepProblem::kNone;
+}
+
+// Moves the grid with a rigid velocity: the centre of mass along a line, turning at a constant rate. Velocities and
+// momenta, which this does not change in the world, get components along the new axes; so Coriolis and centrifugal
+// forces need no terms of their own [Fan 2013, 4.3].
+void BodyStepper::Travel(const RigidVelocity& rigid, double dt) {
+  const Mat3 before = RotationOf(made_.pose);
+  const auto [w, x, y, z] = made_.pose.quaternion;
+  const double angle = dt * rigid.spin.norm();
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, angle > 0 ? rigid.spin.normalized() : Vec3::UnitX()));
+  const Eigen::Quaterniond q = (Eigen::Quaterniond(w, x, y, z) * turn).normalized();
+  const Vec3 centre = made_.pose.position + before * (rigid.centre + dt * rigid.linear);
+  made_.pose.quaternion = {q.w(), q.x(), q.y(), q.z()};
+  const Mat3 after = RotationOf(made_.pose), turned = after.transpose() * before;
+  const Vec3 position = centre - after * rigid.centre;
+  team_->For(made_.v.size(), kStepGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) made_.v[n] = turned * made_.v[n];
+  });
+  const Vec3 shift = before.transpose() * (made_.pose.position - position);
+  made_.moment = turned * (made_.moment + shift.cross(made_.momentum));
+  made_.momentum = turned * made_.momentum;
+  made_.pose.position = position;
 }
 
 }  // namespace fascicle

@@ -32,6 +32,9 @@ class BodyStepper {
   // are at most 16 cells where that is.
   StepProblem Prepare(const EulerianState& state, const BodyControls& now, std::vector<std::int64_t>& bad_cells);
   StepLength FindStepLength(const EulerianState& state, const BodyControls& now);
+  double waves() const { return waves_; }  // StepLength::waves of the last FindStepLength [s]
+  // The largest speed of a node with mass beside a rigid velocity [m/s]. Both in the grid's frame.
+  double FastestBeside(const std::vector<Vec3>& v, const RigidVelocity& rigid) const;
   // The shortest useful step: a millionth of the time that waves need to cross a cell at rest [s].
   double LeastStep() const;
 
@@ -62,7 +65,10 @@ class BodyStepper {
   bool AllFinite(const std::vector<Vec3>& v) const;
   void AdvectField(const std::vector<Vec3>& field, const std::vector<Vec3>& v, const EulerianState& state, double dt,
                    std::vector<Vec3>& result);
-  void AdvectPoints(const EulerianState& state, double dt, std::vector<Vec3>& points);
+  void AdvectPoints(const std::vector<Vec3>& velocity, const EulerianState& state, double dt,
+                    std::vector<Vec3>& points);
+  std::vector<Vec3> ThroughGrid(const std::vector<Vec3>& v, const RigidVelocity& rigid) const;
+  void Travel(const RigidVelocity& rigid, double dt);
 
   const EulerianBody* body_;
   ThreadTeam* team_;
@@ -70,6 +76,8 @@ class BodyStepper {
   EulerianCells cells_;
   NodeRoles roles_;
   NodalForces forces_;
+  GridFrame frame_;      // of the state of the last Prepare
+  RigidVelocity rigid_;  // the velocity of the grid in that state; zero if it does not travel
   double waves_ = 0;            // StepLength::waves
   std::vector<Vec3> now_;       // velocities at the start of the step, with the momentum restored
   std::vector<Vec3> impulses_;  // of supports on prescribed nodes [N s]; empty without supports

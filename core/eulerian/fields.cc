@@ -32,19 +32,20 @@ std::vector<double> CellValue(const EulerianBody& body, const EulerianState& sta
   const FieldSource from = InfoOf(asked.field).from;
   FibreState fibre = FibreOf(body, state, now, body.grid.CellAt(cell));
   MaterialPoint point;
-  point.F = cells.F[cell];
+  const GridFrame frame(state.pose, body.travels);
+  point.F = frame.GradientInWorld(cells.F[cell]);
   point.J = cells.J[cell];
   point.a0 = fibre.direction;
   point.line_of_action = asked.line_of_action;
   if (from == FieldSource::kStress || from == FieldSource::kFibreStress) {
-    point.sigma = StressOf(body, state, fibre, cells, cell);
+    point.sigma = frame.TensorInWorld(StressOf(body, state, fibre, cells, cell));
   } else if (from == FieldSource::kEnergy) {
     const Mat3 Fe = ElasticGradient(body, state, cells, cell);
     point.energy_density = std::visit([&](const auto& law) { return law.Energy(Fe, fibre); }, body.material);
   }
   if (from == FieldSource::kFibreStress) {
     fibre.activation = 0;
-    point.passive_sigma = StressOf(body, state, fibre, cells, cell);
+    point.passive_sigma = frame.TensorInWorld(StressOf(body, state, fibre, cells, cell));
   }
   std::vector<double> values(InfoOf(Averaged(asked.field)).components);
   PutField(Averaged(asked.field), point, values.data());
@@ -92,9 +93,10 @@ std::vector<double> AtPoint(OutputField field, const std::vector<double>& mean) 
 
 std::vector<double> VelocitiesAt(const EulerianBody& body, const EulerianState& state,
                                  const std::vector<Vec3>& points) {
+  const GridFrame frame(state.pose, body.travels);
   std::vector<double> values;
   for (const Vec3& x : points) {
-    const Vec3 v = Interpolate(body.grid, {&state.v, &state.known}, x).value_or(Vec3::Zero());
+    const Vec3 v = frame.VectorInWorld(Interpolate(body.grid, {&state.v, &state.known}, x).value_or(Vec3::Zero()));
     values.insert(values.end(), v.begin(), v.end());
   }
   return values;

@@ -46,6 +46,7 @@ class CellForces {
         state_(state),
         controls_(controls),
         cells_(cells),
+        frame_(state.pose, body.travels),
         cell_volume_(std::pow(body.grid.spacing, 3)) {}
 
   CellForce Of(std::size_t cell) const {
@@ -59,7 +60,8 @@ class CellForces {
     SetHourglass(at, cells_.F[cell], volume, result);
     result.mass = volume * body_.density / cells_.J[cell];
     if (!body_.force_fields.empty()) {
-      result.given = volume * ForceOfFields(body_, controls_, body_.grid.CellCentre(at));
+      const Vec3 centre = frame_.PointInWorld(body_.grid.CellCentre(at));
+      result.given = volume * frame_.VectorInGrid(ForceOfFields(body_, controls_, centre));
     }
     return result;
   }
@@ -82,6 +84,7 @@ class CellForces {
   const EulerianState& state_;
   const BodyControls& controls_;
   const EulerianCells& cells_;
+  const GridFrame frame_;
   const double cell_volume_;
 };
 
@@ -154,10 +157,12 @@ void AddLoads(const EulerianBody& body, const EulerianState& state, const BodyCo
   for (std::size_t k = 0; k < body.loads.size(); ++k) {
     for (std::size_t v = 0; v < forces.size(); ++v) forces[v] += controls.load_scales[k] * body.loads[k][v];
   }
+  const GridFrame frame(state.pose, body.travels);
   for (std::size_t v = 0; v < forces.size(); ++v) {
     if (forces[v].isZero(0)) continue;
+    const Vec3 force = frame.VectorInGrid(forces[v]);
     for (const NodeWeight& part : NodesUnder(body.grid, nodes.mass, state.surface[v])) {
-      nodes.force[part.node] += part.weight * forces[v];
+      nodes.force[part.node] += part.weight * force;
     }
   }
 }
@@ -181,7 +186,7 @@ void HandToRoots(const NodeRoles& roles, ThreadTeam& team, NodalForces& nodes) {
 
 void AddGravityAndDamping(const EulerianBody& body, const EulerianState& state, const BodyControls& controls,
                           ThreadTeam& team, NodalForces& nodes) {
-  const Vec3 gravity = controls.gravity_scale * body.gravity;
+  const Vec3 gravity = GridFrame(state.pose, body.travels).VectorInGrid(controls.gravity_scale * body.gravity);
   team.For(nodes.mass.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       nodes.force[n] += nodes.mass[n] * (gravity - body.mass_damping * state.v[n]);

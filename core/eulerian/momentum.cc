@@ -56,10 +56,9 @@ Resultant ForceOf(const EulerianGrid& grid, const NodalForces& nodes, ThreadTeam
   return ResultantOf(grid, nodes, team, [&](std::size_t n) { return nodes.force[n]; });
 }
 
-void SetMomentum(const EulerianGrid& grid, const NodalForces& nodes, const Resultant& wanted,
-                 const std::vector<std::uint8_t>& known, ThreadTeam& team, std::vector<Vec3>& v) {
+RigidVelocity RigidVelocityOf(const EulerianGrid& grid, const NodalForces& nodes, const Resultant& momentum,
+                              ThreadTeam& team) {
   const auto place = [&](std::size_t n) { return grid.NodePosition(grid.NodeAt(n)); };
-  const Resultant present = MomentumOf(grid, nodes, v, team);
   const auto masses = SumOverNodes<4>(
       nodes, team, [&](std::size_t n, Eigen::Vector4d& sums) { sums += nodes.mass[n] * place(n).homogeneous(); });
   const double mass = masses[3];
@@ -68,11 +67,23 @@ void SetMomentum(const EulerianGrid& grid, const NodalForces& nodes, const Resul
     const Vec3 x = place(n) - centre;
     sums += nodes.mass[n] * (x.squaredNorm() * Mat3::Identity() - x * x.transpose()).reshaped();
   });
-  const Vec3 missing = wanted.sum - present.sum;
-  const Vec3 spin = Mat3(inertia.reshaped(3, 3)).ldlt().solve(wanted.moment - present.moment - centre.cross(missing));
+  const Vec3 spin = Mat3(inertia.reshaped(3, 3)).ldlt().solve(momentum.moment - centre.cross(momentum.sum));
+  return {centre, momentum.sum / mass, spin};
+}
+
+RigidVelocity RigidPartOf(const EulerianGrid& grid, const NodalForces& nodes, const std::vector<Vec3>& v,
+                          ThreadTeam& team) {
+  return RigidVelocityOf(grid, nodes, MomentumOf(grid, nodes, v, team), team);
+}
+
+void SetMomentum(const EulerianGrid& grid, const NodalForces& nodes, const Resultant& wanted,
+                 const std::vector<std::uint8_t>& known, ThreadTeam& team, std::vector<Vec3>& v) {
+  const Resultant present = MomentumOf(grid, nodes, v, team);
+  const RigidVelocity missing =
+      RigidVelocityOf(grid, nodes, {wanted.sum - present.sum, wanted.moment - present.moment}, team);
   team.For(v.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      if (known[n] != 0) v[n] += missing / mass + spin.cross(place(n) - centre);
+      if (known[n] != 0) v[n] += missing.At(grid.NodePosition(grid.NodeAt(n)));
     }
   });
 }

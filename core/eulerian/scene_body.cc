@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/eulerian/contact.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/scene/nodal_forces.h"
 
@@ -111,6 +112,7 @@ EulerianBody MakeEulerianBody(const Scene& scene, const Body& source, ThreadTeam
   body.plasticity = shape.plasticity;
   body.implicit_elasticity = method.implicit_elasticity;
   body.maccormack = method.maccormack;
+  body.travels = method.rigid_grids;
   body.time_step = method.time_step;
   for (const Constraint& constraint : source.constraints) {
     body.supports.push_back(SupportPoints(source, constraint, method.cell_size));
@@ -127,11 +129,13 @@ void CheckEulerianBodies(const Scene& scene, std::span<const std::string> source
                          Problems& problems) {
   const EulerianMethod& method = scene.eulerian;
   double cells = 0;
+  bool sound = true;  // all surfaces
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const TriangleMesh& surface = scene.bodies[i].surface().mesh;
     if (surface.nodes.empty()) continue;
     Problems own;
     CheckSolidSurface(surface, method.cell_size, own);
+    sound &= own.empty();
     problems.Append(sources[i], own);
     CheckRoom(method, surface, sources[i], problems);
     cells += CellsOf(RoomOf(method, surface), method.cell_size).prod();
@@ -147,6 +151,7 @@ void CheckEulerianBodies(const Scene& scene, std::span<const std::string> source
     if (body.nodes().empty()) continue;
     CheckSupports(GridOf(method, body.surface().mesh), body, IndexPath("bodies", i), problems);
   }
+  if (sound) CheckOverlaps(scene, problems);
 }
 
 }  // namespace fascicle

@@ -62,6 +62,7 @@ void EulerianWorldState::Save(ArchiveWriter& archive) const {
   archive.PutDouble("time_step", time_step);
   archive.PutInt("iterations", iterations);
   for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].Save(PrefixOf(b), archive);
+  if (!floor_forces.empty()) archive.PutVectors("floor_forces", floor_forces);
 }
 
 void EulerianWorldState::Load(ArchiveReader& archive) {
@@ -70,6 +71,7 @@ void EulerianWorldState::Load(ArchiveReader& archive) {
   time_step = archive.GetDouble("time_step");
   iterations = archive.GetInt("iterations");
   for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].Load(PrefixOf(b), archive);
+  if (!floor_forces.empty()) archive.GetVectors("floor_forces", std::span(floor_forces));
 }
 
 }  // namespace fascicle

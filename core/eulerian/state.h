@@ -11,14 +11,15 @@
 
 namespace fascicle {
 
-// The state of one body.
+// The state of one body. Positions are points of its grid, and vectors have components along the axes of the grid,
+// except for what supports do.
 struct EulerianState {
   // At the nodes of the grid, valid in the solid and in a band around it.
   std::vector<Vec3> X;              // reference map: the material point at the node [m]
   std::vector<Vec3> v;              // velocity [m/s]
   std::vector<std::uint8_t> known;  // for each node: whether X and v are valid
   std::vector<Vec3> surface;        // positions of the vertices of the material surface [m]
-  // Momentum of a body without supports and its moment about the origin [kg m/s, kg m^2/s], with the total mass of the
+  // Momentum of a body without supports and its moment about the grid's origin of coordinates [kg m/s, kg m^2/s], with the total mass of the
   // nodes for which it was found [kg]. The mass is 0 before the first step, or after velocities were changed from
   // outside; the momentum is then computed from them.
   double momentum_mass = 0;
@@ -29,9 +30,9 @@ struct EulerianState {
   // At the nodes of PlasticGrid, for bodies with plasticity: Fp^-1, and the positions of these material points [m].
   std::vector<Mat3> plastic;
   std::vector<Vec3> plastic_places;
-  std::vector<Vec3> reactions;  // the force of each support on the body, the mean of the last step [N]
-  std::vector<Vec3> moments;    // its moment about the origin [N m]
-  Pose pose;                    // of the grid in the world: identity, because grids do not move
+  std::vector<Vec3> reactions;  // the force of each support on the body in the world, the mean of the last step [N]
+  std::vector<Vec3> moments;    // its moment about the origin of the world [N m]
+  Pose pose;                    // of the grid in the world; the identity if it does not travel
 
   // Names in the archive begin with `prefix`.
   void Save(const std::string& prefix, ArchiveWriter& archive) const;
@@ -46,6 +47,7 @@ struct EulerianWorldState {
   double time_step = 0;         // of the last step [s]
   std::int64_t iterations = 0;  // of MINRES so far
   std::vector<EulerianState> bodies;
+  std::vector<Vec3> floor_forces;  // of each floor on all bodies, the mean of the last step [N]
 
   void Save(ArchiveWriter& archive) const;
   void Load(ArchiveReader& archive);

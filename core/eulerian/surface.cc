@@ -36,6 +36,13 @@ double FindSurface(const EulerianBody& body, ThreadTeam& team, EulerianState& st
   return left.empty() ? 0 : *std::max_element(left.begin(), left.end());
 }
 
+std::vector<Vec3> SurfaceInWorld(const EulerianBody& body, const EulerianState& state) {
+  const GridFrame frame(state.pose, body.travels);
+  std::vector<Vec3> places;
+  for (const Vec3& y : state.surface) places.push_back(frame.PointInWorld(y));
+  return places;
+}
+
 double SurfaceVolume(const EulerianBody& body, const EulerianState& state) {
   return EnclosedVolume({state.surface, body.shape.surface().triangles});
 }

@@ -17,6 +17,9 @@ double FindSurface(const EulerianBody& body, ThreadTeam& team, EulerianState& st
 // The same for one material point, starting from a place near it.
 double FindPoint(const EulerianGrid& grid, const KnownField& map, const Vec3& X, Vec3& place);
 
+// The vertices of the surface in the world [m].
+std::vector<Vec3> SurfaceInWorld(const EulerianBody& body, const EulerianState& state);
+
 // The volume enclosed by the surface [m^3], by the divergence theorem.
 double SurfaceVolume(const EulerianBody& body, const EulerianState& state);
 

@@ -4,7 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/eulerian/forces.h"
+#include "core/eulerian/contact_row.h"
+#include "core/eulerian/momentum.h"
 #include "core/linalg/active_set_qp.h"
 
 namespace fascicle {
@@ -13,10 +14,11 @@ namespace fascicle {
 //
 //   v = argmin 1/2 (v - v*) . M (v - v*)     with M + dt^2 K in place of the first M if elasticity is implicit
 //   where  sum over nodes of V grad N . v + eps L p = V (1 - J)/(dt J), or 0      for each block of cells
+//          w_n >= least, or w_n = least                                           for each row of contact
 //
 // with prescribed velocities of supported nodes. Blocks of cells (cell_blocks.h) share a pressure p. Each body has its
-// own columns, three for each free node, and its own rows; no row couples two bodies. Not thread-safe. May throw
-// Stopped.
+// own columns, three for each free node, and its own rows of volumes; only rows of contact (contact_row.h) couple
+// bodies. Not thread-safe. May throw Stopped.
 class VelocityProgram {
  public:
   // The data of a body, which must not change until its velocities have been taken.
@@ -37,7 +39,9 @@ class VelocityProgram {
 
   // Bodies are numbered from 0 in the order of the calls.
   void AddBody(const Part& part);
-  // Call once, after all bodies. iterations() counts those of MINRES.
+  // Bodies of the row as numbered here. A row without free nodes is ignored.
+  void AddContact(ContactRow row);
+  // Call once, after all bodies and contacts. iterations() counts those of MINRES.
   QpStatus Solve();
   int iterations() const;
   // The largest residual of QpReport [1].
@@ -46,10 +50,14 @@ class VelocityProgram {
   // Call after QpStatus::kSolved.
   //   velocity  set for free nodes; others are unchanged
   //   pressure  set for each cell of a block: the mean over the step, compression positive [Pa]
-  //   impulses  for each prescribed node: the impulse of volume constraints and implicit elasticity on it is subtracted
-  //   [N s]; empty for a body without supports
+  //   impulses  for each prescribed node: the impulse of constraints and implicit elasticity on it is subtracted [N s];
+  //             empty for a body without supports
   void TakeBody(std::size_t body, std::vector<Vec3>& velocity, std::vector<double>& pressure,
                 std::vector<Vec3>& impulses) const;
+  // The impulse of all contacts on a body, and its moment about the origin, in its grid's frame [N s, N m s].
+  Resultant ContactImpulse(std::size_t body) const;
+  // Adds the impulse of each floor on all bodies, in the world [N s].
+  void AddFloorImpulses(std::vector<Vec3>& impulses) const;
 
  private:
   struct Block;  // of a body
@@ -58,11 +66,32 @@ class VelocityProgram {
   void SetStabilization(QuadraticProgram& problem) const;
   void SetGroups(QuadraticProgram& problem) const;
   void SetStiffness(QuadraticProgram& problem);
+  // Of a row: along its tangents; the normal component is 0.
+  struct Friction {
+    bool sticks = false;
+    Vec3 impulse = Vec3::Zero();
+  };
+  double AddRow(const ContactRow& row, int kind, int number, double right,
+                std::vector<Eigen::Triplet<double>>& entries) const;
+  void SetRows(const std::vector<Eigen::Triplet<double>>& entries, const std::vector<double>& right,
+               ConstraintRows& rows) const;
+  void SetContacts(QuadraticProgram& problem);
+  QpStatus SolveOnce(const QuadraticProgram& problem);
+  QpStatus SolveFriction(const QuadraticProgram& frictionless);
+  void SetFriction(const std::vector<Friction>& friction, QuadraticProgram& problem) const;
+  void TakeFriction(std::vector<Friction>& friction);
+  bool UpdateFriction(std::vector<Friction>& friction) const;
+  Vec3 VelocityAcross(const ContactRow& row) const;
+  void TakeContactImpulses();
+  template <class Each>
+  void ForContacts(std::size_t body, const Each& each) const;
 
   double dt_;
   ThreadTeam& team_;
   std::vector<std::unique_ptr<Block>> blocks_;
-  int nodes_ = 0, rows_ = 0;  // of all bodies: free nodes, rows of volumes
+  std::vector<ContactRow> contacts_;
+  std::vector<Vec3> contact_impulses_;  // of each, along its normal and its tangents [N s/m^2]
+  int nodes_ = 0, rows_ = 0;            // of all bodies: free nodes, rows of volumes
   QpSolution solution_;
   int iterations_ = 0;
   double residual_ = 0;

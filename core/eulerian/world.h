@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/eulerian/body_stepper.h"
+#include "core/eulerian/contact.h"
 
 namespace fascicle {
 
@@ -16,7 +16,7 @@ struct EulerianReport {
 };
 
 // Steps solids on their grids together, with a common time step [Fan 2013, algorithm 1]: forces; advection of
-// velocities; volumes and supports in one program of all bodies; advection of the reference maps and their
+// velocities; volumes, supports and contacts in programs of all bodies that touch; advection of the reference maps and their
 // extrapolation to a band around the solids; the surfaces; plastic flow. Not thread-safe. The same bits for any number
 // of threads, and for a state that was saved and loaded. All functions may throw Stopped (core/base/stop.h); states are
 // then unchanged.
@@ -36,21 +36,29 @@ class EulerianWorld {
 
   // Steps by dt [s] to the time of `next`; dt must not exceed that of the last ProposeStep, which must have been called
   // with the same state and controls. On a problem the state is unchanged: kInvertedElement, kVelocitiesNotFound
-  // (MINRES), kNotFinite.
+  // (MINRES, or which contacts hold), kNotFinite.
   EulerianReport Step(EulerianWorldState& state, const Controls& now, const Controls& next, double dt);
 
   const BodyStepper& body(std::size_t body) const { return steppers_[body]; }
+  // Those of the state of the last ProposeStep.
+  const EulerianContacts& contacts() const { return contacts_; }
 
  private:
   // The controls of each body.
   std::vector<BodyControls> ControlsOfBodies(const Controls& controls) const;
   StepProblem FindVelocities(const EulerianWorldState& state, const std::vector<BodyControls>& now, double dt,
                              int& iterations, double& residual);
+  std::vector<ContactRow> ContactRowsFor(double dt);
+  StepProblem SolveProgram(const std::vector<std::size_t>& bodies, const std::vector<ContactRow>& rows,
+                           const EulerianWorldState& state, const std::vector<BodyControls>& now, double dt,
+                           int& iterations, double& residual);
 
   const Scene& scene_;
   ThreadTeam& team_;
   Profile* const profile_;
   std::vector<BodyStepper> steppers_;
+  EulerianContacts contacts_;
+  std::vector<Vec3> floor_impulses_;  // in the current step [N s]
 };
 
 }  // namespace fascicle

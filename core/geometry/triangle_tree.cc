@@ -138,8 +138,8 @@ double TriangleTree::SquaredDistanceTo(const Box& box, const Vec3& point) const 
   return (box.lowest - point).cwiseMax(point - box.highest).cwiseMax(0).squaredNorm();
 }
 
-TriangleTree::Nearest TriangleTree::FindNearest(const Vec3& point) const {
-  Nearest nearest{point, std::numeric_limits<double>::infinity(), -1};
+TriangleTree::Nearest TriangleTree::FindNearest(const Vec3& point, double within) const {
+  Nearest nearest{point, within * within, -1};
   struct Visit {
     double squared_distance;
     std::int32_t box;

@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_GEOMETRY_TRIANGLE_TREE_H_
 
 #include <cstdint>
+#include <limits>
 #include <stop_token>
 #include <utility>
 #include <vector>
@@ -23,7 +24,8 @@ class TriangleTree {
   // `surface` must outlive the tree unchanged and have at least one triangle.
   explicit TriangleTree(const TriangleMesh& surface);
 
-  Nearest FindNearest(const Vec3& point) const;
+  // The nearest point of those within a distance; triangle -1 if there is none.
+  Nearest FindNearest(const Vec3& point, double within = std::numeric_limits<double>::infinity()) const;
   double Distance(const Vec3& point) const;
 
   // Generalized winding number of the surface around a point: 1 inside and 0 outside of a closed surface, in between

@@ -88,9 +88,6 @@ void CheckEulerian(const Scene& scene, Problems& problems) {
     if (!std::holds_alternative<SurfaceShape>(scene.bodies[i].shape)) continue;
     CheckEulerianBody(scene.bodies[i], IndexPath("bodies", i), problems);
   }
-  if (!scene.floors.empty()) {
-    problems.Add("floors", "the eulerian method does not support floors", "omit them, or use the tet method");
-  }
   for (std::size_t k = 0; k < scene.squeezes.size(); ++k) {
     CheckForceField(scene.squeezes[k], IndexPath("squeezes", k), problems);
   }

@@ -75,6 +75,15 @@ bool HasFloorAcross(const Scene& scene, int axis) {
                      [axis](const Floor& floor) { return std::abs(floor.normal[axis]) > 0.01; });
 }
 
+// Whether a contact names a body: another body may hold it.
+bool MayTouch(const Scene& scene, std::size_t body) {
+  return std::any_of(scene.contacts.begin(), scene.contacts.end(), [body](const Contact& contact) {
+    return contact.bodies.empty() ||
+           std::find(contact.bodies.begin(), contact.bodies.end(), static_cast<std::int32_t>(body)) !=
+               contact.bodies.end();
+  });
+}
+
 // An equilibrium needs supports against every rigid motion; floors only push, so a scene with floors is not judged.
 void CheckFreeParts(const Scene& scene, std::size_t i, Problems& problems) {
   if (scene.method != Method::kTet || !IsStatic(scene) || !scene.floors.empty()) return;
@@ -108,7 +117,7 @@ void CheckSupports(const Scene& scene, Problems& problems) {
                      "the equilibrium is not unique: add a constraint, or use a stepping with inertia");
         continue;
       }
-      if (held[axis] || HasFloorAcross(scene, axis) || !Pushes(scene, body, resultants, mass, axis)) continue;
+      if (held[axis] || MayTouch(scene, i) || HasFloorAcross(scene, axis) || !Pushes(scene, body, resultants, mass, axis)) continue;
       problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
                    std::string("no support balances the loads on the body along ") + "xyz"[axis],
                    "it would accelerate indefinitely: add a constraint, or remove the load or gravity");

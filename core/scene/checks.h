@@ -27,6 +27,8 @@ void CheckLoads(const Scene& scene, Problems& problems);
 void CheckSupports(const Scene& scene, Problems& problems);
 // Floors have a unit normal, and no body starts inside of one.
 void CheckFloors(const Scene& scene, Problems& problems);
+// Contacts are between different bodies that exist, and friction is no less than 0; only the eulerian method has them.
+void CheckContacts(const Scene& scene, Problems& problems);
 // Probes refer to existing nodes; number of frames; duration.
 void CheckOutput(const Scene& scene, Problems& problems);
 
@@ -39,7 +41,7 @@ void CheckTet(const Scene& scene, Problems& problems);
 // voxel: the two supported laws, viscoelasticity, activation, floors, damping, and single axes of supports on images
 // that are not aligned with the world.
 void CheckVoxel(const Scene& scene, Problems& problems);
-// eulerian: regions by tag, single axes, floors, damping, viscoelasticity, laws that depend on the rate; plasticity and
+// eulerian: regions by tag, single axes, damping, viscoelasticity, laws that depend on the rate; plasticity and
 // plane force fields, also in scenes of other methods.
 void CheckEulerian(const Scene& scene, Problems& problems);
 

@@ -76,10 +76,11 @@ struct EulerianMethod {
   bool implicit_elasticity = false;
   std::optional<double> time_step;  // upper bound [s]
   bool maccormack = false;
+  bool rigid_grids = false;  // whether grids travel with the rigid part of their bodies' motion
 };
 template <>
 inline constexpr auto kFieldNames<EulerianMethod> = FieldNames("cell_size", "margin", "", "volume", "stabilization",
-                                                               "elastic_force", "time_step", "advection");
+                                                               "elastic_force", "time_step", "advection", "grid_motion");
 template <>
 inline constexpr auto kFieldNames<Bounds> = FieldNames("lowest", "highest");
 

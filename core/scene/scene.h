@@ -8,6 +8,7 @@
 #include "core/base/problems.h"
 #include "core/scene/acting.h"
 #include "core/scene/body.h"
+#include "core/scene/contact.h"
 #include "core/scene/fields.h"
 #include "core/scene/method.h"
 #include "core/scene/output.h"
@@ -39,10 +40,11 @@ struct Scene {
   double duration = 0;                    // [s]
   Output output;
   Start start;
+  std::vector<Contact> contacts;
 };
 template <>
 inline constexpr auto kFieldNames<Scene> = FieldNames("name", "bodies", "gravity", "floors", "", "tet", "voxel",
-                                                      "eulerian", "squeezes", "duration", "output", "start");
+                                                      "eulerian", "squeezes", "duration", "output", "start", "contacts");
 
 // Checks relations between fields: contradictory constraints at a node, loads on regions without surface, missing
 // fibres, activation outside [0, 1], bodies without mass, bodies that start inside of a floor, number of frames, and

@@ -13,7 +13,7 @@ AskedField FieldAsked(const Scene& scene, OutputField field) {
   return {field, scene.output.line_of_action.value_or(Vec3::UnitX())};
 }
 
-// The current position of a probe on the surface.
+// The current position of a probe on the surface, in the body's grid.
 Vec3 PositionOf(const Scene& scene, const Probe& probe, const EulerianState& state) {
   Vec3 x = Vec3::Zero();
   const Shape& shape = scene.bodies[probe.body].shape;
@@ -21,11 +21,12 @@ Vec3 PositionOf(const Scene& scene, const Probe& probe, const EulerianState& sta
   return x;
 }
 
-Vec3 DisplacementOf(const Scene& scene, const Probe& probe, const EulerianState& state) {
+Vec3 DisplacementOf(const Scene& scene, const Probe& probe, const EulerianBody& solid, const EulerianState& state) {
   Vec3 u = Vec3::Zero();
   const Body& body = scene.bodies[probe.body];
+  const GridFrame frame(state.pose, solid.travels);
   for (const auto& [node, weight] : WeightsAt(PlaceOf(probe, body.shape), body.shape)) {
-    u += weight * (state.surface[node] - body.nodes()[node]);
+    u += weight * (frame.PointInWorld(state.surface[node]) - body.nodes()[node]);
   }
   return u;
 }
@@ -39,6 +40,12 @@ std::vector<SeriesInfo> EulerianSeriesOf(const Scene& scene) {
       {"solver/step", "s", "length of the last time step"},
       {"solver/iterations", "1", "iterations of MINRES since the previous frame"},
   };
+  for (const Floor& floor : scene.floors) {
+    for (const char* axis : {"x", "y", "z"}) {
+      series.push_back(
+          {"floor/" + floor.name + "/" + axis, "N", "force of the floor on all bodies along " + std::string(axis)});
+    }
+  }
   for (const Body& body : scene.bodies) {
     series.push_back({body.name + "/volume_ratio", "1", "volume within the surface over the rest volume"});
     series.push_back({body.name + "/min_volume_ratio", "1", "smallest volume ratio J of a cell"});
@@ -76,10 +83,13 @@ std::vector<double> MeasureEulerianSeries(const Scene& scene, const std::vector<
   }
   std::vector<double> values = {elastic, kinetic, world.time_step,
                                 static_cast<double>(world.iterations - iterations_before)};
+  for (const Vec3& force : world.floor_forces) values.insert(values.end(), force.begin(), force.end());
   values.insert(values.end(), of_bodies.begin(), of_bodies.end());
   for (const Probe& probe : scene.output.probes) {
     const std::vector<Vec3>& rest = scene.bodies[probe.body].nodes();
-    const Vec3 u = world.bodies[probe.body].surface[probe.node] - rest[probe.node];
+    const EulerianState& state = world.bodies[probe.body];
+    const GridFrame frame(state.pose, bodies[probe.body]->travels);
+    const Vec3 u = frame.PointInWorld(state.surface[probe.node]) - rest[probe.node];
     values.insert(values.end(), u.begin(), u.end());
   }
   return values;
@@ -103,7 +113,7 @@ std::vector<double> MeasureEulerianLaterSeries(const Scene& scene, const std::ve
     UpdateCells(*bodies[b], world.bodies[b], team, cells[b]);
   }
   const ProbeMeasures probes = {
-      [&](const Probe& probe) { return DisplacementOf(scene, probe, world.bodies[probe.body]); },
+      [&](const Probe& probe) { return DisplacementOf(scene, probe, *bodies[probe.body], world.bodies[probe.body]); },
       [&](const Probe& probe, OutputField field) {
         const auto b = static_cast<std::size_t>(probe.body);
         return FieldValuesAt(*bodies[b], world.bodies[b], ControlsOf(scene, b, now), cells[b], FieldAsked(scene, field),
@@ -116,7 +126,7 @@ std::vector<double> MeasureEulerianLaterSeries(const Scene& scene, const std::ve
 BodyFrame MeasureEulerianBody(const Scene& scene, const EulerianBody& body, const EulerianState& state,
                               const BodyControls& now, ThreadTeam& team) {
   BodyFrame frame;
-  frame.positions = state.surface;
+  frame.positions = SurfaceInWorld(body, state);
   if (scene.output.fields.empty()) return frame;
   EulerianCells cells;
   UpdateCells(body, state, team, cells);

@@ -105,6 +105,7 @@ EulerianMethod TranslateEulerianMethod(const v1::Scene& scene, Problems& problem
   method.implicit_elasticity = wire.elastic_force() == v1::ELASTIC_FORCE_IMPLICIT;
   if (wire.has_time_step()) method.time_step = wire.time_step();
   method.maccormack = wire.advection() == v1::ADVECTION_MACCORMACK;
+  method.rigid_grids = wire.grid_motion() == v1::GRID_MOTION_RIGID;
   return method;
 }
 

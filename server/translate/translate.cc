@@ -11,6 +11,7 @@
 #include "proto/rules/field_rules.h"
 #include "proto/rules/find_messages.h"
 #include "server/translate/bodies.h"
+#include "server/translate/contacts.h"
 #include "server/translate/files.h"
 #include "server/translate/meshes.h"
 #include "server/translate/methods.h"
@@ -123,6 +124,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     AddCurvedEdgesNote(result->tet, path, body.body);
     result->bodies.push_back(std::move(body.body));
   }
+  result->contacts = TranslateContacts(filled, names, found);
   TranslateStart(filled, assets, *result, found);
   FindEndsOfLineSprings(filled, names, result->bodies, found);
   result->output = TranslateOutput(filled, result->method, result->tet.element, result->bodies, names,

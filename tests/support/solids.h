@@ -88,8 +88,10 @@ class SolidRun {
  public:
   using Field = std::function<Vec3(const Vec3&)>;
 
-  SolidRun(const std::vector<const EulerianBody*>& bodies, ThreadTeam& team, Profile* profile = nullptr)
-      : scene_(SceneOf(bodies)), world(scene_, bodies, team, profile), state(world.InitialState()) {
+  // scene: with contacts and floors only.
+  SolidRun(const std::vector<const EulerianBody*>& bodies, ThreadTeam& team, Profile* profile = nullptr,
+           const Scene& scene = {})
+      : scene_(SceneOf(bodies, scene)), world(scene_, bodies, team, profile), state(world.InitialState()) {
     for (const EulerianBody* body : bodies) {
       controls.activations.push_back(0);
       controls.load_scales.insert(controls.load_scales.end(), body->loads.size(), 1.0);
@@ -124,9 +126,8 @@ class SolidRun {
   const NodalForces& forces() const { return world.body(0).forces(); }
 
  private:
-  // Of the scene nothing is looked at but how many controls each body has.
-  static Scene SceneOf(const std::vector<const EulerianBody*>& bodies) {
-    Scene scene;
+  // Of the scene nothing is looked at but how many controls each body has, the contacts and the floors.
+  static Scene SceneOf(const std::vector<const EulerianBody*>& bodies, Scene scene) {
     for (const EulerianBody* solid : bodies) {
       Body& body = scene.bodies.emplace_back();
       body.loads.resize(solid->loads.size());

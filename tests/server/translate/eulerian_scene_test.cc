@@ -230,8 +230,33 @@ TEST(EulerianScene, WhatTheMethodDoesNotKnow) {
                               region_activations { region: "end" curve { times: 0 values: 1 } })"),
                  "bodies[0].region_activations"),
               HasSubstr("no elements"));
-  EXPECT_THAT(At(EulerianProblems("floors { name: 'ground' point: [0, 0, -0.1] normal: [0, 0, 1] }"), "floors"),
-              HasSubstr("tet method"));
+}
+
+// A second block, 9 cm or less from the first one, and what `contacts` say.
+Problems WithSecondBlock(double at, const std::string& contacts) {
+  v1::Scene scene = BlockScene();
+  v1::Body& second = *scene.add_bodies();
+  second = scene.bodies(0);
+  second.set_name("second");
+  for (const double x : {at, 0.0, 0.0}) second.mutable_mesh()->mutable_box()->add_origin(x);
+  EXPECT_TRUE(google::protobuf::TextFormat::MergeFromString(contacts, &scene)) << contacts;
+  return ProblemsOf(scene);
+}
+
+TEST(EulerianScene, ContactsNameBodiesThatDoNotOverlap) {
+  EXPECT_TRUE(WithSecondBlock(9, "contacts {}").empty());
+  EXPECT_TRUE(WithSecondBlock(9, "contacts { bodies: ['block', 'second'] friction: 0.3 }").empty());
+  EXPECT_TRUE(WithSecondBlock(7.8, "contacts {}").empty());  // 0.2 cells deep
+  EXPECT_TRUE(WithSecondBlock(5, "").empty());
+  EXPECT_THAT(At(WithSecondBlock(5, "contacts {}"), "bodies[1]"), HasSubstr("overlaps with the body `block` by 0.03 m"));
+  EXPECT_THAT(At(WithSecondBlock(9, "contacts { bodies: ['block', 'secnd'] }"), "contacts[0].bodies[1]"),
+              HasSubstr("secnd"));
+  EXPECT_THAT(At(WithSecondBlock(9, "contacts { bodies: ['block', 'block'] }"), "contacts[0].bodies[1]"),
+              HasSubstr("more than once"));
+  EXPECT_THAT(At(WithSecondBlock(9, "contacts { bodies: 'block' }"), "contacts[0].bodies"), HasSubstr("two bodies"));
+  EXPECT_THAT(At(WithSecondBlock(9, "contacts { lasting: true friction: 0.1 }"), "contacts[0].friction"),
+              HasSubstr("slides freely"));
+  EXPECT_THAT(At(WithSecondBlock(9, "contacts { friction: -1 }"), "contacts[0].friction"), HasSubstr("[0, 10]"));
 }
 
 TEST(EulerianScene, TagsTellNoPointsOfTheMaterial) {
