@@ -116,18 +116,10 @@ CollisionCells Joined(const CollisionCells& cells, double least) {
 }  // namespace
 
 std::vector<ContactPair> ContactPairsOf(const Scene& scene) {
-  std::map<std::pair<std::size_t, std::size_t>, ContactPair> pairs;
-  for (const Contact& contact : scene.contacts) {
-    std::vector<bool> may_touch(scene.bodies.size(), contact.bodies.empty());
-    for (const std::int32_t body : contact.bodies) may_touch[body] = true;
-    for (std::size_t a = 0; a < scene.bodies.size(); ++a) {
-      for (std::size_t b = a + 1; b < scene.bodies.size(); ++b) {
-        if (may_touch[a] && may_touch[b]) pairs[{a, b}] = {a, b, false, contact.friction, contact.lasting};
-      }
-    }
-  }
   std::vector<ContactPair> all;
-  for (const auto& [numbers, pair] : pairs) all.push_back(pair);
+  for (const TouchingPair& pair : PairsOf(scene.contacts, scene.bodies.size())) {
+    all.push_back({pair.a, pair.b, false, pair.friction, pair.lasting});
+  }
   for (std::size_t a = 0; a < scene.bodies.size(); ++a) {
     for (std::size_t floor = 0; floor < scene.floors.size(); ++floor) all.push_back({a, floor, true});
   }

@@ -88,6 +88,7 @@ void CheckEulerian(const Scene& scene, Problems& problems) {
     if (!std::holds_alternative<SurfaceShape>(scene.bodies[i].shape)) continue;
     CheckEulerianBody(scene.bodies[i], IndexPath("bodies", i), problems);
   }
+  RefuseRigidBodies(scene, "eulerian", problems);
   for (std::size_t k = 0; k < scene.squeezes.size(); ++k) {
     CheckForceField(scene.squeezes[k], IndexPath("squeezes", k), problems);
   }

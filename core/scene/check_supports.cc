@@ -69,24 +69,27 @@ bool Pushes(const Scene& scene, const Body& body, const std::vector<Vec3>& resul
   });
 }
 
-// Whether a floor acts along an axis: a body that falls on it comes to rest, or bounces.
-bool HasFloorAcross(const Scene& scene, int axis) {
-  return std::any_of(scene.floors.begin(), scene.floors.end(),
-                     [axis](const Floor& floor) { return std::abs(floor.normal[axis]) > 0.01; });
+// Whether the body touches a rigid body or another body.
+bool HasContact(const Scene& scene, std::size_t body) {
+  return std::any_of(scene.rigid_bodies.begin(), scene.rigid_bodies.end(),
+                     [&](const RigidBody& rigid) { return Touches(rigid, body); }) ||
+         std::any_of(scene.contacts.begin(), scene.contacts.end(), [&](const Contact& contact) {
+           return contact.bodies.empty() || std::find(contact.bodies.begin(), contact.bodies.end(),
+                                                      static_cast<std::int32_t>(body)) != contact.bodies.end();
+         });
 }
 
-// Whether a contact names a body: another body may hold it.
-bool MayTouch(const Scene& scene, std::size_t body) {
-  return std::any_of(scene.contacts.begin(), scene.contacts.end(), [body](const Contact& contact) {
-    return contact.bodies.empty() ||
-           std::find(contact.bodies.begin(), contact.bodies.end(), static_cast<std::int32_t>(body)) !=
-               contact.bodies.end();
-  });
+// Whether something that the body cannot enter acts along an axis: a body that falls on it comes to rest, or bounces.
+bool HasFloorAcross(const Scene& scene, std::size_t body, int axis) {
+  return HasContact(scene, body) || std::any_of(scene.floors.begin(), scene.floors.end(), [axis](const Floor& floor) {
+           return std::abs(floor.normal[axis]) > 0.01;
+         });
 }
 
-// An equilibrium needs supports against every rigid motion; floors only push, so a scene with floors is not judged.
+// An equilibrium needs supports against every rigid motion; floors and contacts only push, so bodies with these are
+// not judged.
 void CheckFreeParts(const Scene& scene, std::size_t i, Problems& problems) {
-  if (scene.method != Method::kTet || !IsStatic(scene) || !scene.floors.empty()) return;
+  if (scene.method != Method::kTet || !IsStatic(scene) || !scene.floors.empty() || HasContact(scene, i)) return;
   for (const FreePart& part : FindFreeParts(scene.bodies[i])) {
     std::string who = "the body";
     if (part.parts > 1) {
@@ -117,7 +120,7 @@ void CheckSupports(const Scene& scene, Problems& problems) {
                      "the equilibrium is not unique: add a constraint, or use a stepping with inertia");
         continue;
       }
-      if (held[axis] || MayTouch(scene, i) || HasFloorAcross(scene, axis) || !Pushes(scene, body, resultants, mass, axis)) continue;
+      if (held[axis] || HasFloorAcross(scene, i, axis) || !Pushes(scene, body, resultants, mass, axis)) continue;
       problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
                    std::string("no support balances the loads on the body along ") + "xyz"[axis],
                    "it would accelerate indefinitely: add a constraint, or remove the load or gravity");

@@ -87,6 +87,7 @@ void CheckTet(const Scene& scene, Problems& problems) {
   if (scene.method != Method::kTet) return;
   const TetMethod& method = scene.tet;
   CheckElements(scene, problems);
+  RefuseRigidBodies(scene, "tet", problems);
   if (method.precision == Precision::kSingle && method.stepping != Stepping::kExplicit &&
       method.stepping != Stepping::kMixed) {
     problems.Add("tet.precision", "implicit steps need double precision", "omit it, or use explicit or mixed stepping");

@@ -67,6 +67,7 @@ void CheckVoxel(const Scene& scene, Problems& problems) {
   if (!scene.floors.empty()) {
     problems.Add("floors", "the voxel method does not support floors", "omit them, or use the tet method");
   }
+  RefuseRigidBodies(scene, "voxel", problems);
   if (scene.voxel.stepping == VoxelStepping::kDynamic && scene.output.frame_interval > 0) {
     const double frames = scene.duration / scene.output.frame_interval;
     if (std::abs(frames - std::round(frames)) > 1e-9 * frames) {

@@ -27,21 +27,30 @@ void CheckLoads(const Scene& scene, Problems& problems);
 void CheckSupports(const Scene& scene, Problems& problems);
 // Floors have a unit normal, and no body starts inside of one.
 void CheckFloors(const Scene& scene, Problems& problems);
-// Contacts are between different bodies that exist, and friction is no less than 0; only the eulerian method has them.
+// Rigid bodies have a proper shape, pose and motion, and a name of their own; no body starts deep inside of one.
+void CheckRigidBodies(const Scene& scene, Problems& problems);
+// Contacts are between different bodies that exist and, with the tet method, do not overlap at the start; friction is no
+// less than 0.
 void CheckContacts(const Scene& scene, Problems& problems);
+// Bodies of tetrahedra or hexahedra that touch by a contact do not overlap at the start.
+void CheckOverlaps(const Scene& scene, const Contact& contact, const std::string& path, Problems& problems);
 // Probes refer to existing nodes; number of frames; duration.
 void CheckOutput(const Scene& scene, Problems& problems);
 
 // Reports that a body of a method other than tet is viscoelastic.
 void RefuseViscoelasticity(const Body& body, const std::string& method, const std::string& path, Problems& problems);
 
+// Reports rigid bodies in a scene of a method that does not support them.
+void RefuseRigidBodies(const Scene& scene, const std::string& method, Problems& problems);
+
 // The remaining checks report what a method does not support, and settings that only the method has.
-// tet: single precision requires explicit or mixed stepping and elastic materials.
+// tet: single precision requires explicit or mixed stepping and elastic materials; rigid bodies that move freely,
+// friction.
 void CheckTet(const Scene& scene, Problems& problems);
-// voxel: the two supported laws, viscoelasticity, activation, floors, damping, and single axes of supports on images
+// voxel: the two supported laws, viscoelasticity, activation, floors, rigid bodies, damping, and single axes of supports on images
 // that are not aligned with the world.
 void CheckVoxel(const Scene& scene, Problems& problems);
-// eulerian: regions by tag, single axes, damping, viscoelasticity, laws that depend on the rate; plasticity and
+// eulerian: regions by tag, single axes, rigid bodies, damping, viscoelasticity, laws that depend on the rate; plasticity and
 // plane force fields, also in scenes of other methods.
 void CheckEulerian(const Scene& scene, Problems& problems);
 

@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_SCENE_CONTACT_H_
 #define FASCICLE_CORE_SCENE_CONTACT_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -16,6 +17,16 @@ struct Contact {
 };
 template <>
 inline constexpr auto kFieldNames<Contact> = FieldNames("bodies", "friction", "lasting");
+
+// Two bodies that may touch each other, a < b.
+struct TouchingPair {
+  std::size_t a = 0, b = 0;  // indices into Scene::bodies
+  double friction = 0;
+  bool lasting = false;
+};
+
+// The pairs that contacts name in a scene of so many bodies, ascending; where several name a pair, the last one applies.
+std::vector<TouchingPair> PairsOf(const std::vector<Contact>& contacts, std::size_t bodies);
 
 }  // namespace fascicle
 

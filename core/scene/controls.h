@@ -17,6 +17,7 @@ struct Controls {
   std::vector<double> activations;         // for each body: its own, then those of its parts; in [0, 1]
   std::vector<double> load_scales;         // for each load [1]
   std::vector<RigidMotion> motions;        // for each constraint
+  std::vector<RigidMotion> rigid_motions;  // for each rigid body of the scene, from its pose at time 0
   double gravity_scale = 1;                // factor on Gravity::acceleration [1]
   std::vector<double> force_field_scales;  // for each plane force field of the scene [1]
 };

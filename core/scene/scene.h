@@ -12,6 +12,7 @@
 #include "core/scene/fields.h"
 #include "core/scene/method.h"
 #include "core/scene/output.h"
+#include "core/scene/rigid_body.h"
 
 namespace fascicle {
 
@@ -40,14 +41,16 @@ struct Scene {
   double duration = 0;                    // [s]
   Output output;
   Start start;
+  std::vector<RigidBody> rigid_bodies;
   std::vector<Contact> contacts;
 };
 template <>
 inline constexpr auto kFieldNames<Scene> = FieldNames("name", "bodies", "gravity", "floors", "", "tet", "voxel",
-                                                      "eulerian", "squeezes", "duration", "output", "start", "contacts");
+                                                      "eulerian", "squeezes", "duration", "output", "start", "rigid_bodies",
+                                                      "contacts");
 
 // Checks relations between fields: contradictory constraints at a node, loads on regions without surface, missing
-// fibres, activation outside [0, 1], bodies without mass, bodies that start inside of a floor, number of frames, and
+// fibres, activation outside [0, 1], bodies without mass, bodies that start inside of a floor or a rigid body, number of frames, and
 // bodies that loads would accelerate indefinitely (without loads and gravity, free bodies are allowed). Each file of
 // this room has one check. Throws Stopped between two checks after a stop request.
 void CheckScene(const Scene& scene, Problems& problems, const std::stop_token& stop = {});

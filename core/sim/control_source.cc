@@ -49,6 +49,8 @@ void ControlSource::Evaluate(double time, Controls& controls) {
   controls.gravity_scale = scene_->gravity.scale.At(time);
   controls.force_field_scales.clear();
   for (const PlaneForceField& field : scene_->squeezes) controls.force_field_scales.push_back(field.scale.At(time));
+  controls.rigid_motions.clear();
+  for (const RigidBody& rigid : scene_->rigid_bodies) controls.rigid_motions.push_back(RigidMotionAt(rigid, time));
   controls.activations.clear();
   controls.load_scales.clear();
   controls.motions.clear();

@@ -23,6 +23,11 @@ class Fingerprint {
   requires kIsFlat<Value>
   void Put(const Value& value) { PutBytes(value); }
 
+  // A kind without members.
+  template <class Value>
+  requires std::is_empty_v<Value>
+  void Put(const Value&) {}
+
   void Put(const std::string& text) {
     PutBytes(text.size());
     sha_.Update(text);

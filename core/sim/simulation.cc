@@ -8,8 +8,8 @@
 #include "core/base/stop.h"
 #include "core/sim/control_source.h"
 #include "core/sim/fingerprint.h"
-#include "core/sim/floor_bodies.h"
 #include "core/sim/method_run.h"
+#include "core/sim/rigid_bodies.h"
 #include "core/sim/run_log.h"
 #include "core/sim/run_warnings.h"
 
@@ -92,7 +92,7 @@ struct Simulation::Impl {
         team(threads, std::move(stop)),
         source(*scene),
         method(MakeMethodRun(*scene, team, p)),
-        layout{FloorBodies(*scene), {}, SeriesOf(*method), method->HigherOrder()},
+        layout{RigidBodiesOf(*scene), {}, SeriesOf(*method), method->HigherOrder()},
         warnings(*scene, layout.series) {
     const double intervals = scene->duration / scene->output.frame_interval;
     // The tolerance prevents rounding from adding a frame to a whole number of intervals.
@@ -142,6 +142,7 @@ struct Simulation::Impl {
     frame.index = next_frame;
     frame.time = clock.time;
     frame.step = clock.step;
+    frame.poses = PosesOf(*scene, now);
     source.Evaluate(clock.time + clock.time_step, next);
     {
       const StageTimer fields(profile, "fields");

@@ -67,6 +67,16 @@ Rotation TranslateRotation(const v1::Rotation& rotation, double metres, const st
 
 }  // namespace
 
+Motion TranslateMotion(const v1::Motion& motion, const std::array<bool, 3>& axes, double metres,
+                       const std::string& path, Problems& problems) {
+  Motion result;
+  TranslateTranslation(motion, axes, path, result, problems);
+  if (motion.has_rotation()) {
+    result.rotation = TranslateRotation(motion.rotation(), metres, JoinPath(path, "rotation"), problems);
+  }
+  return result;
+}
+
 std::vector<Constraint> TranslateConstraints(const v1::Body& body, const std::string& body_path, const Names& regions,
                                              Problems& problems) {
   std::vector<Constraint> result;
@@ -76,12 +86,8 @@ std::vector<Constraint> TranslateConstraints(const v1::Body& body, const std::st
     Constraint translated;
     const auto region = regions.Find(constraint.region(), JoinPath(path, "region"), problems);
     translated.axes = TranslateAxes(constraint, path, problems);
-    const std::string motion_path = JoinPath(path, "motion");
-    TranslateTranslation(constraint.motion(), translated.axes, motion_path, translated.motion, problems);
-    if (constraint.motion().has_rotation()) {
-      translated.motion.rotation = TranslateRotation(constraint.motion().rotation(), MetresIn(body.unit()),
-                                                     JoinPath(motion_path, "rotation"), problems);
-    }
+    translated.motion = TranslateMotion(constraint.motion(), translated.axes, MetresIn(body.unit()),
+                                        JoinPath(path, "motion"), problems);
     if (!region) continue;
     translated.region = static_cast<std::int32_t>(*region);
     result.push_back(std::move(translated));

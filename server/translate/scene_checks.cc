@@ -24,6 +24,9 @@ void AddRenumbered(const Problem& problem, std::size_t index, Problems& problems
 
 void CheckEachBody(Scene scene, const std::vector<bool>& complete, Problems& problems) {
   std::vector<Body> bodies = std::exchange(scene.bodies, {});
+  // Their own checks need all bodies.
+  scene.rigid_bodies.clear();
+  scene.contacts.clear();
   // Problems of times and output have been reported.
   scene.output = {};
   scene.duration = scene.output.frame_interval = 1;

@@ -1,6 +1,7 @@
 #ifndef FASCICLE_SERVER_TRANSLATE_SUPPORTS_AND_LOADS_H_
 #define FASCICLE_SERVER_TRANSLATE_SUPPORTS_AND_LOADS_H_
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,10 @@ namespace fascicle::server {
 // The constraints and loads of a body. Entries with a problem may be missing from the result.
 std::vector<Constraint> TranslateConstraints(const v1::Body& body, const std::string& body_path, const Names& regions,
                                              Problems& problems);
+// A motion of what is held along some axes.
+//   metres  in the unit of points on axes of rotation
+Motion TranslateMotion(const v1::Motion& motion, const std::array<bool, 3>& axes, double metres,
+                       const std::string& path, Problems& problems);
 std::vector<Load> TranslateLoads(const v1::Body& body, const std::string& body_path, const Names& regions,
                                  Problems& problems);
 // Sets the other ends of the bodies' line springs, once all bodies are known.

@@ -17,6 +17,7 @@
 #include "server/translate/methods.h"
 #include "server/translate/names.h"
 #include "server/translate/outputs.h"
+#include "server/translate/rigid_bodies.h"
 #include "server/translate/scene_checks.h"
 #include "server/translate/start.h"
 #include "server/translate/supports_and_loads.h"
@@ -124,7 +125,15 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     AddCurvedEdgesNote(result->tet, path, body.body);
     result->bodies.push_back(std::move(body.body));
   }
+  std::vector<std::string> notes;
+  result->rigid_bodies = TranslateRigidBodies(filled, {assets, tools.stop}, names, notes, found);
   result->contacts = TranslateContacts(filled, names, found);
+  if (!result->contacts.empty()) {
+    notes.push_back("contacts: bodies do not touch themselves; their folds would pass through each other");
+  }
+  if (!result->bodies.empty()) {
+    result->bodies.front().notes.insert(result->bodies.front().notes.end(), notes.begin(), notes.end());
+  }
   TranslateStart(filled, assets, *result, found);
   FindEndsOfLineSprings(filled, names, result->bodies, found);
   result->output = TranslateOutput(filled, result->method, result->tet.element, result->bodies, names,

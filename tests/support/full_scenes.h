@@ -60,6 +60,7 @@ inline SurfaceShape FullSurfaceShape() {
   return {{filling.nodes, BoundaryTriangles(filling)}, filling, FibreField(6, Vec3::UnitX()), Plasticity{1e3, 0.1}};
 }
 
+// Its rigid bodies contradict each other.
 inline Scene FullScene(Method method, Shape shape) {
   Body body;
   body.name = "body";
@@ -83,6 +84,21 @@ inline Scene FullScene(Method method, Shape shape) {
   scene.bodies = {std::move(body)};
   scene.gravity.acceleration = Vec3(0, 0, -9.81);
   scene.floors = {{"ground", Vec3(0, 0, -10), Vec3::UnitZ()}};
+  Motion slow = FullMotion();
+  scene.rigid_bodies = {
+      {"bone",
+       Cylinder{0.1, 0.5},
+       {Vec3(0, 0, -9), {1, 0, 0, 0}},
+       slow,
+       FreeRigidMotion{1.0, 2.0},
+       "humerus",
+       0.1,
+       {0}},
+      {"plane", HalfSpace(), {}, {}, {}, "", 0, {0}},
+      {"ball", Ball{0.1}, {}, {}, {}, "", 0, {0}},
+      {"box", Cuboid{Vec3::Ones()}, {}, {}, {}, "", 0, {0}},
+      {"surface", TriangleMesh{{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()}, {{0, 1, 2}}}, {}, {}, {}, "", 0, {0}}};
+  scene.contacts = {{{0, 1}, 0.1, false}};
   scene.method = method;
   scene.tet.time_step = scene.voxel.time_step = scene.eulerian.time_step = 1e-3;
   scene.eulerian.room = Bounds{-Vec3::Ones(), Vec3::Ones()};

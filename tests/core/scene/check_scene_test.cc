@@ -325,10 +325,60 @@ TEST(CheckSceneTest, BodiesHaveTheShapeOfTheMethod) {
   }
 }
 
+RigidBody BallAt(const Vec3& place) { return {"ball", Ball{0.01}, {place, {1, 0, 0, 0}}, {}, {}, "", 0, {}}; }
+
+// The paths of a scene's problems, beside that the method refuses rigid bodies.
+std::vector<std::string> PathsOf(const Scene& scene) {
+  Problems problems;
+  CheckScene(scene, problems);
+  std::vector<std::string> paths;
+  for (const Problem& problem : problems.kept()) {
+    if (problem.message.find("does not support") == std::string::npos) paths.push_back(problem.path);
+  }
+  return paths;
+}
+
+TEST(CheckSceneTest, RigidBodiesAndContacts) {
+  using ::testing::ElementsAre;
+  Scene scene = GoodScene();
+  scene.rigid_bodies = {BallAt(Vec3(0.015, 0.01, -0.011))};
+  EXPECT_THAT(PathsOf(scene), ElementsAre());
+  const Scene good = scene;
+  RigidBody& ball = scene.rigid_bodies[0];
+  ball.pose.position[2] = 0;
+  EXPECT_THAT(PathsOf(scene), ElementsAre("rigid_bodies[0]")) << "starts inside of the body";
+  ball.bodies = {1};
+  EXPECT_THAT(PathsOf(scene), ElementsAre("rigid_bodies[0].bodies"));
+  scene = good;
+  ball.shape = Ball{-1};
+  EXPECT_THAT(PathsOf(scene), ElementsAre("rigid_bodies[0]"));
+  scene = good;
+  ball.bone = "humerus";
+  EXPECT_THAT(PathsOf(scene), ElementsAre("rigid_bodies[0].bone"));
+  scene = good;
+  ball.motion = Motion();
+  ball.motion->translation[0] = Curve{{0, 1}, {0.1, 0}};
+  EXPECT_THAT(PathsOf(scene), ElementsAre("rigid_bodies[0].motion")) << "does not begin at its pose";
+  ball.motion->translation[0] = Curve{{0, 1}, {0, 0.1}};
+  EXPECT_THAT(PathsOf(scene), ElementsAre());
+  ball.free = FreeRigidMotion{{}, {}, Vec3::Zero(), Vec3::Zero()};
+  EXPECT_THAT(PathsOf(scene), ElementsAre("rigid_bodies[0]", "rigid_bodies[0].free")) << "two motions, no mass";
+  scene = good;
+  scene.floors = {{"ball", Vec3(0, 0, -1), Vec3::UnitZ()}};
+  EXPECT_THAT(PathsOf(scene), ElementsAre("rigid_bodies[0].name"));
+  scene = good;
+  scene.contacts = {{{0, 0}, 0, false}};
+  EXPECT_THAT(PathsOf(scene), ElementsAre("contacts[0].bodies[1]"));
+  scene.contacts = {{{0, 2}, 0, false}};
+  EXPECT_THAT(PathsOf(scene), ElementsAre("contacts[0].bodies[1]"));
+}
+
 // A plastic cube of the eulerian method, compressed.
 Scene PlasticScene() {
   Scene scene = FullScene(Method::kEulerian, FullSurfaceShape());
   scene.floors.clear();
+  scene.rigid_bodies.clear();
+  scene.contacts.clear();
   scene.bodies[0].viscoelasticity = {};
   scene.bodies[0].regions.resize(1);
   scene.bodies[0].regions[0].selectors = {PlaneSelector{Vec3::Zero(), -Vec3::UnitX()}};

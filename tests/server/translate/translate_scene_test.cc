@@ -652,6 +652,26 @@ TEST(TranslateScene, FloorsHoldBodiesThatNothingElseHolds) {
   EXPECT_THAT(problems.ToString(), ::testing::HasSubstr("inside of the floor"));
 }
 
+// Lengths are in the body's own unit; a plane's normal and a cylinder's axis turn its frame.
+TEST(TranslateScene, RigidBodies) {
+  v1::Scene wire = BoxScene();
+  google::protobuf::TextFormat::MergeFromString(
+      R"(rigid_bodies { name: "wall" plane { normal: [2, 0, 0] } position: [-1, 0, 0] }
+         rigid_bodies { name: "bone" unit: LENGTH_UNIT_MM cylinder { radius: 5 length: 80 axis: [1, 0, 0] }
+           position: [0, 0, -200] rotation: [0, 0, 1.5707963267948966] bodies: "box"
+           motion { rotation { point: [0, 10, 0] axis: [0, 0, 3] angle { times: [0, 1] values: [0, 1] } } } }
+         rigid_bodies { name: "file" unit: LENGTH_UNIT_CM surface { path: "t.stl" asset: "assets/x" } friction: 0.5 }
+         rigid_bodies { name: "wall" box { size: [1, 1, -1] } bodies: "bx" }
+         contacts { bodies: ["box", "bax"] })",
+      &wire);
+  Problems problems;
+  EXPECT_EQ(TranslateScene(wire, {}, problems), nullptr);
+  for (const char* path : {"rigid_bodies[2].surface", "rigid_bodies[3].name", "rigid_bodies[3].box.size[2]",
+                           "rigid_bodies[3].bodies[0]", "contacts[0].bodies[1]"}) {
+    EXPECT_THAT(problems.ToString(), ::testing::HasSubstr(path));
+  }
+}
+
 TEST(TranslateScene, ExcitationsKeepTheirDynamics) {
   v1::Scene wire = BoxScene();
   google::protobuf::TextFormat::MergeFromString(

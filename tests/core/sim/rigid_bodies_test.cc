@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "core/geometry/bounds.h"
+#include "core/sim/control_source.h"
+#include "core/sim/rigid_bodies.h"
 #include "tests/support/tet_scenes.h"
 
 namespace fascicle {
@@ -21,7 +23,7 @@ Scene BoxAbove(const std::vector<Floor>& floors) {
   return scene;
 }
 
-std::vector<RigidBodyInfo> RigidBodiesOf(const Scene& scene) {
+std::vector<RigidBodyInfo> ShownRigidBodies(const Scene& scene) {
   return Simulation(std::make_shared<Scene>(scene), 1).layout().rigid_bodies;
 }
 
@@ -29,7 +31,7 @@ TEST(FloorBodies, AreSquaresOfTheSurfacesBelowTheBodies) {
   const Vec3 middle(0.03, 0.01, 0.01);
   for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(0, 1, 0), Vec3(1, -2, 3)}) {
     const Vec3 n = normal.normalized(), point = middle - 0.04 * n + n.unitOrthogonal() * 0.3;
-    const std::vector<RigidBodyInfo> bodies = RigidBodiesOf(BoxAbove({{"ground", point, n}}));
+    const std::vector<RigidBodyInfo> bodies = ShownRigidBodies(BoxAbove({{"ground", point, n}}));
     ASSERT_EQ(bodies.size(), 1u);
     const RigidBodyInfo& floor = bodies[0];
     EXPECT_EQ(floor.name, "ground");
@@ -59,9 +61,30 @@ TEST(FloorBodies, AreSquaresOfTheSurfacesBelowTheBodies) {
 TEST(FloorBodies, OneForEachFloorAndNoneInFrames) {
   const Scene scene =
       BoxAbove({{"ground", Vec3(0, 0, -0.01), Vec3(0, 0, 1)}, {"wall", Vec3(-0.01, 0, 0), Vec3(1, 0, 0)}});
-  EXPECT_EQ(RigidBodiesOf(scene).size(), 2u);
-  EXPECT_TRUE(RigidBodiesOf(BoxAbove({})).empty());
+  EXPECT_EQ(ShownRigidBodies(scene).size(), 2u);
+  EXPECT_TRUE(ShownRigidBodies(BoxAbove({})).empty());
   for (const Frame& frame : RunScene(scene).frames) EXPECT_TRUE(frame.poses.empty());
+}
+
+// Shapes with their poses; those that move have theirs in every frame.
+TEST(RigidBodies, ShapesAndPoses) {
+  Scene scene = BoxAbove({{"ground", Vec3(0, 0, -0.01), Vec3(0, 0, 1)}});
+  RigidBody bone{"bone", Cylinder{0.005, 0.1}, {Vec3(0.1, 0, 0), {1, 0, 0, 0}}, Motion(), {}, "", 0, {}};
+  bone.motion->translation[2] = Curve{{0, 0.002}, {0, 0.01}};
+  bone.motion->rotation = Rotation{Vec3::Zero(), Vec3::UnitZ(), Curve{{0, 0.002}, {0, 0.5}}};
+  scene.rigid_bodies = {{"ball", Ball{0.01}, {Vec3(0.2, 0, 0), {1, 0, 0, 0}}, {}, {}, "", 0, {}}, bone};
+  const std::vector<RigidBodyInfo> infos = RigidBodiesOf(scene);
+  ASSERT_EQ(infos.size(), 3u);
+  EXPECT_EQ(infos[0].name, "ground");
+  EXPECT_EQ(infos[1].name, "ball");
+  EXPECT_FALSE(infos[1].moves);
+  EXPECT_TRUE(infos[2].moves);
+  EXPECT_EQ(infos[2].pose.position, Vec3(0.1, 0, 0));
+  ControlSource source(scene);
+  const std::vector<Pose> poses = PosesOf(scene, source.At(0.001));
+  ASSERT_EQ(poses.size(), 1u);
+  EXPECT_LT((poses[0].position - Vec3(0.1 * std::cos(0.25), 0.1 * std::sin(0.25), 0.005)).norm(), 1e-15);
+  EXPECT_LT((RotationOf(poses[0]) * Vec3::UnitX() - Vec3(std::cos(0.25), std::sin(0.25), 0)).norm(), 1e-15);
 }
 
 }  // namespace

@@ -1,0 +1,22 @@
+#include "core/scene/rigid_body.h"
+
+#include <algorithm>
+
+namespace fascicle {
+
+bool Touches(const RigidBody& rigid, std::size_t body) {
+  return rigid.bodies.empty() ||
+         std::find(rigid.bodies.begin(), rigid.bodies.end(), static_cast<std::int32_t>(body)) != rigid.bodies.end();
+}
+
+RigidMotion RigidMotionAt(const RigidBody& rigid, double time) {
+  return rigid.motion ? MotionAt(*rigid.motion, time) : RigidMotion();
+}
+
+Pose PoseAfter(const Pose& pose, const RigidMotion& motion) {
+  const auto [w, x, y, z] = pose.quaternion;
+  const Eigen::Quaterniond q = (Eigen::Quaterniond(motion.rotation) * Eigen::Quaterniond(w, x, y, z)).normalized();
+  return {motion.PositionOf(pose.position), {q.w(), q.x(), q.y(), q.z()}};
+}
+
+}  // namespace fascicle
