@@ -1,5 +1,6 @@
 #include "server/rpc/frame_service.h"
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,7 +24,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameServiceImpl::StreamFrames(grpc:
                                                                            const grpc::ByteBuffer* request) {
   auto parsed = ParseRequest<v1::StreamFramesRequest>(*request);
   if (!parsed) return new EndedStream(NotAMessage());
-  return OutStream::Launch(*call, std::make_shared<FrameStream>(context_, deriver_, std::move(*parsed)));
+  return OutStream::Launch(*call, std::make_shared<FrameStream>(context_, shared_, std::move(*parsed)));
 }
 
 grpc::ServerUnaryReactor* FrameServiceImpl::ListFrames(grpc::CallbackServerContext* call,
@@ -31,6 +32,12 @@ grpc::ServerUnaryReactor* FrameServiceImpl::ListFrames(grpc::CallbackServerConte
                                                        v1::ListFramesResponse* response) {
   return RunUnary(context_, context_.quick, call, "ListFrames",
                   [this, request, response] { return List(*request, *response); });
+}
+
+void FrameServiceImpl::DropUnused() {
+  constexpr std::chrono::seconds kUnused(5);
+  shared_.chunks.DropUnused(kUnused);
+  shared_.derived.DropUnused(kUnused);
 }
 
 grpc::Status FrameServiceImpl::List(const v1::ListFramesRequest& request, v1::ListFramesResponse& response) {

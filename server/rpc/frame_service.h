@@ -4,8 +4,8 @@
 #include <grpcpp/support/byte_buffer.h>
 
 #include "fascicle/v1/simulation_service.grpc.pb.h"
-#include "server/rpc/frame_deriver.h"
 #include "server/rpc/rpc_context.h"
+#include "server/rpc/shared_frames.h"
 
 namespace fascicle::server {
 
@@ -16,7 +16,10 @@ using FrameServiceBase =
 // The results of jobs. The streams are raw, so that frames are sent from the store without a copy.
 class FrameServiceImpl : public FrameServiceBase {
  public:
-  explicit FrameServiceImpl(RpcContext& context) : context_(context), deriver_(context.log, kMostKept) {}
+  explicit FrameServiceImpl(RpcContext& context) : context_(context), shared_(context) {}
+
+  // Drops copies of frames that nobody has read for a while.
+  void DropUnused();
 
   grpc::ServerWriteReactor<grpc::ByteBuffer>* GetGeometry(grpc::CallbackServerContext* call,
                                                           const grpc::ByteBuffer* request) override;
@@ -28,10 +31,8 @@ class FrameServiceImpl : public FrameServiceBase {
  private:
   grpc::Status List(const v1::ListFramesRequest& request, v1::ListFramesResponse& response);
 
-  static constexpr std::size_t kMostKept = std::size_t{64} << 20;  // derived frames [byte]
-
   RpcContext& context_;
-  FrameDeriver deriver_;
+  SharedFrames shared_;
 };
 
 }  // namespace fascicle::server

@@ -1,9 +1,11 @@
 #include "server/rpc/frame_stream.h"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "proto/rules/enum_names.h"
+#include "server/rpc/chunk_message.h"
 #include "server/rpc/job_messages.h"
 #include "server/rpc/names.h"
 
@@ -19,6 +21,9 @@ constexpr std::chrono::milliseconds kLatestInterval(33);
 // Largest stored frame that is derived from [byte]. Meanwhile it needs about four times its size.
 constexpr std::int64_t kMostToDerive = std::int64_t{128} << 20;
 static_assert(kMostToDerive <= kLargestDerived);
+
+// The frame that is being sent was replaced by another one.
+struct FrameReplaced : std::exception {};
 
 // The names that a request may select from the frames of a job.
 std::vector<std::string> PartsOf(const v1::Scene& scene) {
@@ -72,66 +77,57 @@ void FrameStream::Fill() {
 bool FrameStream::Open() {
   Problems problems;
   CheckRequest(request_, problems);
-  if (const auto id = ParseJobName(request_.name()); id && request_.fields_size() > 0) {
-    if (const std::optional<JobView> view = context_.jobs.Get(*id)) CheckFields(request_, view->record.spec, problems);
+  const std::optional<std::string> job_id = ParseJobName(request_.name());
+  if (job_id && request_.fields_size() > 0) {
+    if (const auto view = context_.jobs.Get(*job_id)) CheckFields(request_, view->record.spec, problems);
   }
   if (!problems.empty()) {
     Complete(InvalidArgument(problems));
     return false;
   }
-  job_id_ = *ParseJobName(request_.name());
-  frames_ = context_.jobs.Frames(job_id_);
-  if (!frames_) {
+  feed_ = shared_.feeds.Of(*job_id);
+  if (!feed_) {
     Complete(NotFound("job", request_.name()));
     return false;
   }
-  Follow(job_id_);  // before the first check, so that no change is missed
+  Join(feed_);  // before the first look, so that no change is missed
   next_index_ = request_.start_index();
   stride_ = std::max<std::int64_t>(request_.stride(), 1);
   generation_ = request_.generation();
-  if (!Refresh()) return false;
-  generation_ = view_.record.generation;
-  if (next_index_ < view_.record.first_frame) {
-    Complete(FramesRemoved(request_.name(), view_.record.first_frame));
+  if (!Take(feed_->LookAgain())) return false;
+  const JobRecord& record = state_->view.record;
+  generation_ = record.generation;
+  if (next_index_ < record.first_frame) {
+    Complete(FramesRemoved(request_.name(), record.first_frame));
     return false;
   }
   // The next index of a stream with a stride may be beyond the last frame.
-  if (IsFinal(view_.record.state) && next_index_ > known_count_ - 1 + stride_) {
+  if (IsFinal(record.state) && next_index_ > state_->frame_count - 1 + stride_) {
     Complete(OutOfRange("START_INDEX", "start_index " + std::to_string(next_index_) + " is beyond the " +
-                                           std::to_string(known_count_) + " frames of " + request_.name()));
+                                           std::to_string(state_->frame_count) + " frames of " + request_.name()));
     return false;
   }
   wanted_end_ = request_.end_index() > 0 ? request_.end_index() : INT64_MAX;
   // The frames stored now: a job may write faster than the reader reads.
-  if (!request_.follow()) wanted_end_ = std::min(wanted_end_, known_count_);
+  if (!request_.follow()) wanted_end_ = std::min(wanted_end_, state_->frame_count);
   open_ = true;
   Response message;
   message.mutable_header()->set_generation(generation_);
   message.mutable_header()->set_next_index(next_index_);
-  message.mutable_header()->set_frame_count(known_count_);
+  message.mutable_header()->set_frame_count(state_->frame_count);
   message.mutable_header()->set_derived(derives_);
   Push(Serialize(message));
   last_message_ = Clock::now();
   return true;
 }
 
-bool FrameStream::Refresh() {
-  // The state is read before the frames: a job in a final state has stored all of them.
-  std::optional<JobView> view = context_.jobs.Get(job_id_);
-  if (!view) {
+bool FrameStream::Take(std::shared_ptr<const JobFeed::State> state) {
+  state_ = std::move(state);
+  if (!state_) {
     Complete(NotFound("job", request_.name()));
     return false;
   }
-  view_ = std::move(*view);
-  known_count_ = frames_->frame_count();
-  if (view_.record.first_frame > 0) {
-    known_count_ = view_.record.frame_count;
-  } else if (IsFinal(view_.record.state) && known_count_ < view_.record.frame_count) {
-    throw DamageError("of the " + std::to_string(view_.record.frame_count) + " frames of " + request_.name() +
-                      " only " + std::to_string(known_count_) + " are there");
-  }
-  last_look_ = Clock::now();
-  if (generation_ != 0 && view_.record.generation != generation_) {
+  if (generation_ != 0 && state_->view.record.generation != generation_) {
     Complete(Aborted("GENERATION_CHANGED", "the frames of " + request_.name() + " were rewritten: start again"));
     return false;
   }
@@ -142,82 +138,76 @@ void FrameStream::Advance() {
   const bool latest = request_.mode() == v1::StreamFramesRequest::MODE_LATEST;
   if (latest && !AllWritten()) return;  // the newest is chosen when the reader is ready
   if (const auto rest = kLatestInterval - (Clock::now() - last_frame_); latest && rest > rest.zero()) {
-    WakeAfter(std::chrono::ceil<std::chrono::milliseconds>(rest));
+    feed_->FillAfter(std::chrono::ceil<std::chrono::milliseconds>(rest));
     return;
   }
-  const bool look =
-      latest || next_index_ >= known_count_ || Clock::now() - last_look_ >= context_.settings.progress_interval;
-  if (look && !Refresh()) return;
+  if (!Take(feed_->Look())) return;
   Beat();
   if (latest) next_index_ = NewestIndex();
-  if (next_index_ < std::min(known_count_, wanted_end_)) {
+  if (next_index_ < std::min(state_->frame_count, wanted_end_)) {
     BeginFrame(next_index_);
-  } else if (next_index_ >= wanted_end_ || IsFinal(view_.record.state)) {
+  } else if (next_index_ >= wanted_end_ || IsFinal(state_->view.record.state)) {
     PushEnd();
-  } else {
-    WakeAfter(std::min(context_.settings.progress_interval, context_.settings.heartbeat_interval));
   }
 }
 
 std::int64_t FrameStream::NewestIndex() const {
-  const std::int64_t count = std::min(known_count_, wanted_end_);
+  const std::int64_t count = std::min(state_->frame_count, wanted_end_);
   if (count <= next_index_) return next_index_;
   return next_index_ + (count - 1 - next_index_) / stride_ * stride_;
 }
 
 void FrameStream::BeginFrame(std::int64_t index) {
   constexpr int kReadAhead = 64;
-  auto found = std::find_if(listed_.begin(), listed_.end(), [index](const FrameRecord& r) { return r.index == index; });
-  if (found == listed_.end()) {
-    listed_ = frames_->ListFrames(index, stride_ == 1 ? kReadAhead : 1);
-    found = listed_.begin();
-    if (listed_.empty() || found->index != index)
-      throw DamageError("frame " + std::to_string(index) + " of " + request_.name() + " is missing");
-  }
-  current_ = *found;
+  current_ = feed_->Record(index, stride_ == 1 ? kReadAhead : 1);
   offset_ = 0;
   last_frame_ = Clock::now();
 }
 
-ChunkSource FrameStream::StoredChunk(std::int64_t offset) {
-  std::optional<std::string> bytes = frames_->ReadChunk(current_->index, offset / FrameStore::kChunkSize);
-  if (!bytes)
+std::string FrameStream::StoredChunk(std::int64_t offset) {
+  FrameStore& frames = feed_->frames();
+  std::optional<std::string> bytes = frames.ReadChunk(current_->index, offset / FrameStore::kChunkSize);
+  // Another frame may have taken its place since its record was read, or between two of its chunks.
+  const std::vector<FrameRecord> now = frames.ListFrames(current_->index, 1);
+  if (now.empty() || now.front().digest != current_->digest) throw FrameReplaced();
+  if (!bytes) {
     throw DamageError("frame " + std::to_string(current_->index) + " of " + request_.name() + " is incomplete");
-  ChunkSource source;
-  source.size = bytes->size();
-  source.last = offset + static_cast<std::int64_t>(source.size) >= current_->size;
-  source.bytes = std::make_shared<const std::string>(std::move(*bytes));
-  return source;
+  }
+  return *std::move(bytes);
 }
 
 std::string FrameStream::Derive() {
   std::string bytes;
   while (static_cast<std::int64_t>(bytes.size()) < current_->size) {
-    bytes += *StoredChunk(static_cast<std::int64_t>(bytes.size())).bytes;
+    bytes += StoredChunk(static_cast<std::int64_t>(bytes.size()));
   }
   return DeriveFrame(std::move(bytes), request_).SerializeAsString();
 }
 
-ChunkSource FrameStream::DerivedChunk(std::int64_t offset) {
+std::string FrameStream::KeyOfFrame() const {
   v1::StreamFramesRequest form;
   *form.mutable_fields() = request_.fields();
   form.set_encoding(request_.encoding());
   form.set_compression(request_.compression());
-  const std::string key =
-      job_id_ + ' ' + std::to_string(current_->index) + ' ' + current_->digest + form.SerializeAsString();
-  const FrameDeriver::Bytes whole = deriver_.Get(key, [this] { return Derive(); });
-  // A copy: what waits for a slow reader must not keep the whole frame.
-  ChunkSource source;
-  source.bytes = std::make_shared<const std::string>(
-      whole->substr(static_cast<std::size_t>(offset), static_cast<std::size_t>(FrameStore::kChunkSize)));
-  source.size = source.bytes->size();
-  source.last = static_cast<std::size_t>(offset) + source.size >= whole->size();
-  return source;
+  return request_.name() + ' ' + std::to_string(current_->index) + ' ' + current_->digest + form.SerializeAsString();
 }
 
-bool FrameStream::IsUnchanged() {
-  const std::vector<FrameRecord> now = frames_->ListFrames(current_->index, 1);
-  return !now.empty() && now.front().digest == current_->digest;
+FrameChunk FrameStream::MakeChunk() {
+  ChunkSource source;
+  if (derives_) {
+    const std::shared_ptr<const std::string> whole = shared_.derived.Get(KeyOfFrame(), [this] { return Derive(); });
+    // A copy: what waits for a slow reader must not keep the whole frame.
+    source.bytes = std::make_shared<const std::string>(
+        whole->substr(static_cast<std::size_t>(offset_), static_cast<std::size_t>(FrameStore::kChunkSize)));
+    source.last = static_cast<std::size_t>(offset_) + source.bytes->size() >= whole->size();
+  } else {
+    source.bytes = std::make_shared<const std::string>(StoredChunk(offset_));
+    source.last = offset_ + static_cast<std::int64_t>(source.bytes->size()) >= current_->size;
+  }
+  source.size = source.bytes->size();
+  source.frame_index = current_->index;
+  source.offset = offset_;
+  return {ChunkMessage(Response::kChunkFieldNumber, source), source.size, source.last};
 }
 
 void FrameStream::PushChunk() {
@@ -228,42 +218,39 @@ void FrameStream::PushChunk() {
                                    std::to_string(kMostToDerive) + ": read it as it is stored"));
     return;
   }
-  ChunkSource source = derives_ ? DerivedChunk(offset_) : StoredChunk(offset_);
-  source.frame_index = current_->index;
-  source.offset = offset_;
-  offset_ += static_cast<std::int64_t>(source.size);
-  // The frame may have been replaced between two of its chunks.
-  if (source.last && (derives_ || offset_ > FrameStore::kChunkSize) && !IsUnchanged()) {
+  std::shared_ptr<const FrameChunk> chunk;
+  try {
+    chunk = shared_.chunks.Get(KeyOfFrame() + ' ' + std::to_string(offset_), [this] { return MakeChunk(); });
+  } catch (const FrameReplaced&) {
     Complete(Aborted("GENERATION_CHANGED", "the frames of " + request_.name() + " were rewritten: start again"));
     return;
   }
-  if (source.last) {
+  offset_ += static_cast<std::int64_t>(chunk->bytes);
+  if (chunk->last) {
     next_index_ = current_->index + stride_;
     current_.reset();
   }
-  Push(ChunkMessage(Response::kChunkFieldNumber, source));
+  Push(chunk->message);
   last_message_ = Clock::now();
 }
 
 void FrameStream::Beat() {
   const Clock::time_point now = Clock::now();
-  v1::Progress progress = ProgressOf(view_);
-  const std::string told = std::to_string(StateOf(view_)) + progress.SerializeAsString();
-  const bool news =
-      told != last_progress_ && !IsFinal(view_.record.state) && now - last_beat_ >= context_.settings.progress_interval;
-  if (!news && now - last_message_ < context_.settings.heartbeat_interval) return;
+  const bool news = state_->beat != told_beat_ && !IsFinal(state_->view.record.state);
+  // The next filling may be too late.
+  if (!news && now - last_message_ + feed_->Interval() < context_.settings.heartbeat_interval) return;
   Response message;
   message.mutable_heartbeat()->set_next_index(next_index_);
-  message.mutable_heartbeat()->set_state(StateOf(view_));
-  *message.mutable_heartbeat()->mutable_progress() = std::move(progress);
+  message.mutable_heartbeat()->set_state(StateOf(state_->view));
+  *message.mutable_heartbeat()->mutable_progress() = state_->progress;
   Push(Serialize(message));
-  last_progress_ = told;
-  last_beat_ = last_message_ = now;
+  told_beat_ = state_->beat;
+  last_message_ = now;
 }
 
 void FrameStream::PushEnd() {
   Response message;
-  *message.mutable_end()->mutable_job() = ToMessage(view_);
+  *message.mutable_end()->mutable_job() = ToMessage(state_->view);
   message.mutable_end()->set_next_index(next_index_);
   Push(Serialize(message));
   Complete(grpc::Status::OK);

@@ -31,56 +31,77 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* OutStream::Launch(const grpc::Callba
   return reactor;
 }
 
-void OutStream::Wake() {
-  {
-    std::lock_guard lock(mutex_);
-    if (stopped_) return;
-    if (filling_) {
-      fill_again_ = true;
-      return;
-    }
-    filling_ = true;
+bool OutStream::BeginFill() {
+  std::lock_guard lock(mutex_);
+  if (stopped_) return false;
+  if (filling_) {
+    fill_again_ = true;
+    return false;
   }
-  executor().Post([stream = shared_from_this()] { stream->RunFill(); });
+  filling_ = true;
+  return true;
+}
+
+void OutStream::Wake() {
+  if (BeginFill()) executor().Post([stream = shared_from_this()] { stream->RunFill(); });
+}
+
+void OutStream::WakeHere(const Executor& here) {
+  if (&here != &executor()) return Wake();
+  if (BeginFill()) RunFill();
 }
 
 void OutStream::RunFill() {
-  bool again = true;
-  while (again) {
-    {
-      std::lock_guard lock(mutex_);
-      fill_again_ = false;
-      if (stopped_) {  // cancelled before its turn: there is nothing to do
-        filling_ = false;
-        return;
-      }
-    }
-    const grpc::Status status = Guarded(context_.log, method_, [this] {
-      Fill();
-      return grpc::Status::OK;
-    });
-    if (!status.ok()) Abort(status);
+  {
     std::lock_guard lock(mutex_);
-    again = fill_again_ && !stopped_;
-    if (!again) filling_ = false;
+    fill_again_ = false;
+    waits_for_write_ = false;
+    if (stopped_) {  // cancelled before its turn: there is nothing to do
+      filling_ = false;
+      return;
+    }
   }
+  const grpc::Status status = Guarded(context_.log, method_, [this] {
+    Fill();
+    return grpc::Status::OK;
+  });
+  if (!status.ok()) Abort(status);
+  {
+    std::unique_lock lock(mutex_);
+    Pump(lock);
+  }
+  {
+    std::lock_guard lock(mutex_);
+    filling_ = fill_again_ && !stopped_;
+    if (!filling_) return;
+  }
+  executor().Post([stream = shared_from_this()] { stream->RunFill(); });  // after those that wait
 }
 
-bool OutStream::HasRoom() const {
-  std::lock_guard lock(mutex_);
-  return !stopped_ && ready_.size() < kAhead;
+bool OutStream::IsFull() const {
+  return ready_.size() >= kAhead && (ready_.size() >= kSmallAhead || ready_bytes_ >= kSmallBytes);
 }
 
-bool OutStream::AllWritten() const {
+bool OutStream::HasRoom() {
   std::lock_guard lock(mutex_);
-  return ready_.empty() && !writing_;
+  if (IsFull()) waits_for_write_ = true;
+  return !stopped_ && !IsFull();
+}
+
+bool OutStream::AllWritten() {
+  std::lock_guard lock(mutex_);
+  const bool all = ready_.empty() && !writing_;
+  if (!all) waits_for_write_ = true;
+  return all;
 }
 
 void OutStream::Push(grpc::ByteBuffer message) {
   std::unique_lock lock(mutex_);
   if (stopped_) return;
+  const std::size_t size = message.Length();
+  ready_bytes_ += size;
   ready_.push_back(std::move(message));
-  Pump(lock);
+  if (size >= kLarge) Pump(lock);  // small ones leave together, after Fill
 }
 
 void OutStream::Complete(grpc::Status status) {
@@ -95,7 +116,7 @@ void OutStream::Abort(const grpc::Status& status) {
   std::unique_lock lock(mutex_);
   if (!finished_) last_ = status;
   stopped_ = true;
-  ready_.clear();
+  Clear();
   Pump(lock);
 }
 
@@ -106,6 +127,18 @@ void OutStream::Follow(const std::string& job_id) {
   });
   std::lock_guard lock(mutex_);
   if (!finished_) subscription_.swap(subscription);
+}
+
+void OutStream::Join(std::shared_ptr<JobFeed> feed) {
+  feed->Join(weak_from_this());
+  {
+    std::lock_guard lock(mutex_);
+    if (!finished_) {
+      feed_ = std::move(feed);
+      return;
+    }
+  }
+  feed->Leave();
 }
 
 void OutStream::WakeAfter(std::chrono::milliseconds delay) {
@@ -131,12 +164,15 @@ void OutStream::Pump(std::unique_lock<std::mutex>& lock) {
   if (!ready_.empty()) {
     in_flight_ = std::move(ready_.front());
     ready_.pop_front();
+    ready_bytes_ -= in_flight_.Length();
     writing_ = true;
+    // The first one is not held back: gRPC would not report it as written, because the call's metadata go with it.
+    const bool more_follow = std::exchange(begun_, true) && !ready_.empty();
     lock.unlock();
     if (in_flight_.Length() < kLarge) {
-      StartWrite(&in_flight_);
+      Write(more_follow);
     } else {
-      context_.turnstile.Enter(this, [stream = shared_from_this()] { stream->StartWrite(&stream->in_flight_); });
+      context_.turnstile.Enter(this, [stream = shared_from_this()] { stream->Write(false); });
     }
   } else if (last_) {
     finished_ = true;
@@ -144,6 +180,17 @@ void OutStream::Pump(std::unique_lock<std::mutex>& lock) {
     lock.unlock();
     Finish(status);
   }
+}
+
+void OutStream::Clear() {
+  ready_.clear();
+  ready_bytes_ = 0;
+}
+
+void OutStream::Write(bool more_follow) {
+  grpc::WriteOptions options;
+  if (more_follow) options.set_buffer_hint();  // they leave together
+  StartWrite(&in_flight_, options);
 }
 
 void OutStream::OnWriteDone(bool ok) {
@@ -155,11 +202,11 @@ void OutStream::OnWriteDone(bool ok) {
     in_flight_.Clear();
     if (!ok) {  // the client has disconnected
       stopped_ = true;
-      ready_.clear();
+      Clear();
       if (!last_) last_ = grpc::Status::CANCELLED;
     }
-    // Refill when all prepared messages are on their way: half as many thread switches as for each message.
-    low = ready_.size() <= 1;
+    // Refill when nearly all prepared messages are on their way: half as many thread switches as for each message.
+    low = waits_for_write_ && ready_.size() <= 1;
     Pump(lock);
   }
   if (low) Wake();
@@ -170,13 +217,17 @@ void OutStream::OnCancel() { Abort(grpc::Status::CANCELLED); }
 void OutStream::OnDone() {
   context_.streams.Remove(this);
   JobManager::Subscription subscription;
+  std::shared_ptr<JobFeed> feed;
   {
     std::lock_guard lock(mutex_);
     subscription.swap(subscription_);
+    feed.swap(feed_);
   }
-  // Destroying the subscription may wait for a call of its listener, so not on this thread.
-  if (subscription) context_.streaming.Post([subscription = std::move(subscription)] {});
-  self_.reset();
+  if (!subscription && !feed) return self_.reset();
+  // Ending a subscription may wait for a call of its listener, and closing frames for the disk: not on this thread.
+  context_.streaming.Post([self = std::move(self_), subscription = std::move(subscription), feed = std::move(feed)] {
+    if (feed) feed->Leave();
+  });
 }
 
 }  // namespace fascicle::server

@@ -96,6 +96,7 @@ struct RpcServer::Impl {
       last_problem = problem;
     }
     running_checks.StopExpired();
+    frame_service.DropUnused();
     memory.Look();
     kept.PostAfter(std::chrono::seconds(1), [this] { Watch(); });
   }

@@ -1,5 +1,6 @@
 // A server whose workers all solve, with many readers: everybody is answered, and nobody slows down the others. With
 // FASCICLE_BUSY_SECONDS the measurements take so long and are held against the release's figures.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -33,10 +34,14 @@ class BusyServerTest : public ::testing::Test {
     stored_ = stubs_->Submit(LargeFrames(4));  // 11 MiB
     ASSERT_TRUE(stubs_->AwaitState(stored_, v1::Job::STATE_SUCCEEDED, 120s));
   }
-  // Jobs that keep all workers busy; the first stores a frame now and then, the others many.
-  void Solve() {
-    solving_.push_back(stubs_->Submit(SwingingBox(1000, 1)));
-    while (solving_.size() < kWorkers) solving_.push_back(stubs_->Submit(LargeSteps(100'000)));
+  // Jobs that keep all workers busy, with steps of the same size. The first stores a frame each `interval` [s], the
+  // others as many as they can.
+  void Solve(double interval = 0.01) {
+    while (solving_.size() < kWorkers) {
+      v1::Scene scene = LargeSteps(90'000);
+      if (solving_.empty()) scene.mutable_output()->set_frame_interval(interval);
+      solving_.push_back(stubs_->Submit(scene));
+    }
     for (const std::string& job : solving_) ASSERT_TRUE(stubs_->AwaitFrames(job, 1));
   }
   // Steps made by all solving jobs so far.
@@ -73,44 +78,63 @@ TEST_F(BusyServerTest, EverybodyIsAnswered) {
   EXPECT_LE(get.Quantile(0.99), 0.1 * Allowance());
 }
 
-// [byte/s] and [steps/s], over `span`.
+// Of ten readers [byte/s], and the processor time of a step [s].
 struct Rates {
-  double bytes = 0, steps = 0;
+  double bytes = 0, step = 0;
 };
+
+double MedianOf(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
 
 class ReadersTest : public BusyServerTest {
  protected:
-  // The speed of ten readers and of the solving jobs at present.
+  static constexpr int kNicenessOfJobs = 10;
+
   Rates Measure(const StreamClients& fast) {
     const std::int64_t bytes = fast.bytes(), steps = Steps();
+    const double time = server_.CpuSeconds(kNicenessOfJobs);
     std::this_thread::sleep_for(Span());
     const double seconds = std::chrono::duration<double>(Span()).count();
-    return {static_cast<double>(fast.bytes() - bytes) / seconds, static_cast<double>(Steps() - steps) / seconds};
+    return {
+        static_cast<double>(fast.bytes() - bytes) / seconds,
+        (server_.CpuSeconds(kNicenessOfJobs) - time) / static_cast<double>(std::max<std::int64_t>(1, Steps() - steps))};
   }
-  // Ten fast readers beside `count` others, and without them.
-  void Compare(const v1::StreamFramesRequest& request, int count, bool stalled, const char* what) {
+  // Ten fast readers beside `count` others, and without them before and after, because the machine may have become
+  // slower or faster meanwhile. Watchers see what comes, not what has been.
+  void Compare(v1::StreamFramesRequest request, int count, bool stalled, const char* what) {
     const StreamClients fast(address_, AllFramesOf(stored_), 10);
     std::this_thread::sleep_for(500ms);
-    const Rates alone = Measure(fast);
-    const std::int64_t before = server_.ResidentBytes();
-    Rates beside;
-    double each = 0;
-    {
-      const StreamClients others(address_, request, count, stalled);
-      std::this_thread::sleep_for(1s);
-      beside = Measure(fast);
-      each = static_cast<double>(server_.ResidentBytes() - before) / count / (1 << 20);
-      EXPECT_EQ(others.failures(), 0);
+    std::vector<double> bytes, steps;
+    double most = 0;
+    Rates before = Measure(fast);
+    for (int round = 0; round < (IsRelease() ? 3 : 1); ++round) {
+      const std::int64_t resident = server_.ResidentBytes();
+      Rates beside;
+      {
+        if (!stalled) request.set_start_index(stubs_->Get(solving_[0]).frame_count());
+        const StreamClients others(address_, request, count, stalled);
+        std::this_thread::sleep_for(IsRelease() ? 3s : 1s);
+        const std::int64_t messages = others.messages();
+        beside = Measure(fast);
+        most = std::max(most, static_cast<double>(server_.ResidentBytes() - resident) / count / (1 << 20));
+        EXPECT_EQ(others.failures(), 0);
+        std::printf("%lld messages; ", static_cast<long long>(others.messages() - messages));
+      }
+      const Rates after = Measure(fast);
+      bytes.push_back(beside.bytes / (0.5 * (before.bytes + after.bytes)));
+      steps.push_back(beside.step / (0.5 * (before.step + after.step)));
+      std::printf("fast readers at %.0f %% of %.0f MB/s alone, a step at %.0f %% of %.3f ms\n", 100 * bytes.back(),
+                  0.5e-6 * (before.bytes + after.bytes), 100 * steps.back(), 500 * (before.step + after.step));
+      before = after;
     }
-    const Rates after = Measure(fast);  // the machine may have become slower or faster meanwhile
-    const double bytes = beside.bytes / (0.5 * (alone.bytes + after.bytes));
-    const double steps = beside.steps / (0.5 * (alone.steps + after.steps));
-    std::printf("beside %d %s: fast readers at %.0f %% of %.0f MB/s alone, solving at %.0f %%, %.2f MiB for each\n",
-                count, what, 100 * bytes, 1e-6 * alone.bytes, 100 * steps, each);
+    std::printf("beside %d %s: fast readers at %.0f %%, a step at %.0f %%, at most %.2f MiB for each\n", count, what,
+                100 * MedianOf(bytes), 100 * MedianOf(steps), most);
     EXPECT_EQ(fast.failures(), 0);
-    EXPECT_LE(each, 8);
-    EXPECT_GE(bytes, 0.8 / Allowance());
-    EXPECT_GE(steps, 0.95 / Allowance());
+    EXPECT_LE(most, 8);
+    EXPECT_GE(MedianOf(bytes), 0.8 / Allowance());
+    EXPECT_LE(MedianOf(steps), 1.05 * Allowance());
   }
 };
 
@@ -119,9 +143,17 @@ TEST_F(ReadersTest, StalledOnesCostLittle) {
   Compare(AllFramesOf(stored_), IsRelease() ? 100 : 20, true, "stalled readers");
 }
 
+// A frame several times a second is as much as anybody can look at.
 TEST_F(ReadersTest, WatchersOfOneJobCostLittle) {
-  Solve();
+  Solve(0.5);
   Compare(AllFramesOf(solving_[0]), IsRelease() ? 500 : 100, false, "watchers of a job");
+}
+
+TEST_F(ReadersTest, WatchersOfTheNewestFrameCostLittle) {
+  Solve();
+  v1::StreamFramesRequest request = AllFramesOf(solving_[0]);
+  request.set_mode(v1::StreamFramesRequest::MODE_LATEST);
+  Compare(request, IsRelease() ? 500 : 100, false, "watchers of the newest frame");
 }
 
 }  // namespace

@@ -7,8 +7,10 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 
 namespace fascicle::testing {
@@ -17,6 +19,23 @@ namespace {
 using std::chrono::steady_clock;
 
 void Redirect(int descriptor, const std::string& file, int flags) { dup2(open(file.c_str(), flags, 0600), descriptor); }
+
+struct Stat {
+  double seconds = 0;  // processor time
+  int niceness = 0;
+};
+
+// Of a process or a thread.
+Stat StatOf(const std::string& file) {
+  std::ifstream stat(file);
+  std::string skipped;
+  for (int i = 0; i < 13; ++i) stat >> skipped;  // the name of the program has no space
+  Stat read;
+  double user = 0, system = 0;
+  stat >> user >> system >> skipped >> skipped >> skipped >> read.niceness;
+  read.seconds = (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+  return read;
+}
 
 }  // namespace
 
@@ -110,13 +129,16 @@ std::int64_t ChildProcess::PeakBytes() const { return StatusBytes("VmHWM:"); }
 
 void ChildProcess::ForgetPeak() const { std::ofstream("/proc/" + std::to_string(pid_) + "/clear_refs") << 5; }
 
-double ChildProcess::CpuSeconds() const {
-  std::ifstream stat("/proc/" + std::to_string(pid_) + "/stat");
-  std::string skipped;
-  for (int i = 0; i < 13; ++i) stat >> skipped;  // the name of the program has no space
-  double user = 0, system = 0;
-  stat >> user >> system;
-  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+double ChildProcess::CpuSeconds() const { return StatOf("/proc/" + std::to_string(pid_) + "/stat").seconds; }
+
+double ChildProcess::CpuSeconds(int niceness) const {
+  double seconds = 0;
+  std::error_code ended;
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/" + std::to_string(pid_) + "/task", ended)) {
+    const Stat stat = StatOf(thread.path() / "stat");
+    if (stat.niceness == niceness) seconds += stat.seconds;
+  }
+  return seconds;
 }
 
 std::int64_t ChildProcess::StatusBytes(const std::string& entry) const {

@@ -50,6 +50,8 @@ class ChildProcess {
   void ForgetPeak() const;
   // Processor time that it has used [s].
   double CpuSeconds() const;
+  // The same of its threads with this niceness.
+  double CpuSeconds(int niceness) const;
 
  private:
   std::int64_t StatusBytes(const std::string& entry) const;

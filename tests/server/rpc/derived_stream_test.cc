@@ -7,8 +7,7 @@
 
 #include "proto/frames/derived_frame.h"
 #include "proto/frames/frame_digest.h"
-#include "server/rpc/frame_deriver.h"
-#include "spdlog/sinks/null_sink.h"
+#include "server/rpc/shared_cache.h"
 #include "tests/support/service_fixture.h"
 
 namespace fascicle::service_test {
@@ -155,12 +154,11 @@ TEST_F(DerivedStreamTest, BytesOfAFrame) {
 }
 
 // What is kept has a bound, and readers that come late share what was made.
-TEST(FrameDeriverTest, MakesOnceAndForgetsWhatWasNotUsed) {
-  spdlog::logger log("none", std::make_shared<spdlog::sinks::null_sink_mt>());
-  server::FrameDeriver deriver(log, 1000);
+TEST(SharedCacheTest, MakesOnceAndForgetsWhatWasNotUsed) {
+  server::SharedCache<std::string> cache(1000);
   std::map<std::string, int> made;
   const auto get = [&](const std::string& key) {
-    return *deriver.Get(key, [&] {
+    return *cache.Get(key, [&] {
       ++made[key];
       return std::string(400, key[0]);
     });
@@ -174,8 +172,14 @@ TEST(FrameDeriverTest, MakesOnceAndForgetsWhatWasNotUsed) {
   EXPECT_EQ(made["a"], 1);
   get("b");
   EXPECT_EQ(made["b"], 2);
-  EXPECT_THROW(deriver.Get("d", []() -> std::string { throw std::runtime_error("no"); }), std::runtime_error);
+  EXPECT_THROW(cache.Get("d", []() -> std::string { throw std::runtime_error("no"); }), std::runtime_error);
   EXPECT_EQ(get("d"), std::string(400, 'd')) << "a failure is not kept";
+  cache.DropUnused(1h);
+  get("d");
+  EXPECT_EQ(made["d"], 1);
+  cache.DropUnused(0s);
+  get("d");
+  EXPECT_EQ(made["d"], 2);
 }
 
 }  // namespace
