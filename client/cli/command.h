@@ -108,6 +108,8 @@ void AddPhantom(CLI::App& app, Context& context);
 void AddSegment(CLI::App& app, Context& context);
 void AddVoxelize(CLI::App& app, Context& context);
 void AddMaterials(CLI::App& app, Context& context);
+void AddActivations(CLI::App& app, Context& context);
+void AddMomentArms(CLI::App& app, Context& context);
 void AddSchema(CLI::App& app, Context& context);
 void AddExamples(CLI::App& app, Context& context);
 void AddCompletion(CLI::App& app, Context& context);

@@ -9,9 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "client/cli/command.h"
+#include "client/cli/input_file.h"
 #include "client/import/febio_import.h"
+#include "client/import/osim_import.h"
 #include "client/lib/replace_file.h"
 #include "client/lib/scene_json.h"
+#include "core/base/letters.h"
 
 namespace fascicle::client {
 namespace {
@@ -24,17 +27,25 @@ constexpr const char* kImportExamples =
   fascicle import knee.feb --out knee --split-hexahedra   hexahedra, wedges and pyramids become tetrahedra
   fascicle import ankle.feb --out ankle --accept-loss     without what a scene cannot have, such as springs
   fascicle run biceps/scene.json --out results
+  fascicle import arm26.osim --motion flexion.mot --out arm    an OpenSim model: bones, joints, muscles, their motion
+  fascicle activations arm/scene.json --out arm.png            activations that exert the motion's torques
 
-Supported: tetrahedra, neo-Hookean, isotropic elastic and Mooney-Rivlin solids, their mixtures with the fibres of muscle
+Supported of FEBio: tetrahedra, neo-Hookean, isotropic elastic and Mooney-Rivlin solids, their mixtures with the fibres of muscle
 and tendon material, fixed and prescribed displacements, rigid bodies whose six motions are given, nodal forces,
 tractions, pressures, gravity, fibres, load curves and formulas of the first step. Whatever else changes the answer
 stops the import, with its line and what to do; --accept-loss imports the rest. What changes nothing is noted.
+
+Supported of OpenSim (versions 3 and 4): bodies with mass and surfaces, joints with their functions, coordinates,
+muscles with their points and the cylinders, spheres and ellipsoids around which they wrap. Surfaces (.vtp, .stl, .obj)
+are taken from the model's folder or Geometry in it. Without bodies, the scene runs as it is.
 )";
 
 struct ImportOptions {
   std::string path;
   std::string out;
   FebioOptions febio;
+  std::string motion;  // a file
+  double low_pass = 6;
 };
 
 std::string ReadModel(const std::string& path) {
@@ -94,12 +105,44 @@ Json SummaryOf(const ImportedScene& imported, const fs::path& folder) {
           {"notices", std::move(notices)}};
 }
 
+bool IsOsim(const ImportOptions& options) { return LowerExtension(options.path) == ".osim"; }
+
+// A surface of a bone, beside the model or in its folder Geometry. Only the last part of its path counts, so that no
+// other files are read.
+std::optional<std::string> ReadSurfaceFile(const fs::path& model, const std::string& file) {
+  const std::string name = file.substr(file.find_last_of("/\\") + 1);
+  for (const fs::path& path : {model.parent_path() / "Geometry" / name, model.parent_path() / name}) {
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) continue;
+    Problems unreadable;
+    return ReadInputFile(path.string(), unreadable);
+  }
+  return std::nullopt;
+}
+
+std::optional<ImportedScene> ImportModel(const ImportOptions& options, Problems& problems) {
+  const std::string name = fs::path(options.path).filename().string();
+  if (!IsOsim(options)) {
+    if (!options.motion.empty()) problems.Add("--motion", "belongs to OpenSim models", "give a .osim file");
+    FebioOptions febio = options.febio;
+    febio.name = name;
+    return ImportFebio(ReadModel(options.path), febio, problems);
+  }
+  OsimOptions osim;
+  osim.name = name;
+  osim.accept_loss = options.febio.accept_loss;
+  osim.low_pass = options.low_pass;
+  osim.surface = [&](const std::string& file) { return ReadSurfaceFile(options.path, file); };
+  if (!options.motion.empty()) {
+    osim.motion = ImportedFile{fs::path(options.motion).filename().string(), ReadModel(options.motion)};
+  }
+  return ImportOsim(ReadModel(options.path), osim, problems);
+}
+
 int Import(const ImportOptions& options, const Context& context) {
-  FebioOptions febio = options.febio;
-  febio.name = fs::path(options.path).filename().string();
   Problems problems;
-  const std::optional<ImportedScene> imported = ImportFebio(ReadModel(options.path), febio, problems);
-  if (!imported) {
+  const std::optional<ImportedScene> imported = ImportModel(options, problems);
+  if (!imported || !problems.empty()) {
     throw CommandError({Error::Kind::kInvalid, options.path + " can't be imported", "INVALID_MODEL", problems});
   }
   WriteFiles(*imported, options.out);
@@ -108,8 +151,8 @@ int Import(const ImportOptions& options, const Context& context) {
     return kDone;
   }
   const std::string scene = (fs::path(options.out) / "scene.json").string();
-  std::cout << febio.name << " (FEBio " << imported->version << ", units " << imported->units << ") imported to "
-            << scene << '\n';
+  std::cout << fs::path(options.path).filename().string() << " (" << (IsOsim(options) ? "" : "FEBio ")
+            << imported->version << ", units " << imported->units << ") imported to " << scene << '\n';
   PrintNotices(*imported, Notice::Kind::kNote, "notes");
   PrintNotices(*imported, Notice::Kind::kChanged, "changed");
   PrintNotices(*imported, Notice::Kind::kNotTaken, "not supported");
@@ -120,9 +163,9 @@ int Import(const ImportOptions& options, const Context& context) {
 
 void AddImport(CLI::App& app, Context& context) {
   CLI::App* command =
-      AddCommand(app, "import", "Convert a FEBio model (.feb, version 2.5, 3.0 or 4.0) to a scene", kImportExamples);
+      AddCommand(app, "import", "Convert a FEBio (.feb) or an OpenSim (.osim) model to a scene", kImportExamples);
   const auto options = std::make_shared<ImportOptions>();
-  command->add_option("MODEL", options->path, "The model file")->required()->type_name("MODEL.feb");
+  command->add_option("MODEL", options->path, "The model file")->required()->type_name("MODEL.feb|MODEL.osim");
   command->add_option("--out", options->out, "Folder for scene.json and its files")->required()->type_name("DIR");
   command
       ->add_option(
@@ -130,6 +173,13 @@ void AddImport(CLI::App& app, Context& context) {
           "The model's units: mm-N-MPa (mm-N-s), m-N-Pa (SI), mm-kg-s, um-nN-s or CGS; by default those named by the "
           "file, or mm-N-MPa, or where inertia or weight count those in which the density is that of tissue")
       ->type_name("SYSTEM");
+  command->add_option("--motion", options->motion, "The motion of an OpenSim model: a table of its coordinates")
+      ->type_name("FILE.mot|FILE.sto");
+  command
+      ->add_option("--low-pass", options->low_pass,
+                   "What is faster is removed from the motion as noise [Hz]; 6 by default, 0: nothing")
+      ->check(CLI::Range(0.0, 1e6))
+      ->type_name("HZ");
   command->add_flag("--split-hexahedra", options->febio.split_hexahedra,
                     "Split hexahedra, wedges and pyramids into tetrahedra");
   command->add_flag(

@@ -146,6 +146,8 @@ int Run(int argc, char** argv) {
   AddSegment(app, context);
   AddVoxelize(app, context);
   AddMaterials(app, context);
+  AddActivations(app, context);
+  AddMomentArms(app, context);
   AddSchema(app, context);
   AddExamples(app, context);
   AddCompletion(app, context);

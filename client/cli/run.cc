@@ -1,9 +1,6 @@
-#include <unistd.h>
-
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -21,6 +18,7 @@
 #include "client/cli/profile_table.h"
 #include "client/cli/start_frame.h"
 #include "client/cli/summary.h"
+#include "client/cli/temporary_folder.h"
 #include "client/export/csv.h"
 #include "client/export/vtk_series.h"
 #include "client/lib/replace_file.h"
@@ -53,26 +51,6 @@ struct RunOptions {
   bool digests = false;
   bool profile = false;
   bool check = false;
-};
-
-// A temporary folder, removed by the destructor.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "fascicle-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("can't make a temporary folder " + name);
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
 };
 
 // Removes the folders that a scene which is refused would leave behind.

@@ -179,6 +179,7 @@ Json SummaryJson(const Followed& followed) {
   for (const v1::BodyGeometry& body : followed.geometry.bodies()) {
     for (const std::string& note : body.notes()) json["notes"].push_back(note);
   }
+  for (const std::string& note : followed.geometry.notes()) json["notes"].push_back(note);
   for (const v1::RigidBodyGeometry& body : followed.geometry.rigid_bodies()) {
     json["rigid_bodies"].push_back({{"name", body.name()}, {"moves", body.moves()}});
   }
@@ -230,6 +231,7 @@ void PrintSummary(const Followed& followed) {
   for (const v1::BodyGeometry& body : followed.geometry.bodies()) {
     for (const std::string& note : body.notes()) std::printf("note  %s\n", note.c_str());
   }
+  for (const std::string& note : followed.geometry.notes()) std::printf("note  %s\n", note.c_str());
   PrintNames("rigid bodies that move", NamesOfRigidBodies(followed.geometry, true));
   PrintNames("rigid bodies that stay", NamesOfRigidBodies(followed.geometry, false));
   PrintNames("lines", NamesOfLines(followed.geometry));

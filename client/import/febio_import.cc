@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "client/import/body_draft.h"
+#include "client/import/losses.h"
 #include "client/import/sections.h"
 #include "core/geometry/text_scanner.h"
 #include "proto/rules/field_rules.h"
@@ -314,20 +315,7 @@ class Importer {
 
 }  // namespace
 
-namespace {
-
-// Each loss is a problem.
-void RefuseLosses(const ImportedScene& imported, Problems& problems) {
-  for (const Notice& notice : imported.notices) {
-    if (!notice.is_loss()) continue;
-    const bool missing = notice.kind == Notice::Kind::kNotTaken;
-    problems.Add(notice.where,
-                 (missing ? "not supported" : "changed") + (notice.message.empty() ? "" : ": " + notice.message),
-                 (notice.hint.empty() ? "" : notice.hint + ", or ") + "import without it by --accept-loss");
-  }
-}
-
-}  // namespace
+namespace {}  // namespace
 
 std::optional<ImportedScene> ImportFebio(std::string_view bytes, const FebioOptions& options, Problems& problems) {
   Problems own;
@@ -341,7 +329,7 @@ std::optional<ImportedScene> ImportFebio(std::string_view bytes, const FebioOpti
       if (importer.Read()) result = importer.Make();
       source.TellOfTheRest();
       if (result) result->notices = std::move(source.notices);
-      if (result && own.empty() && !options.accept_loss) RefuseLosses(*result, own);
+      if (result && own.empty() && !options.accept_loss) RefuseLosses(result->notices, own);
     }
   }
   problems.Append("", own);

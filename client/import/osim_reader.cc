@@ -1,7 +1,5 @@
 #include "client/import/osim_reader.h"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,24 +9,10 @@
 
 #include "client/import/osim_functions.h"
 #include "client/import/xml_source.h"
+#include "core/skeleton/placement.h"
 
 namespace fascicle::client {
 namespace {
-
-// A frame by rotations about its own x, y and z axes in turn.
-Pose PoseOf(const Vec3& translation, const Vec3& angles) {
-  const Eigen::Quaterniond q = Eigen::AngleAxisd(angles.x(), Vec3::UnitX()) *
-                               Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
-                               Eigen::AngleAxisd(angles.z(), Vec3::UnitZ());
-  return {translation, {q.w(), q.x(), q.y(), q.z()}};
-}
-
-Pose operator*(const Pose& a, const Pose& b) {
-  const Eigen::Quaterniond p(a.quaternion[0], a.quaternion[1], a.quaternion[2], a.quaternion[3]);
-  const Eigen::Quaterniond q =
-      p * Eigen::Quaterniond(b.quaternion[0], b.quaternion[1], b.quaternion[2], b.quaternion[3]);
-  return {a.position + RotationOf(a) * b.position, {q.w(), q.x(), q.y(), q.z()}};
-}
 
 // The last name of a path of components: "/bodyset/ulna" or "../ulna" -> "ulna".
 std::string LastName(const std::string& path) { return path.substr(path.rfind('/') + 1); }
@@ -176,8 +160,8 @@ class OsimReader {
     WrapSurface surface;
     surface.name = NameOf(node);
     surface.bone = bone;
-    surface.pose = PoseOf(VectorOr(node.child("translation"), Vec3::Zero()),
-                          VectorOr(node.child("xyz_body_rotation"), Vec3::Zero()));
+    surface.pose = PoseByAngles(VectorOr(node.child("translation"), Vec3::Zero()),
+                                VectorOr(node.child("xyz_body_rotation"), Vec3::Zero()));
     if (kind == "WrapEllipsoid") {
       surface.kind = WrapSurface::Kind::kEllipsoid;
       surface.radii = VectorOr(node.child("dimensions"), Vec3::Zero());
@@ -218,8 +202,8 @@ class OsimReader {
   }
 
   void AddFrame(pugi::xml_node node, std::map<std::string, Frame>& frames) {
-    const Pose own =
-        PoseOf(VectorOr(node.child("translation"), Vec3::Zero()), VectorOr(node.child("orientation"), Vec3::Zero()));
+    const Pose own = PoseByAngles(VectorOr(node.child("translation"), Vec3::Zero()),
+                                  VectorOr(node.child("orientation"), Vec3::Zero()));
     const std::string parent = ParentOf(node);
     const auto known = frames.find(LastName(parent));
     if (known != frames.end() && !bones_.contains(LastName(parent))) {
@@ -268,10 +252,10 @@ class OsimReader {
     } else {
       joint.parent = BoneOf(node, xml_.Text(node.child("parent_body")));
       joint.child = BoneOf(node, child);
-      joint.in_parent = PoseOf(VectorOr(node.child("location_in_parent"), Vec3::Zero()),
-                               VectorOr(node.child("orientation_in_parent"), Vec3::Zero()));
-      joint.in_child =
-          PoseOf(VectorOr(node.child("location"), Vec3::Zero()), VectorOr(node.child("orientation"), Vec3::Zero()));
+      joint.in_parent = PoseByAngles(VectorOr(node.child("location_in_parent"), Vec3::Zero()),
+                                     VectorOr(node.child("orientation_in_parent"), Vec3::Zero()));
+      joint.in_child = PoseByAngles(VectorOr(node.child("location"), Vec3::Zero()),
+                                    VectorOr(node.child("orientation"), Vec3::Zero()));
     }
     if (node.child("reverse") && xml_.Flag(node.child("reverse"))) {
       xml_.Fail(node, "is reversed", "exchange its parent and its child");

@@ -86,6 +86,21 @@ void ColourBodies(const std::vector<BodyShape>& bodies, const v1::Frame& frame, 
   }
 }
 
+// Bodies without the field, by a value of the whole body.
+void ColourBodiesBySeries(const std::vector<BodyShape>& bodies,
+                          const google::protobuf::RepeatedPtrField<v1::SeriesInfo>& series, const v1::Frame& frame,
+                          const std::string& name, Colouring& colouring, Quantity& quantity) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!colouring.bodies[i].empty()) continue;
+    for (int k = 0; k < series.size() && k < frame.series_size(); ++k) {
+      if (series[k].name() != bodies[i].name + "/" + name) continue;
+      quantity.Name(name, series[k].unit());
+      quantity.Hold(frame.series(k));
+      colouring.bodies[i].assign(bodies[i].positions.size(), frame.series(k));
+    }
+  }
+}
+
 void ColourLines(const std::vector<LineInfo>& lines, const v1::Frame& frame, const std::string& name,
                  Colouring& colouring, Quantity& quantity) {
   const std::vector<LinePath> paths = DecodeLines(frame, lines);
@@ -121,6 +136,7 @@ void Scale(double factor, Colouring& colouring) {
 }  // namespace
 
 std::vector<Colouring> ColourFrames(const std::vector<BodyShape>& bodies, const std::vector<LineInfo>& lines,
+                                    const google::protobuf::RepeatedPtrField<v1::SeriesInfo>& series,
                                     std::span<const v1::Frame> frames, const std::string& name,
                                     const std::optional<std::pair<double, double>>& range) {
   std::vector<Colouring> colourings(frames.size());
@@ -132,6 +148,7 @@ std::vector<Colouring> ColourFrames(const std::vector<BodyShape>& bodies, const 
   Quantity quantity;
   for (std::size_t f = 0; f < frames.size(); ++f) {
     ColourBodies(bodies, frames[f], name, colourings[f], quantity);
+    ColourBodiesBySeries(bodies, series, frames[f], name, colourings[f], quantity);
     ColourLines(lines, frames[f], name, colourings[f], quantity);
   }
   if (!quantity.found) {

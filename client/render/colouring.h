@@ -22,12 +22,13 @@ struct Colouring {
   ColourScale scale;                         // without a table if nothing is coloured
 };
 
-// Colours each frame by `name`, all on one scale: bodies with such a field (see ValuesAtNodes), and lines with such a
-// value. Nothing is coloured if it is empty. `range`: the ends of the scale, in the field's unit. If absent, those of
-// the values; or their first and last percentiles where a few values are so far off that the others would have nearly
-// one colour, which the note says. Throws std::runtime_error if no object has it, or if objects have it in different
-// units.
+// Colours each frame by `name`, all on one scale: bodies with such a field (see ValuesAtNodes), or with one colour if
+// there is a series BODY/`name` such as `biceps/activation`, and lines with such a value. Nothing is coloured if it is
+// empty. `range`: the ends of the scale, in the field's unit. If absent, those of the values; or their first and last
+// percentiles where a few values are so far off that the others would have nearly one colour, which the note says.
+// Throws std::runtime_error if no object has it, or if objects have it in different units.
 std::vector<Colouring> ColourFrames(const std::vector<BodyShape>& bodies, const std::vector<LineInfo>& lines,
+                                    const google::protobuf::RepeatedPtrField<v1::SeriesInfo>& series,
                                     std::span<const v1::Frame> frames, const std::string& name,
                                     const std::optional<std::pair<double, double>>& range);
 

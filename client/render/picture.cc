@@ -295,7 +295,8 @@ Setting MakeSetting(const v1::Geometry& geometry, std::span<const v1::Frame> fra
   setting.shapes = DecodeGeometry(geometry);
   setting.rigid_bodies = DecodeRigidBodies(geometry);
   setting.lines = DecodeLineInfos(geometry);
-  setting.colourings = ColourFrames(setting.shapes, setting.lines, frames, options.colour, options.range);
+  setting.colourings =
+      ColourFrames(setting.shapes, setting.lines, geometry.series(), frames, options.colour, options.range);
   for (Colouring& colouring : setting.colourings) {
     if (!options.categories.empty()) colouring.scale = MakeCategories(static_cast<int>(options.categories.size()));
   }

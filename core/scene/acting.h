@@ -30,9 +30,10 @@ inline constexpr auto kFieldNames<Rotation> = FieldNames("point", "axis", "angle
 struct Motion {
   std::array<std::optional<Curve>, 3> translation;  // along x, y, z [m]
   std::optional<Rotation> rotation;
+  std::int32_t bone = -1;  // of the scene's skeleton, in place of the others: that from its pose at time 0; -1: none
 };
 template <>
-inline constexpr auto kFieldNames<Motion> = FieldNames("translation", "rotation");
+inline constexpr auto kFieldNames<Motion> = FieldNames("translation", "rotation", "bone");
 
 struct Constraint {
   std::int32_t region = 0;  // index into Body::regions

@@ -27,7 +27,10 @@ const char* Lacking(Method method, const Shape& shape) {
 }  // namespace
 
 void CheckBodies(const Scene& scene, Problems& problems) {
-  if (scene.bodies.empty()) problems.Add("bodies", "the scene has no body", "add at least one");
+  if (scene.bodies.empty() && !scene.skeleton) problems.Add("bodies", "the scene has no body", "add at least one");
+  if (scene.bodies.empty() && !scene.floors.empty()) {
+    problems.Add("floors", "no body can touch them", "remove them, or add a body");
+  }
   std::set<std::string> names;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];

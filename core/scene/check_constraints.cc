@@ -21,11 +21,11 @@ bool SameRotation(const std::optional<Rotation>& a, const std::optional<Rotation
 
 // Whether both prescribe the same motion along one axis.
 bool Agree(const Constraint& a, const Constraint& b, int axis) {
-  return SameCurve(a.motion.translation[axis], b.motion.translation[axis]) &&
+  return a.motion.bone == b.motion.bone && SameCurve(a.motion.translation[axis], b.motion.translation[axis]) &&
          SameRotation(a.motion.rotation, b.motion.rotation);
 }
 
-void CheckConstraintsOf(const Body& body, const std::string& path, Problems& problems) {
+void CheckConstraintsOf(const Body& body, std::int32_t bones, const std::string& path, Problems& problems) {
   // Regions of a surface are volumes, which may contain none of its nodes.
   const bool volumes = std::holds_alternative<SurfaceShape>(body.shape);
   std::map<std::pair<std::int32_t, int>, std::size_t> holder;  // the first constraint on a node and axis
@@ -39,6 +39,9 @@ void CheckConstraintsOf(const Body& body, const std::string& path, Problems& pro
     const Region& region = body.regions[constraint.region];
     if (region.nodes.empty() && !volumes) {
       problems.Add(JoinPath(where, "region"), "region `" + region.name + "` has no nodes");
+    }
+    if (constraint.motion.bone >= bones) {
+      problems.Add(JoinPath(where, "motion.bone"), "there is no such bone");
     }
     bool reported = false;
     for (const std::int32_t node : region.nodes) {
@@ -59,8 +62,9 @@ void CheckConstraintsOf(const Body& body, const std::string& path, Problems& pro
 }  // namespace
 
 void CheckConstraints(const Scene& scene, Problems& problems) {
+  const auto bones = static_cast<std::int32_t>(scene.skeleton ? scene.skeleton->skeleton.bones.size() : 0);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    CheckConstraintsOf(scene.bodies[i], IndexPath("bodies", i), problems);
+    CheckConstraintsOf(scene.bodies[i], bones, IndexPath("bodies", i), problems);
   }
 }
 

@@ -7,7 +7,7 @@ void CheckScene(const Scene& scene, Problems& problems, const std::stop_token& s
   using namespace scene_checks;  // NOLINT(google-build-using-namespace): all of them
   for (const auto check :
        {CheckBodies, CheckCurves, CheckMaterials, CheckActivations, CheckInitialState, CheckFibres, CheckConstraints,
-        CheckLoads, CheckFloors, CheckRigidBodies, CheckContacts, CheckTet, CheckVoxel, CheckEulerian, CheckOutput}) {
+        CheckLoads, CheckFloors, CheckRigidBodies, CheckContacts, CheckSkeleton, CheckTet, CheckVoxel, CheckEulerian, CheckOutput}) {
     ThrowIfStopped(stop);
     check(scene, problems);
   }

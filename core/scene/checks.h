@@ -6,7 +6,8 @@
 // The checks run by CheckScene, one per file. Each adds the problems of its subject.
 namespace fascicle::scene_checks {
 
-// At least one body; each has the shape of the method, not empty, a positive density and a unique name.
+// At least one body unless there is a skeleton; each has the shape of the method, not empty, a positive density and a
+// unique name.
 void CheckBodies(const Scene& scene, Problems& problems);
 // Materials of the parts of a body: every element has an existing one. Viscoelasticity of all of them.
 void CheckMaterials(const Scene& scene, Problems& problems);
@@ -34,6 +35,9 @@ void CheckRigidBodies(const Scene& scene, Problems& problems);
 void CheckContacts(const Scene& scene, Problems& problems);
 // Bodies of tetrahedra or hexahedra that touch by a contact do not overlap at the start.
 void CheckOverlaps(const Scene& scene, const Contact& contact, const std::string& path, Problems& problems);
+// A skeleton: as many shapes, motions and activations as bones, coordinates and muscles; names apart from the floors';
+// constant gravity.
+void CheckSkeleton(const Scene& scene, Problems& problems);
 // Probes refer to existing nodes; number of frames; duration.
 void CheckOutput(const Scene& scene, Problems& problems);
 

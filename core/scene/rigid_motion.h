@@ -19,7 +19,7 @@ struct RigidMotion {
   Vec3 VelocityOf(const Vec3& X) const { return angular_velocity.cross(rotation * (X - point)) + velocity; }
 };
 
-// Motion of a constraint at a time.
+// Motion of a constraint that follows no bone, at a time.
 RigidMotion MotionAt(const Motion& motion, double time);
 // The same with translations and angle times a factor that changes at `rate` [1/s].
 RigidMotion ScaledMotionAt(const Motion& motion, double time, double factor, double rate);

@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_SCENE_SCENE_H_
 #define FASCICLE_CORE_SCENE_SCENE_H_
 
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "core/scene/acting.h"
 #include "core/scene/body.h"
 #include "core/scene/contact.h"
+#include "core/scene/driven_skeleton.h"
 #include "core/scene/fields.h"
 #include "core/scene/method.h"
 #include "core/scene/output.h"
@@ -43,16 +45,18 @@ struct Scene {
   Start start;
   std::vector<RigidBody> rigid_bodies;
   std::vector<Contact> contacts;
+  std::optional<DrivenSkeleton> skeleton;
 };
 template <>
 inline constexpr auto kFieldNames<Scene> = FieldNames("name", "bodies", "gravity", "floors", "", "tet", "voxel",
-                                                      "eulerian", "squeezes", "duration", "output", "start", "rigid_bodies",
-                                                      "contacts");
+                                                      "eulerian", "squeezes", "duration", "output", "start",
+                                                      "rigid_bodies", "contacts", "skeleton");
 
 // Checks relations between fields: contradictory constraints at a node, loads on regions without surface, missing
-// fibres, activation outside [0, 1], bodies without mass, bodies that start inside of a floor or a rigid body, number of frames, and
-// bodies that loads would accelerate indefinitely (without loads and gravity, free bodies are allowed). Each file of
-// this room has one check. Throws Stopped between two checks after a stop request.
+// fibres, activation outside [0, 1], bodies without mass, bodies that start inside of a floor or a rigid body, number
+// of frames, a skeleton's motion and activations, and bodies that loads would accelerate indefinitely (without loads
+// and gravity, free bodies are allowed). Each file of this room has one check. Throws Stopped between two checks after
+// a stop request.
 void CheckScene(const Scene& scene, Problems& problems, const std::stop_token& stop = {});
 
 }  // namespace fascicle

@@ -21,14 +21,22 @@ std::set<const Curve*> FollowedCurves(const Scene& scene) {
   return curves;
 }
 
-// The time after which all other curves are constant [s].
+// The time after which all other curves, and the skeleton's motion, are constant [s].
 double CurvesEnd(const Scene& scene) {
   const std::set<const Curve*> followed = FollowedCurves(scene);
-  double end = 0;
+  double end = scene.skeleton ? scene.skeleton->motion.end() : 0;
   VisitCurves(scene, [&](const Curve& curve, const std::string&) {
     if (curve.times.size() > 1 && !followed.contains(&curve)) end = std::max(end, curve.end());
   });
   return end;
+}
+
+bool FollowsBone(const Constraint& constraint) { return constraint.motion.bone >= 0; }
+
+bool HasAttachments(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
+    return std::any_of(body.constraints.begin(), body.constraints.end(), FollowsBone);
+  });
 }
 
 }  // namespace
@@ -42,6 +50,7 @@ ControlSource::ControlSource(const Scene& scene) : scene_(&scene), curves_end_(C
       if (load.stern) pull.emplace(load.stern->muscle, load.stern->drive, scene.duration);
     }
   }
+  if (HasAttachments(scene)) bones_.emplace(*scene.skeleton);
 }
 
 void ControlSource::Evaluate(double time, Controls& controls) {
@@ -54,6 +63,7 @@ void ControlSource::Evaluate(double time, Controls& controls) {
   controls.activations.clear();
   controls.load_scales.clear();
   controls.motions.clear();
+  if (bones_) bones_->MoveTo(time);
   for (std::size_t b = 0; b < scene_->bodies.size(); ++b) {
     const Body& body = scene_->bodies[b];
     controls.activations.push_back(activations_[b] ? activations_[b]->At(time) : body.activation.At(time));
@@ -64,7 +74,10 @@ void ControlSource::Evaluate(double time, Controls& controls) {
       std::optional<SternForce>& pull = pulls_[controls.load_scales.size()];
       controls.load_scales.push_back(pull ? pull->At(time) : load.scale.At(time));
     }
-    for (const Constraint& constraint : body.constraints) controls.motions.push_back(MotionAt(constraint.motion, time));
+    for (const Constraint& constraint : body.constraints) {
+      controls.motions.push_back(FollowsBone(constraint) ? bones_->At(constraint.motion.bone)
+                                                         : MotionAt(constraint.motion, time));
+    }
   }
   if (!steering_.empty()) ApplySteering(time, controls);
 }
@@ -84,7 +97,7 @@ void ControlSource::ApplySteering(double time, Controls& controls) const {
   for (const Body& body : scene_->bodies) {
     for (const Constraint& constraint : body.constraints) {
       const SteeringTable::Value factor = steering_.At(ControlKind::kMotion, motion, time, kOne);
-      if (factor.value != 1 || factor.rate != 0) {
+      if (!FollowsBone(constraint) && (factor.value != 1 || factor.rate != 0)) {
         controls.motions[motion] = ScaledMotionAt(constraint.motion, time, factor.value, factor.rate);
       }
       ++motion;

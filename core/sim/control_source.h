@@ -6,12 +6,13 @@
 
 #include "core/base/archive.h"
 #include "core/scene/controls.h"
+#include "core/sim/bone_motions.h"
 #include "core/sim/steering.h"
 
 namespace fascicle {
 
-// Evaluates the controls of a scene: its curves, the dynamics of its muscles, which are integrated with the run, and
-// what inputs change. The latter two are part of its checkpoints. Not thread-safe.
+// Evaluates the controls of a scene: its curves, its skeleton's motion, the dynamics of its muscles, which are
+// integrated with the run, and what inputs change. The latter two are part of its checkpoints. Not thread-safe.
 class ControlSource {
  public:
   // CheckScene must have accepted the scene, which must outlive the source.
@@ -44,6 +45,7 @@ class ControlSource {
   double curves_end_;
   std::vector<std::optional<IntegratedActivation>> activations_;  // of each body with an excitation
   std::vector<std::optional<SternForce>> pulls_;                  // of each load that is a muscle's force
+  std::optional<BoneMotions> bones_;                              // if constraints follow any
   SteeringTable steering_;
 };
 

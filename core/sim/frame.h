@@ -87,6 +87,7 @@ struct FrameLayout {
   std::vector<LineInfo> lines;
   std::vector<SeriesInfo> series;
   std::vector<HigherOrderNodes> higher_order = {};  // of each body; empty if no body has any
+  std::vector<std::string> notes = {};              // remarks for the user on what is not a body
 };
 
 // See core/base/frame_digest.h.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/base/archive.h"
@@ -12,6 +13,7 @@
 #include "core/sim/rigid_bodies.h"
 #include "core/sim/run_log.h"
 #include "core/sim/run_warnings.h"
+#include "core/sim/skeleton_measure.h"
 
 namespace fascicle {
 namespace {
@@ -94,6 +96,7 @@ struct Simulation::Impl {
         method(MakeMethodRun(*scene, team, p)),
         layout{RigidBodiesOf(*scene), {}, SeriesOf(*method), method->HigherOrder()},
         warnings(*scene, layout.series) {
+    if (scene->skeleton) skeleton.emplace(*scene).AddTo(layout);
     const double intervals = scene->duration / scene->output.frame_interval;
     // The tolerance prevents rounding from adding a frame to a whole number of intervals.
     last_frame = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(intervals * (1 - 1e-12))));
@@ -154,6 +157,7 @@ struct Simulation::Impl {
       frame.series = method->MeasureSeries(now, reactions, iterations_at_frame);
       const std::vector<double> later = method->MeasureLaterSeries(now, reactions);
       frame.series.insert(frame.series.end(), later.begin(), later.end());
+      if (skeleton) skeleton->Measure(reactions, frame);
     }
     {
       const StageTimer digest(profile, "digest");
@@ -300,6 +304,7 @@ struct Simulation::Impl {
   ControlSource source;
   std::unique_ptr<MethodRun> method;
   FrameLayout layout;
+  std::optional<SkeletonMeasure> skeleton;
   RunWarnings warnings;
   Digest fingerprint = FingerprintOf(*scene);
   std::int64_t last_frame = 0;

@@ -54,14 +54,14 @@ std::vector<double> SecondDerivatives(const std::vector<double>& x, const std::v
 
 ScalarFunction ScalarFunction::Polynomial(std::vector<double> coefficients) {
   ScalarFunction f;
-  f.c_ = {std::move(coefficients)};
+  f.pieces = {std::move(coefficients)};
   return f;
 }
 
 ScalarFunction ScalarFunction::PiecewiseLinear(std::vector<double> x, std::vector<double> y) {
   ScalarFunction f;
-  for (std::size_t k = 0; k + 1 < x.size(); ++k) f.c_.push_back({y[k], (y[k + 1] - y[k]) / (x[k + 1] - x[k])});
-  f.x_ = std::move(x);
+  for (std::size_t k = 0; k + 1 < x.size(); ++k) f.pieces.push_back({y[k], (y[k + 1] - y[k]) / (x[k + 1] - x[k])});
+  f.breaks = std::move(x);
   return f;
 }
 
@@ -70,28 +70,38 @@ ScalarFunction ScalarFunction::Cubic(std::vector<double> x, std::vector<double> 
   ScalarFunction f;
   for (std::size_t k = 0; k + 1 < x.size(); ++k) {
     const double h = x[k + 1] - x[k];
-    f.c_.push_back(
+    f.pieces.push_back(
         {y[k], (y[k + 1] - y[k]) / h - h * (2 * M[k] + M[k + 1]) / 6, M[k] / 2, (M[k + 1] - M[k]) / (6 * h)});
   }
-  f.x_ = std::move(x);
+  f.breaks = std::move(x);
+  return f;
+}
+
+ScalarFunction ScalarFunction::LeastJerk(std::vector<double> x, std::vector<double> y) {
+  ScalarFunction f;
+  for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+    const double h = x[k + 1] - x[k], rise = y[k + 1] - y[k], cubed = h * h * h;
+    f.pieces.push_back({y[k], 0, 0, 10 * rise / cubed, -15 * rise / (cubed * h), 6 * rise / (cubed * h * h)});
+  }
+  f.breaks = std::move(x);
   return f;
 }
 
 double ScalarFunction::At(double x, int derivative) const {
-  if (x_.empty()) return c_.empty() ? 0 : PolynomialAt(c_[0], x, derivative);
-  const double inside = std::clamp(x, x_.front(), x_.back());
-  const auto after = std::upper_bound(x_.begin() + 1, x_.end() - 1, inside);
-  const auto piece = static_cast<std::size_t>(after - x_.begin()) - 1;
-  const double local = inside - x_[piece];
-  if (x == inside) return PolynomialAt(c_[piece], local, derivative);
-  const double slope = PolynomialAt(c_[piece], local, 1);
-  if (derivative == 0) return PolynomialAt(c_[piece], local, 0) + slope * (x - inside);
+  if (breaks.empty()) return pieces.empty() ? 0 : PolynomialAt(pieces[0], x, derivative);
+  const double inside = std::clamp(x, breaks.front(), breaks.back());
+  const auto after = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, inside);
+  const auto piece = static_cast<std::size_t>(after - breaks.begin()) - 1;
+  const double local = inside - breaks[piece];
+  if (x == inside) return PolynomialAt(pieces[piece], local, derivative);
+  const double slope = PolynomialAt(pieces[piece], local, 1);
+  if (derivative == 0) return PolynomialAt(pieces[piece], local, 0) + slope * (x - inside);
   return derivative == 1 ? slope : 0;
 }
 
 ScalarFunction ScalarFunction::Scaled(double factor) const {
   ScalarFunction f = *this;
-  for (std::vector<double>& piece : f.c_) {
+  for (std::vector<double>& piece : f.pieces) {
     for (double& c : piece) c *= factor;
   }
   return f;

@@ -5,9 +5,8 @@
 
 namespace fascicle {
 
-// A function of one variable with its derivatives, such as the place of a knee along its flexion. Immutable.
-class ScalarFunction {
- public:
+// A function of one variable with its derivatives, such as the place of a knee along its flexion.
+struct ScalarFunction {
   // c[0] + c[1] x + c[2] x^2 + ...; no coefficients: 0.
   static ScalarFunction Polynomial(std::vector<double> coefficients);
   static ScalarFunction Constant(double value) { return Polynomial({value}); }
@@ -17,17 +16,19 @@ class ScalarFunction {
   // The cubic spline whose third derivatives at both ends are those of the cubics through the first and the last four
   // points [Forsythe, Malcolm & Moler 1977, 4.4]; of two or three points: the natural one. Continued like the above.
   static ScalarFunction Cubic(std::vector<double> x, std::vector<double> y);
+  // Through points, with first and second derivatives of 0 at each and the least jerk between them [Flash & Hogan 1985,
+  // The coordination of arm movements, J. Neurosci. 5]; constant beyond them.
+  static ScalarFunction LeastJerk(std::vector<double> x, std::vector<double> y);
 
   // The value, or the first or the second derivative.
   double At(double x, int derivative = 0) const;
   // `factor` times this.
   ScalarFunction Scaled(double factor) const;
 
- private:
-  // Pieces begin at x_[k], and the last one ends at x_.back(); c_[k] are the coefficients of the powers of x - x_[k].
-  // No x_: one polynomial of any degree.
-  std::vector<double> x_;
-  std::vector<std::vector<double>> c_;
+  // Pieces begin at breaks[k], and the last one ends at breaks.back(). None: there is one polynomial of any degree.
+  std::vector<double> breaks;
+  // Coefficients of the powers of x - breaks[k], or of x.
+  std::vector<std::vector<double>> pieces;
 };
 
 }  // namespace fascicle

@@ -175,6 +175,18 @@ std::vector<Pose> SkeletonMechanics::Poses(const Eigen::VectorXd& q) {
   return poses;
 }
 
+std::vector<BoneMotion> SkeletonMechanics::Motions(const Eigen::VectorXd& q, const Eigen::VectorXd& rates) {
+  impl_->Realize(q, &rates, SimTK::Stage::Velocity);
+  std::vector<BoneMotion> motions;
+  for (std::size_t b = 0; b < impl_->bones.size(); ++b) {
+    const SimTK::MobilizedBody& body = impl_->Body(static_cast<int>(b));
+    motions.push_back({FromSimTK(body.getBodyTransform(impl_->state)),
+                       FromSimTK(body.getBodyOriginVelocity(impl_->state)),
+                       FromSimTK(body.getBodyAngularVelocity(impl_->state))});
+  }
+  return motions;
+}
+
 Eigen::VectorXd SkeletonMechanics::GeneralizedForces(const Eigen::VectorXd& q, const std::vector<PointForce>& forces) {
   impl_->Realize(q, nullptr, SimTK::Stage::Velocity);
   SimTK::Vector_<SimTK::SpatialVec> on_bodies(impl_->matter.getNumBodies(),
@@ -182,6 +194,7 @@ Eigen::VectorXd SkeletonMechanics::GeneralizedForces(const Eigen::VectorXd& q, c
   for (const PointForce& force : forces) {
     if (force.bone < 0) continue;
     impl_->Body(force.bone).applyForceToBodyPoint(impl_->state, ToSimTK(force.place), ToSimTK(force.force), on_bodies);
+    impl_->Body(force.bone).applyBodyTorque(impl_->state, ToSimTK(force.moment), on_bodies);
   }
   SimTK::Vector result;
   impl_->matter.multiplyBySystemJacobianTranspose(impl_->state, on_bodies, result);

@@ -13,6 +13,13 @@ const char kCurveHint[] = "give times [s] and values in [0, 1]";
 }  // namespace
 
 Curve TranslateActivation(const BodySource& source, Problems& problems) {
+  if (!source.wire.activation_muscle().empty()) {
+    const std::string path = JoinPath(source.path, "activation_muscle");
+    if (source.wire.has_activation() || source.wire.has_excitation()) {
+      problems.Add(path, "is given beside an activation or an excitation", "give only one of them");
+    }
+    return source.skeleton.ActivationOf(source.wire.activation_muscle(), path, problems);
+  }
   if (!source.wire.has_activation()) return Curve::Constant(0);
   return TranslateCurve(source.wire.activation(), kActivationCurve, JoinPath(source.path, "activation"), problems);
 }
@@ -44,10 +51,13 @@ Parts<Curve> TranslateActivationParts(const BodySource& source, std::optional<st
   for (int i = 0; i < wire.region_activations_size(); ++i) {
     const v1::RegionActivation& part = wire.region_activations(i);
     const std::string path = JoinPath(source.path, IndexPath("region_activations", static_cast<std::size_t>(i)));
-    if (part.has_curve()) {
+    if (!part.muscle().empty()) {
+      if (part.has_curve()) own.Add(JoinPath(path, "muscle"), "is given beside a curve", "give only one of them");
+      parts.more.push_back(source.skeleton.ActivationOf(part.muscle(), JoinPath(path, "muscle"), own));
+    } else if (part.has_curve()) {
       parts.more.push_back(TranslateCurve(part.curve(), kActivationCurve, JoinPath(path, "curve"), own));
     } else {
-      own.Add(JoinPath(path, "curve"), "is missing", kCurveHint);
+      own.Add(JoinPath(path, "curve"), "is missing", std::string(kCurveHint) + ", or a muscle of the skeleton");
     }
     MarkRegion(part.region(), JoinPath(path, "region"), regions, i + 1, parts.of, own);
   }

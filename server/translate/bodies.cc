@@ -58,7 +58,7 @@ TranslatedBody TranslateBody(const BodySource& source, Method method, Problems& 
   Problems structure, others;
   const RegionSelectors selectors = TranslateRegions(wire, path, structure);
   const bool has_mesh = TranslateShape(source, method, selectors, body, structure, others);
-  body.constraints = TranslateConstraints(wire, path, selectors.names, structure);
+  body.constraints = TranslateConstraints(wire, path, selectors.names, source.skeleton, structure);
   body.loads = TranslateLoads(wire, path, selectors.names, structure);
   body.activation = TranslateActivation(source, others);
   body.excitation = TranslateExcitation(source, others);

@@ -8,6 +8,7 @@
 #include "core/base/problems.h"
 #include "core/geometry/shapes.h"
 #include "fascicle/v1/scene.pb.h"
+#include "server/translate/skeleton.h"
 #include "server/translate/translate.h"
 
 namespace fascicle::server {
@@ -19,7 +20,8 @@ struct BodySource {
   const AssetReader& assets;
   std::int64_t& budget;  // elements left for the body; reduced by its number of elements
   const TranslateTools& tools;
-  int refinements = 0;  // times that each element is divided
+  const TranslatedSkeleton& skeleton;  // of the scene
+  int refinements = 0;                 // times that each element is divided
   // Whether bodies of the tet method keep their hexahedra.
   Cells cells = Cells::kTetrahedra;
   bool quadratic = false;  // whether its elements are quadratic

@@ -1,5 +1,7 @@
 #include "server/translate/built_in_shapes.h"
 
+#include <Eigen/Geometry>
+
 #include "core/geometry/shapes.h"
 #include "server/translate/values.h"
 
@@ -20,7 +22,16 @@ std::int64_t CheckFusiform(const v1::FusiformShape& shape, const std::string& pa
                  "is " + Text(shape.end_radius()) + ", larger than the belly's radius " + Text(shape.belly_radius()),
                  "a spindle is widest in the middle");
   }
+  (void)ToDirection(shape.direction(), JoinPath(path, "direction"), problems);
   return Tetrahedra(shape.divisions_across(), shape.divisions_across(), shape.divisions_along());
+}
+
+// Moves a spindle along z to its place.
+void Place(const v1::FusiformShape& shape, double metres, TetMesh& mesh) {
+  const Vec3 position = ToVec3(shape.position()) * metres, along = ToVec3(shape.direction()).normalized();
+  if (position.isZero(0) && along == Vec3::UnitZ()) return;
+  const Mat3 R = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), along).toRotationMatrix();
+  for (Vec3& x : mesh.nodes) x = position + R * x;
 }
 
 std::int64_t CheckTorus(const v1::TorusShape& shape, const std::string& path, Problems& problems) {
@@ -78,9 +89,12 @@ TetMesh MakeShape(const v1::Mesh& mesh, double metres, Cells cells) {
   switch (mesh.source_case()) {
     case v1::Mesh::kFusiform: {
       const v1::FusiformShape& shape = mesh.fusiform();
-      return MakeFusiform({shape.length() * metres, shape.belly_radius() * metres, shape.end_radius() * metres,
-                           shape.divisions_across(), shape.divisions_along()},
-                          cells);
+      TetMesh mesh_along_z =
+          MakeFusiform({shape.length() * metres, shape.belly_radius() * metres, shape.end_radius() * metres,
+                        shape.divisions_across(), shape.divisions_along()},
+                       cells);
+      Place(shape, metres, mesh_along_z);
+      return mesh_along_z;
     }
     case v1::Mesh::kTorus: {
       const v1::TorusShape& shape = mesh.torus();

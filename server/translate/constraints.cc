@@ -65,6 +65,20 @@ Rotation TranslateRotation(const v1::Rotation& rotation, double metres, const st
   return result;
 }
 
+// The bone that a constraint follows; -1 after a problem.
+std::int32_t TranslateBone(const v1::Constraint& constraint, const std::string& path,
+                           const TranslatedSkeleton& skeleton, Problems& problems) {
+  const v1::Motion& motion = constraint.motion();
+  const auto bone = skeleton.bones.Find(motion.bone(), path, problems);
+  if (motion.translation_size() > 0 || motion.has_rotation()) {
+    problems.Add(path, "is given beside a translation or a rotation", "give one of them");
+  }
+  if (constraint.axes_size() > 0 && constraint.axes_size() != 3) {
+    problems.Add(path, "moves all three axes, but not all are constrained", "omit the constraint's axes");
+  }
+  return bone && skeleton.driven ? static_cast<std::int32_t>(*bone) : -1;
+}
+
 }  // namespace
 
 Motion TranslateMotion(const v1::Motion& motion, const std::array<bool, 3>& axes, double metres,
@@ -78,7 +92,7 @@ Motion TranslateMotion(const v1::Motion& motion, const std::array<bool, 3>& axes
 }
 
 std::vector<Constraint> TranslateConstraints(const v1::Body& body, const std::string& body_path, const Names& regions,
-                                             Problems& problems) {
+                                             const TranslatedSkeleton& skeleton, Problems& problems) {
   std::vector<Constraint> result;
   for (int i = 0; i < body.constraints_size(); ++i) {
     const v1::Constraint& constraint = body.constraints(i);
@@ -86,8 +100,12 @@ std::vector<Constraint> TranslateConstraints(const v1::Body& body, const std::st
     Constraint translated;
     const auto region = regions.Find(constraint.region(), JoinPath(path, "region"), problems);
     translated.axes = TranslateAxes(constraint, path, problems);
-    translated.motion = TranslateMotion(constraint.motion(), translated.axes, MetresIn(body.unit()),
-                                        JoinPath(path, "motion"), problems);
+    const std::string motion_path = JoinPath(path, "motion");
+    translated.motion =
+        TranslateMotion(constraint.motion(), translated.axes, MetresIn(body.unit()), motion_path, problems);
+    if (!constraint.motion().bone().empty()) {
+      translated.motion.bone = TranslateBone(constraint, JoinPath(motion_path, "bone"), skeleton, problems);
+    }
     if (!region) continue;
     translated.region = static_cast<std::int32_t>(*region);
     result.push_back(std::move(translated));

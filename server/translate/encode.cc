@@ -148,6 +148,7 @@ v1::Geometry EncodeGeometry(const Scene& scene, const FrameLayout& layout) {
     EncodeSeries(line.values, *encoded.mutable_values());
   }
   EncodeSeries(layout.series, *geometry.mutable_series());
+  for (const std::string& note : layout.notes) geometry.add_notes(note);
   return geometry;
 }
 

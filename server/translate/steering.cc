@@ -149,7 +149,8 @@ SteeringTargets SteeringTargetsOf(const v1::Scene& scene) {
     }
     for (RegionTargets* of_body : {&parts, &loads, &motions}) of_body->Finish();
   }
-  if (scene.has_gravity()) {
+  // Torques of a skeleton are those of its gravity from the start.
+  if (scene.has_gravity() && !scene.has_skeleton()) {
     targets.loads.push_back(FactorOn(ControlKind::kGravity, 0));
     targets.loads.back().name = "gravity";
   }

@@ -9,12 +9,13 @@
 #include "core/scene/scene.h"
 #include "fascicle/v1/scene.pb.h"
 #include "server/translate/names.h"
+#include "server/translate/skeleton.h"
 
 namespace fascicle::server {
 
 // The constraints and loads of a body. Entries with a problem may be missing from the result.
 std::vector<Constraint> TranslateConstraints(const v1::Body& body, const std::string& body_path, const Names& regions,
-                                             Problems& problems);
+                                             const TranslatedSkeleton& skeleton, Problems& problems);
 // A motion of what is held along some axes.
 //   metres  in the unit of points on axes of rotation
 Motion TranslateMotion(const v1::Motion& motion, const std::array<bool, 3>& axes, double metres,

@@ -19,6 +19,7 @@
 #include "server/translate/outputs.h"
 #include "server/translate/rigid_bodies.h"
 #include "server/translate/scene_checks.h"
+#include "server/translate/skeleton.h"
 #include "server/translate/start.h"
 #include "server/translate/supports_and_loads.h"
 #include "server/translate/unused_fields.h"
@@ -38,7 +39,9 @@ void CheckHead(const v1::Scene& scene, Problems& problems) {
   if (const std::size_t length = Characters(scene.name()); length > kMaxSceneName) {
     problems.Add("name", "has " + std::to_string(length) + " characters", "at most 200; the description may be longer");
   }
-  if (scene.bodies().empty()) problems.Add("bodies", "is empty", "a scene has at least one body");
+  if (scene.bodies().empty() && !scene.has_skeleton()) {
+    problems.Add("bodies", "is empty", "a scene has at least one body, or a skeleton");
+  }
 }
 
 void AddCurvedEdgesNote(const TetMethod& method, const std::string& path, Body& body) {
@@ -106,6 +109,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   result->gravity = TranslateGravity(filled, found);
   result->floors = TranslateFloors(filled, found);
   result->squeezes = TranslatePlaneForceFields(filled, found);
+  TranslatedSkeleton skeleton = TranslateSkeleton(filled, result->gravity, assets, tools, found);
 
   const bool hexahedral = result->method == Method::kTet && IsHexahedral(result->tet.element);
   const Cells cells = hexahedral ? Cells::kHexahedra : Cells::kTetrahedra;
@@ -118,7 +122,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
     ThrowIfStopped(tools.stop);
     const std::string path = IndexPath("bodies", static_cast<std::size_t>(i));
     names.Add(filled.bodies(i).name(), JoinPath(path, "name"), found);
-    const BodySource source = {filled.bodies(i), path, assets, budget, tools, refinements, cells, quadratic};
+    const BodySource source = {filled.bodies(i), path, assets, budget, tools, skeleton, refinements, cells, quadratic};
     TranslatedBody body = TranslateBody(source, result->method, found);
     complete.push_back(body.complete);
     sources.push_back(SourcePath(filled.bodies(i).mesh(), path));
@@ -134,6 +138,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   if (!result->bodies.empty()) {
     result->bodies.front().notes.insert(result->bodies.front().notes.end(), notes.begin(), notes.end());
   }
+  result->skeleton = std::move(skeleton.driven);
   TranslateStart(filled, assets, *result, found);
   FindEndsOfLineSprings(filled, names, result->bodies, found);
   result->output = TranslateOutput(filled, result->method, result->tet.element, result->bodies, names,

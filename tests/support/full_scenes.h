@@ -16,6 +16,33 @@ inline Motion FullMotion() {
   return motion;
 }
 
+inline ScalarFunction FullFunction() { return ScalarFunction::PiecewiseLinear({0, 1}, {2, 3}); }
+
+inline DrivenSkeleton FullSkeleton() {
+  DrivenSkeleton driven;
+  Skeleton& skeleton = driven.skeleton;
+  skeleton.name = "arm";
+  skeleton.bones = {{"bone", 1, Vec3::Ones(), Mat3::Identity(), {{"bone.stl", Vec3::Ones(), Pose()}}}};
+  skeleton.coordinates = {{"hinge", true, 0.1, 0.2, {-1, 1}, false}};
+  Joint joint;
+  joint.name = "hinge";
+  for (auto* axes : {&joint.rotations, &joint.translations}) {
+    for (MotionAxis& axis : *axes) axis = {Vec3::UnitX(), 0, FullFunction()};
+  }
+  skeleton.joints = {joint};
+  skeleton.surfaces = {{"cylinder", 0, Pose(), WrapSurface::Kind::kCylinder, 0.1, 0.2, Vec3::Ones(), 1, 1}};
+  LineMuscle muscle;
+  muscle.name = "muscle";
+  muscle.points = {{0, Vec3::Ones(), 0, {0, 1}, {0, 0, 0}, {FullFunction(), FullFunction(), FullFunction()}}};
+  muscle.wraps = {{0, 0, 1}};
+  skeleton.muscles = {muscle};
+  driven.shapes = {{{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()}, {{0, 1, 2}}}};
+  driven.motion.coordinates = {{FullFunction(), 0, 1}};
+  driven.activations = {Curve::Constant(0.5)};
+  driven.notes = {"note"};
+  return driven;
+}
+
 inline Region FullRegion() {
   return {"region",
           {0, 1, 2},
@@ -107,6 +134,7 @@ inline Scene FullScene(Method method, Shape shape) {
   scene.output = {0.1, {OutputField::kVelocity}, {{"probe", 0, 0, ProbePlace{0, Vec3(0.2, 0.3, 0.1)}}}, 1e-3};
   scene.output.moments = {{0, 0, Vec3(0, 0, 1), Vec3::UnitX()}};
   scene.output.line_of_action = Vec3::UnitX();
+  if (method == Method::kTet) scene.skeleton = FullSkeleton();
   return scene;
 }
 

@@ -746,7 +746,7 @@ TEST_F(RenderTest, OutliersDoNotSpoilTheScale) {
   field.set_unit("1");
   const auto scale = [&] {
     field.set_values(Bytes(values));
-    return ColourFrames(shapes, {}, {&frame, 1}, "strange", std::nullopt)[0];
+    return ColourFrames(shapes, {}, {}, {&frame, 1}, "strange", std::nullopt)[0];
   };
   EXPECT_EQ(scale().note, "");
   EXPECT_EQ(scale().scale.lowest, 0);

@@ -7,19 +7,19 @@
 #include <numbers>
 #include <sstream>
 
-#include "client/import/motion_table.h"
+#include "client/import/osim_import.h"
 #include "client/import/osim_reader.h"
 #include "core/skeleton/force_distribution.h"
 #include "core/skeleton/forward_dynamics.h"
 #include "core/skeleton/low_pass.h"
+#include "core/skeleton/motion_table.h"
 #include "core/skeleton/muscle_path.h"
 #include "core/skeleton/skeleton_mechanics.h"
+#include "server/translate/translate.h"
 #include "tests/support/paths.h"
 
 namespace fascicle {
 namespace {
-
-using client::MotionTable;
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
@@ -45,7 +45,7 @@ class Arm26Test : public ::testing::Test {
 
   MotionTable Table(const std::string& name) {
     Problems problems;
-    const auto table = client::ReadMotionTable(Contents(folder_ / name), name, problems);
+    const auto table = ReadMotionTable(Contents(folder_ / name), name, problems);
     EXPECT_TRUE(table) << problems.ToString();
     return table.value_or(MotionTable());
   }
@@ -216,6 +216,45 @@ TEST_F(Arm26Test, TendonForcesOfPublishedStates) {
   for (std::size_t m = 0; m < 6; ++m) {
     std::printf("%-9s force within %.3f %%\n", skeleton_.muscles[m].name.c_str(), 100 * largest[m]);
     EXPECT_LT(largest[m], 0.01) << skeleton_.muscles[m].name;
+  }
+}
+
+// The scene that `fascicle import` makes of the model is translated to the same skeleton.
+TEST_F(Arm26Test, TheImportedSceneIsTheModel) {
+  client::OsimOptions options;
+  options.accept_loss = true;
+  options.motion = client::ImportedFile{"flexion.mot", Contents(folder_ / "motion/arm26_InverseKinematics.mot")};
+  Problems problems;
+  auto imported = client::ImportOsim(Contents(folder_ / "arm26.osim"), options, problems);
+  ASSERT_TRUE(imported) << problems.ToString();
+  const std::string digest(64, 'a');
+  imported->scene.mutable_skeleton()->mutable_motion()->mutable_file()->set_asset("assets/" + digest);
+  const auto scene = server::TranslateScene(
+      imported->scene, [&](const std::string&) { return imported->files.back().bytes; }, problems);
+  ASSERT_TRUE(scene) << problems.ToString();
+  SkeletonMechanics own(skeleton_), translated(scene->skeleton->skeleton);
+  for (const double elbow : {0.0, 0.7, 1.4, 2.2}) {
+    const Eigen::VectorXd q = Eigen::Vector2d(0.4, elbow);
+    const MuscleGeometry a = GeometryOf(own, q), b = GeometryOf(translated, q);
+    EXPECT_LT((a.lengths - b.lengths).norm(), 1e-9) << elbow;
+    EXPECT_LT((a.moment_arms - b.moment_arms).norm(), 1e-9) << elbow;
+    const Eigen::VectorXd rates = Eigen::Vector2d(1, -2), accelerations = Eigen::Vector2d(3, 4);
+    EXPECT_LT(
+        (own.InverseDynamics(q, rates, accelerations) - translated.InverseDynamics(q, rates, accelerations)).norm(),
+        1e-9);
+  }
+  // Activations of its motion, which the import filters as the published one was.
+  const MotionTable published = Table("reference/arm26_StaticOptimization_Nonphysiological_activation.sto");
+  const double start = Table("motion/arm26_InverseKinematics.mot").times[0];
+  for (std::size_t m = 0; m < 6; ++m) {
+    double square = 0;
+    for (std::size_t k = 0; k < published.times.size(); ++k) {
+      const double time = published.times[k] - start;
+      square += std::pow(scene->skeleton->activations[m].At(time) - (*published.Find(skeleton_.muscles[m].name))[k], 2);
+    }
+    const double rms = std::sqrt(square / static_cast<double>(published.times.size()));
+    std::printf("%-9s rms of the scene's activation %.5f\n", skeleton_.muscles[m].name.c_str(), rms);
+    EXPECT_LT(rms, 0.03);
   }
 }
 

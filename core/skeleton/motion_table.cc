@@ -1,4 +1,4 @@
-#include "client/import/motion_table.h"
+#include "core/skeleton/motion_table.h"
 
 #include <algorithm>
 #include <charconv>
@@ -8,8 +8,10 @@
 
 #include "core/base/text_lines.h"
 
-namespace fascicle::client {
+namespace fascicle {
 namespace {
+
+constexpr std::size_t kMostRows = 100'000;
 
 class TableReader {
  public:
@@ -87,6 +89,10 @@ class TableReader {
       Fail("time does not advance", "sort the rows by time, and leave out repeated ones");
       return false;
     }
+    if (table_.times.size() == kMostRows) {
+      Fail("there are more than 100,000 rows", "leave out rows");
+      return false;
+    }
     table_.times.push_back(row_[0]);
     for (std::size_t k = 1; k < row_.size(); ++k) table_.values[k - 1].push_back(row_[k]);
     return true;
@@ -112,4 +118,4 @@ std::optional<MotionTable> ReadMotionTable(std::string_view text, const std::str
   return TableReader(text, name, problems).Read();
 }
 
-}  // namespace fascicle::client
+}  // namespace fascicle

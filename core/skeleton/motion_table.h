@@ -1,5 +1,5 @@
-#ifndef FASCICLE_CLIENT_IMPORT_MOTION_TABLE_H_
-#define FASCICLE_CLIENT_IMPORT_MOTION_TABLE_H_
+#ifndef FASCICLE_CORE_SKELETON_MOTION_TABLE_H_
+#define FASCICLE_CORE_SKELETON_MOTION_TABLE_H_
 
 #include <optional>
 #include <string>
@@ -8,7 +8,7 @@
 
 #include "core/base/problems.h"
 
-namespace fascicle::client {
+namespace fascicle {
 
 // A table of values in time: a motion (.mot), or results (.sto), of OpenSim.
 struct MotionTable {
@@ -22,10 +22,10 @@ struct MotionTable {
   const std::vector<double>* Find(std::string_view column) const;
 };
 
-// All problems are added at once, with lines. The number of rows that the header claims must be that of the rows.
-// Thread-safe.
+// Reads such a table, of at most 100,000 rows. All problems are added at once, with lines. The number of rows that the
+// header claims must be that of the rows. Any input is safe. Thread-safe.
 std::optional<MotionTable> ReadMotionTable(std::string_view text, const std::string& name, Problems& problems);
 
-}  // namespace fascicle::client
+}  // namespace fascicle
 
-#endif  // FASCICLE_CLIENT_IMPORT_MOTION_TABLE_H_
+#endif  // FASCICLE_CORE_SKELETON_MOTION_TABLE_H_
