@@ -29,8 +29,8 @@ struct EulerianBody {
   // Whether the elastic force is evaluated at the end of the step, linearized. This makes the system larger and allows
   // longer steps.
   bool implicit_elasticity = false;
-  // Whether the grid travels with the body: it moves with the rigid part of the body's motion, and the body moves through
-  // it by the rest only [Fan 2013, 4.1].
+  // Whether the grid travels with the body: it moves with the rigid part of the body's motion, and the body moves
+  // through it by the rest only [Fan 2013, 4.1].
   bool travels = false;
   bool maccormack = false;  // whether advection is second-order MacCormack with a limiter, in place of semi-Lagrangian
   std::optional<double> time_step = std::nullopt;  // upper bound of the step [s]

@@ -17,8 +17,8 @@ namespace {
 constexpr int kBand = 4;  // layers of nodes around the solid where the map is extrapolated
 // Velocities are extrapolated further than the map, because they advect it.
 constexpr int kVelocityBand = kBand + 2;
-constexpr double kCourant = 0.4;       // fraction of a cell that waves travel in a step
-constexpr double kImplicit = 10;       // factor on that for implicit elasticity
+constexpr double kCourant = 0.4;  // fraction of a cell that waves travel in a step
+constexpr double kImplicit = 10;  // factor on that for implicit elasticity
 // The same for bodies whose grid travels. While they fly they hardly deform, and nothing needs shorter steps.
 constexpr double kImplicitTravelling = 300;
 constexpr double kMostTravel = 0.5;    // fraction of a cell that the solid moves through the grid in a step
@@ -135,7 +135,8 @@ void BodyStepper::AdvectVelocities(const EulerianState& state, double dt) {
 std::vector<Vec3> BodyStepper::ThroughGrid(const std::vector<Vec3>& v, const RigidVelocity& rigid) const {
   std::vector<Vec3> result(v.size());
   team_->For(v.size(), kStepGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) result[n] = v[n] - rigid.At(body_->grid.NodePosition(body_->grid.NodeAt(n)));
+    for (std::size_t n = begin; n < end; ++n)
+      result[n] = v[n] - rigid.At(body_->grid.NodePosition(body_->grid.NodeAt(n)));
   });
   return result;
 }
@@ -158,8 +159,7 @@ void BodyStepper::Accelerate(const EulerianState& state, const BodyControls& now
       if (roles_.IsPrescribed(n)) {
         const RigidMotion& from = now.motions[roles_.support[n]];
         const RigidMotion& to = next.motions[roles_.support[n]];
-        const Vec3 prescribed =
-            frame_.VectorInGrid((to.PositionOf(state.X[n]) - from.PositionOf(state.X[n])) / dt);
+        const Vec3 prescribed = frame_.VectorInGrid((to.PositionOf(state.X[n]) - from.PositionOf(state.X[n])) / dt);
         impulses_[n] = forces_.mass[n] * (prescribed - v[n]) - dt * forces_.force[n];
         v[n] = prescribed;
       } else if (roles_.inside[n] != 0) {

@@ -76,8 +76,8 @@ class BodyStepper {
   EulerianCells cells_;
   NodeRoles roles_;
   NodalForces forces_;
-  GridFrame frame_;      // of the state of the last Prepare
-  RigidVelocity rigid_;  // the velocity of the grid in that state; zero if it does not travel
+  GridFrame frame_;             // of the state of the last Prepare
+  RigidVelocity rigid_;         // the velocity of the grid in that state; zero if it does not travel
   double waves_ = 0;            // StepLength::waves
   std::vector<Vec3> now_;       // velocities at the start of the step, with the momentum restored
   std::vector<Vec3> impulses_;  // of supports on prescribed nodes [N s]; empty without supports

@@ -248,10 +248,10 @@ void EulerianContacts::FindSide(std::size_t p, bool of_a, const std::vector<Body
       const Vec3 place = (x + gap->nearest) / 2;
       found[s] = {place, of_a ? gap->normal : Vec3(-gap->normal), gap->gap, area, {}, {}};
       if (pair.lasting) found[s]->gap -= rest_gaps[s];
-      found[s]->of_a = VelocityWeights(bodies_[pair.a]->grid, steppers[pair.a].roles(),
-                                       frames_[pair.a].PointInGrid(place));
-      found[s]->of_b = VelocityWeights(bodies_[pair.b]->grid, steppers[pair.b].roles(),
-                                       frames_[pair.b].PointInGrid(place));
+      found[s]->of_a =
+          VelocityWeights(bodies_[pair.a]->grid, steppers[pair.a].roles(), frames_[pair.a].PointInGrid(place));
+      found[s]->of_b =
+          VelocityWeights(bodies_[pair.b]->grid, steppers[pair.b].roles(), frames_[pair.b].PointInGrid(place));
     }
   });
   for (std::optional<Point>& point : found) {
@@ -268,11 +268,11 @@ void EulerianContacts::FindOnFloor(std::size_t p, const std::vector<BodyStepper>
   team_->For(samples.size(), 32, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const Vec3 x = PlaceOfSample(surface, samples[s]);
-      const double gap = (x - floor.point).dot(floor.normal), area = -AreaOfSample(surface, samples[s]).dot(floor.normal);
+      const double gap = (x - floor.point).dot(floor.normal),
+                   area = -AreaOfSample(surface, samples[s]).dot(floor.normal);
       if (gap > kReach * CellOf(pair) || !(area > 0)) continue;
       found[s] = {x, floor.normal, gap, area, {}, {}};
-      found[s]->of_a =
-          VelocityWeights(bodies_[pair.a]->grid, steppers[pair.a].roles(), frames_[pair.a].PointInGrid(x));
+      found[s]->of_a = VelocityWeights(bodies_[pair.a]->grid, steppers[pair.a].roles(), frames_[pair.a].PointInGrid(x));
     }
   });
   for (std::optional<Point>& point : found) {

@@ -21,8 +21,8 @@ struct ContactPair {
   bool lasting = false;
 };
 
-// The pairs of bodies that a scene's contacts name; where several name a pair, the last one applies. Then all bodies with
-// all floors. Ascending.
+// The pairs of bodies that a scene's contacts name; where several name a pair, the last one applies. Then all bodies
+// with all floors. Ascending.
 std::vector<ContactPair> ContactPairsOf(const Scene& scene);
 
 // Adds a problem for each pair of bodies that touch by a contact and overlap by more than half a cell at rest. Surfaces
@@ -30,8 +30,8 @@ std::vector<ContactPair> ContactPairsOf(const Scene& scene);
 void CheckOverlaps(const Scene& scene, Problems& problems);
 
 // Contacts between bodies, found on their surfaces: pairs of points of two surfaces that face each other, nearer than a
-// cell. Their velocities, normals and areas are collected in the cells of a collision grid over the world [Fan 2013, eq.
-// 3.47 and section 4.5]; each such cell gives a row of the velocity program. A row acts on both bodies at the same
+// cell. Their velocities, normals and areas are collected in the cells of a collision grid over the world [Fan 2013,
+// eq. 3.47 and section 4.5]; each such cell gives a row of the velocity program. A row acts on both bodies at the same
 // points, so that what they exchange is equal and opposite. Not thread-safe; the same bits for any number of threads.
 class EulerianContacts {
  public:
@@ -83,8 +83,8 @@ class EulerianContacts {
   std::vector<std::vector<SurfaceSample>> samples_;  // of each body
   // Of pairs that stay together, for the samples of both: the gap at rest [m]; NaN where they do not touch at rest.
   std::vector<std::array<std::vector<double>, 2>> rest_gaps_;
-  std::vector<GridFrame> frames_;                    // of the state of the last Find, as all that follows
-  std::vector<std::vector<Vec3>> vertices_;          // of each body, in the world
+  std::vector<GridFrame> frames_;            // of the state of the last Find, as all that follows
+  std::vector<std::vector<Vec3>> vertices_;  // of each body, in the world
   std::vector<Bounds> bounds_;
   std::vector<std::unique_ptr<ContactSurface>> surfaces_;  // made when needed
   std::vector<Points> points_;                             // of each pair

@@ -17,9 +17,9 @@ struct ContactPart {
   Mat3 weight;
 };
 
-// A part of a contact between two bodies: w = sum of weight v + given is the velocity of one body relative to the other,
-// integrated over the area of the part [m^3/s]. Then w[0] >= least, or w[0] = least where bodies stay together, and
-// friction opposes w[1] and w[2].
+// A part of a contact between two bodies: w = sum of weight v + given is the velocity of one body relative to the
+// other, integrated over the area of the part [m^3/s]. Then w[0] >= least, or w[0] = least where bodies stay together,
+// and friction opposes w[1] and w[2].
 struct ContactRow {
   std::vector<ContactPart> parts;  // ascending by body, then node
   Vec3 given = Vec3::Zero();       // of what moves as prescribed

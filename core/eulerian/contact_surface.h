@@ -10,9 +10,9 @@ namespace fascicle {
 
 // How far a point is from a surface.
 struct SurfaceGap {
-  double gap;     // negative inside [m]
-  Vec3 normal;    // of the surface there, outwards
-  Vec3 nearest;   // the nearest point of the surface [m]
+  double gap;    // negative inside [m]
+  Vec3 normal;   // of the surface there, outwards
+  Vec3 nearest;  // the nearest point of the surface [m]
 };
 
 // A closed surface that others may touch: signed distances and normals near it. Const, thread-safe.
@@ -30,7 +30,6 @@ class ContactSurface {
   std::optional<SurfaceGap> GapAt(const Vec3& point, double within) const;
 
  private:
-
   TriangleMesh surface_;
   Bounds bounds_;
   std::vector<Vec3> normals_;  // of the nodes, weighted by angle; not of unit length

@@ -22,8 +22,8 @@ struct RigidVelocity {
   Vec3 At(const Vec3& x) const { return linear + spin.cross(x - centre); }
 };
 
-// With the masses of the nodes: the one that has a momentum, and the one that has the momentum of the velocities v, which
-// is nearest to them by mass.
+// With the masses of the nodes: the one that has a momentum, and the one that has the momentum of the velocities v,
+// which is nearest to them by mass.
 RigidVelocity RigidVelocityOf(const EulerianGrid& grid, const NodalForces& nodes, const Resultant& momentum,
                               ThreadTeam& team);
 RigidVelocity RigidPartOf(const EulerianGrid& grid, const NodalForces& nodes, const std::vector<Vec3>& v,

@@ -19,9 +19,9 @@ struct EulerianState {
   std::vector<Vec3> v;              // velocity [m/s]
   std::vector<std::uint8_t> known;  // for each node: whether X and v are valid
   std::vector<Vec3> surface;        // positions of the vertices of the material surface [m]
-  // Momentum of a body without supports and its moment about the grid's origin of coordinates [kg m/s, kg m^2/s], with the total mass of the
-  // nodes for which it was found [kg]. The mass is 0 before the first step, or after velocities were changed from
-  // outside; the momentum is then computed from them.
+  // Momentum of a body without supports and its moment about the grid's origin of coordinates [kg m/s, kg m^2/s], with
+  // the total mass of the nodes for which it was found [kg]. The mass is 0 before the first step, or after velocities
+  // were changed from outside; the momentum is then computed from them.
   double momentum_mass = 0;
   Vec3 momentum = Vec3::Zero(), moment = Vec3::Zero();
   // For each cell: the pressure that preserved its volume in the last step, compression positive [Pa]; NaN where there

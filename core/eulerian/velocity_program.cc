@@ -22,6 +22,8 @@ constexpr std::int32_t kGroup = 4;
 // Largest relative change of a cell's volume in a step; the remaining error of the map is corrected later.
 constexpr double kMostGain = 0.1;
 
+// Rows of contact whose normals cancel to this part, squared, say nothing.
+constexpr double kCancels = 1e-12;
 constexpr int kMostFrictionRounds = 12;
 constexpr double kFrictionTolerance = 1e-4;  // of impulses, relative to the largest one of a row
 
@@ -251,8 +253,8 @@ QpStatus VelocityProgram::SolveOnce(const QuadraticProgram& problem) {
 }
 
 // Coulomb friction by fixed-point iteration: rows that stick are equalities along both tangents; on rows that slip the
-// largest friction of the last solution acts against the velocity. A row that sticks with more than the largest friction
-// begins to slip, and one that slips along its friction sticks.
+// largest friction of the last solution acts against the velocity. A row that sticks with more than the largest
+// friction begins to slip, and one that slips along its friction sticks.
 QpStatus VelocityProgram::SolveFriction(const QuadraticProgram& frictionless) {
   std::vector<Friction> friction(contacts_.size());
   for (std::size_t k = 0; k < contacts_.size(); ++k) friction[k].sticks = contacts_[k].friction > 0;
@@ -288,7 +290,8 @@ void VelocityProgram::SetFriction(const std::vector<Friction>& friction, Quadrat
     for (const ContactPart& part : contacts_[k].parts) {
       const Block& block = *blocks_[part.body];
       const int node = block.of_node[part.node];
-      if (node >= 0) problem.p.segment<3>(3 * (block.first_node + node)) += part.weight.transpose() * friction[k].impulse;
+      if (node >= 0)
+        problem.p.segment<3>(3 * (block.first_node + node)) += part.weight.transpose() * friction[k].impulse;
     }
   }
   SetRows(entries, right, problem.equalities);
@@ -424,12 +427,17 @@ void VelocityProgram::SetStiffness(QuadraticProgram& problem) {
 }
 
 void VelocityProgram::AddContact(ContactRow row) {
-  const auto is_free = [this](const ContactPart& part) { return blocks_[part.body]->of_node[part.node] >= 0; };
-  if (std::any_of(row.parts.begin(), row.parts.end(), is_free)) contacts_.push_back(std::move(row));
+  double normal = 0, all = 0;
+  for (const ContactPart& part : row.parts) {
+    if (blocks_[part.body]->of_node[part.node] < 0) continue;
+    normal += part.weight.row(0).squaredNorm();
+    all += part.weight.squaredNorm();
+  }
+  if (normal > kCancels * all) contacts_.push_back(std::move(row));
 }
 
-// Adds one of the three rows of a contact: w[kind] = right or >= right. Prescribed velocities go to the right-hand side,
-// which is returned.
+// Adds one of the three rows of a contact: w[kind] = right or >= right. Prescribed velocities go to the right-hand
+// side, which is returned.
 double VelocityProgram::AddRow(const ContactRow& row, int kind, int number, double right,
                                std::vector<Eigen::Triplet<double>>& entries) const {
   right -= row.given[kind];

@@ -39,7 +39,8 @@ class VelocityProgram {
 
   // Bodies are numbered from 0 in the order of the calls.
   void AddBody(const Part& part);
-  // Bodies of the row as numbered here. A row without free nodes is ignored.
+  // Bodies of the row as numbered here. A row without free nodes, or whose normals
+  // cancel, is ignored.
   void AddContact(ContactRow row);
   // Call once, after all bodies and contacts. iterations() counts those of MINRES.
   QpStatus Solve();

@@ -16,10 +16,10 @@ struct EulerianReport {
 };
 
 // Steps solids on their grids together, with a common time step [Fan 2013, algorithm 1]: forces; advection of
-// velocities; volumes, supports and contacts in programs of all bodies that touch; advection of the reference maps and their
-// extrapolation to a band around the solids; the surfaces; plastic flow. Not thread-safe. The same bits for any number
-// of threads, and for a state that was saved and loaded. All functions may throw Stopped (core/base/stop.h); states are
-// then unchanged.
+// velocities; volumes, supports and contacts in programs of all bodies that touch; advection of the reference maps and
+// their extrapolation to a band around the solids; the surfaces; plastic flow. Not thread-safe. The same bits for any
+// number of threads, and for a state that was saved and loaded. All functions may throw Stopped (core/base/stop.h);
+// states are then unchanged.
 class EulerianWorld {
  public:
   // Scene, bodies (one for each of the scene's) and team must outlive this, as must the profile, which may be null.

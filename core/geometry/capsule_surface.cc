@@ -8,7 +8,7 @@
 namespace fascicle {
 namespace {
 
-constexpr int kAround = 24;
+constexpr int kPointsAround = 24;
 constexpr int kRings = 8;  // of each ball's part
 
 // A point of a meridian: its place along the axis and its distance from it.
@@ -49,16 +49,16 @@ TriangleMesh CapsuleSurface(const Vec3& from, double from_radius, const Vec3& to
   TriangleMesh mesh;
   mesh.nodes.push_back(from + lowest * axis);
   for (const ProfilePoint& point : profile) {
-    for (int k = 0; k < kAround; ++k) {
-      const double angle = 2 * std::numbers::pi * k / kAround;
+    for (int k = 0; k < kPointsAround; ++k) {
+      const double angle = 2 * std::numbers::pi * k / kPointsAround;
       mesh.nodes.push_back(from + point.along * axis + point.out * (std::cos(angle) * u + std::sin(angle) * v));
     }
   }
   mesh.nodes.push_back(from + highest * axis);
   const auto rings = static_cast<std::int32_t>(profile.size());
-  const std::int32_t top = 1 + rings * kAround;
-  const auto at = [](std::int32_t ring, int k) { return 1 + ring * kAround + k % kAround; };
-  for (int k = 0; k < kAround; ++k) {
+  const std::int32_t top = 1 + rings * kPointsAround;
+  const auto at = [](std::int32_t ring, int k) { return 1 + ring * kPointsAround + k % kPointsAround; };
+  for (int k = 0; k < kPointsAround; ++k) {
     mesh.triangles.push_back({0, at(0, k + 1), at(0, k)});
     for (std::int32_t ring = 0; ring + 1 < rings; ++ring) {
       mesh.triangles.push_back({at(ring, k), at(ring, k + 1), at(ring + 1, k + 1)});

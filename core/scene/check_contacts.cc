@@ -28,7 +28,8 @@ void CheckContact(const Scene& scene, const Contact& contact, const std::string&
     }
   }
   if (contact.bodies.size() == 1 || (contact.bodies.empty() && scene.bodies.size() == 1)) {
-    problems.Add(JoinPath(path, "bodies"), "a contact needs at least two bodies", "name another body, or omit the contact");
+    problems.Add(JoinPath(path, "bodies"), "a contact needs at least two bodies",
+                 "name another body, or omit the contact");
   }
   if (scene.method != Method::kTet) return;
   if (contact.friction > 0) {

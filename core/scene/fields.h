@@ -79,10 +79,13 @@ void WithMembers(Struct& s, const Call& call) {
   } else if constexpr (kCount == 13) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = s;
     call(a, b, c, d, e, f, g, h, i, j, k, l, m);
-  } else {
-    static_assert(kCount == 14, "longer structs need another line here");
+  } else if constexpr (kCount == 14) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = s;
     call(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
+  } else {
+    static_assert(kCount == 15, "longer structs need another line here");
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = s;
+    call(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
   }
 }
 

@@ -130,6 +130,7 @@ inline Scene FullScene(Method method, Shape shape) {
   scene.tet.time_step = scene.voxel.time_step = scene.eulerian.time_step = 1e-3;
   scene.eulerian.room = Bounds{-Vec3::Ones(), Vec3::Ones()};
   scene.squeezes = {{Vec3::Zero(), Vec3::UnitX(), 1, 1, Curve::Constant(1)}};
+  scene.contacts = {{{0, 1}, 0.1, true}};
   scene.duration = 1;
   scene.output = {0.1, {OutputField::kVelocity}, {{"probe", 0, 0, ProbePlace{0, Vec3(0.2, 0.3, 0.1)}}}, 1e-3};
   scene.output.moments = {{0, 0, Vec3(0, 0, 1), Vec3::UnitX()}};

@@ -161,27 +161,116 @@ TEST(EulerianContact, TheSameBitsForAnyThreadsAndInAWorldThatIsLoaded) {
   EXPECT_EQ(BitsOf(loaded.state), bits[0]);
 }
 
-// On a floor, what the floor does is the weight in the mean of a bounce.
+// It comes to rest in the end. The impulse of the floor is that of the weight and of damping, and what the ball had.
 TEST(EulerianContact, AFloorStopsABall) {
   ThreadTeam team(2);
+  constexpr double kGravity = 10, kDamping = 40, kEnd = 0.25;
   EulerianBody ball = Ball(Vec3(0.002, 0.001, 0.0505), kSide / 8, team);
-  ball.gravity = Vec3(0, 0, -10);
-  ball.mass_damping = 40;
+  ball.gravity = Vec3(0, 0, -kGravity);
+  ball.mass_damping = kDamping;
   Scene scene;
   scene.floors = {Floor{"floor", Vec3::Zero(), Vec3::UnitZ()}};
   SolidRun run({&ball}, team, nullptr, scene);
   double deepest = 0;
-  while (run.state.time < 0.25) {
-    ASSERT_EQ(run.Step(0.25).problem, StepProblem::kNone) << run.state.time;
+  Vec3 impulse = Vec3::Zero();
+  while (run.state.time < kEnd) {
+    ASSERT_EQ(run.Step(kEnd).problem, StepProblem::kNone) << run.state.time;
     deepest = std::max(deepest, run.world.contacts().depths()[0]);
+    impulse += run.state.time_step * run.state.floor_forces[0];
   }
   const RigidVelocity rigid = RigidPartOf(ball.grid, run.forces(), run.solid().v, team);
+  const double sunk = 0.0505 - GridFrame(run.solid().pose, true).PointInWorld(rigid.centre)[2];
+  const double expected = MassOf(run.forces(), team) * (kGravity * kEnd - kDamping * sunk + rigid.linear[2]);
+  std::printf("floor: impulse %.4f of what it must be, sunk by %.2f mm, deepest %.3f cells\n", impulse[2] / expected,
+              1e3 * sunk, deepest / ball.grid.spacing);
+  EXPECT_NEAR(impulse[2], expected, 0.01 * expected);
+  EXPECT_LT(impulse.head<2>().norm(), 1e-9 * expected);
   EXPECT_LT(rigid.linear.norm(), 0.01);
   EXPECT_LT(deepest, 0.5 * ball.grid.spacing);
-  const double height = GridFrame(run.solid().pose, true).PointInWorld(rigid.centre)[2];
-  EXPECT_NEAR(run.state.floor_forces[0][2], 10 * MassOf(run.forces(), team), 0.05 * 10);
-  EXPECT_GT(height, 0.045);
-  EXPECT_LT(height, 0.05);
+  EXPECT_NEAR(sunk, 0.0084, 0.0025);  // Hertz: 8.4 mm, which is not small
+}
+
+// A block on a grid of cells of 1 cm with four around it.
+EulerianBody Block(const Vec3& lowest, const Vec3& size, ThreadTeam& team) {
+  constexpr double kSpacing = 0.01;
+  TriangleMesh surface = CubeSurface(1, 4);
+  for (Vec3& x : surface.nodes) x = lowest + (x + Vec3::Constant(0.5)).cwiseProduct(size);
+  EulerianGrid grid;
+  grid.spacing = kSpacing;
+  for (int d = 0; d < 3; ++d) {
+    grid.origin[d] = kSpacing * (std::floor(lowest[d] / kSpacing) - 4);
+    grid.cells[d] = static_cast<std::int32_t>(std::ceil((lowest[d] + size[d] - grid.origin[d]) / kSpacing) + 4);
+  }
+  const std::array<double, 2> values = {5e4, 0.3};
+  EulerianBody body{grid, SolidShape(surface, kSpacing / 2, team), NeoHookean(values)};
+  body.density = 1000;
+  body.volume = VolumeTreatment::kNone;
+  return body;
+}
+
+// A block on another one that is held, and how they touch.
+struct Stack {
+  Stack(ThreadTeam& team, const Contact& contact)
+      : held(Block(Vec3(-0.043, -0.034, -0.0402), Vec3(0.1, 0.07, 0.04), team)),
+        upper(Block(Vec3(-0.0257, -0.0241, 0), Vec3(0.05, 0.05, 0.04), team)) {
+    HoldAbove(-1, held);
+    upper.travels = true;
+    scene.contacts = {contact};
+  }
+
+  EulerianBody held, upper;
+  Scene scene;
+};
+
+Vec3 VelocityOf(const SolidRun& run) { return InWorld(run.state.bodies[1]).sum / run.state.bodies[1].momentum_mass; }
+
+// The force of a contact is what the held block's support feels, reversed. While a block slides, friction is the
+// coefficient times the normal force; a block that is pushed less sticks.
+TEST(EulerianContact, FrictionIsThatOfCoulomb) {
+  ThreadTeam team(2);
+  constexpr double kFriction = 0.3;
+  Stack stack(team, Contact{{}, kFriction, false});
+  stack.upper.gravity = Vec3(0, 0, -50);
+  stack.upper.mass_damping = 100;
+  SolidRun slides({&stack.held, &stack.upper}, team, nullptr, stack.scene);
+  slides.Begin(1, nullptr, [](const Vec3&) { return Vec3(0.4, 0.3, -0.05); });
+  int touched = 0;
+  for (int k = 0; k < 15; ++k) {
+    ASSERT_EQ(slides.Step(1).problem, StepProblem::kNone);
+    const Vec3 force = -slides.state.bodies[0].reactions[0];
+    if (force[2] < 0.1) continue;
+    ++touched;
+    EXPECT_NEAR(force.head<2>().norm(), kFriction * force[2], 1e-3 * force[2]);
+    EXPECT_GT(force.head<2>().normalized().dot(Eigen::Vector2d(-0.8, -0.6)), 0.98);
+  }
+  EXPECT_GT(touched, 5);
+
+  stack.upper.gravity = Vec3(0.2 * 50, 0, -50);
+  SolidRun sticks({&stack.held, &stack.upper}, team, nullptr, stack.scene);
+  while (sticks.state.time < 0.02) {
+    ASSERT_EQ(sticks.Step(0.02).problem, StepProblem::kNone);
+    const Vec3 force = -sticks.state.bodies[0].reactions[0];
+    EXPECT_LE(force.head<2>().norm(), (kFriction + 1e-3) * std::abs(force[2]) + 1e-6);
+  }
+  std::printf("sticks: speed %.4f m/s, without friction %.4f\n", VelocityOf(sticks)[0], 10 * (1 - std::exp(-2)) / 100);
+  EXPECT_LT(std::abs(VelocityOf(sticks)[0]), 0.25 * 10 * (1 - std::exp(-2)) / 100);
+}
+
+// A block that stays with another one by a lasting contact is pulled in vain, but slides.
+TEST(EulerianContact, LastingContactHoldsAndSlides) {
+  ThreadTeam team(2);
+  const Stack stack(team, Contact{{}, 0, true});
+  SolidRun run({&stack.held, &stack.upper}, team, nullptr, stack.scene);
+  run.Begin(1, nullptr, [](const Vec3&) { return Vec3(0.2, 0, 0.2); });
+  const auto lowest = [&] { return BoundsOf(SurfaceInWorld(stack.upper, run.state.bodies[1])).lowest[2]; };
+  double highest = lowest();
+  while (run.state.time < 0.02) {
+    ASSERT_EQ(run.Step(0.02).problem, StepProblem::kNone);
+    highest = std::max(highest, lowest());
+  }
+  std::printf("lasting: lifted by %.3f cells, without contact %.3f\n", highest / 0.01, 0.2 * 0.02 / 0.01);
+  EXPECT_LT(highest, 0.1 * 0.2 * 0.02);
+  EXPECT_NEAR(VelocityOf(run)[0], 0.2, 0.01);
 }
 
 // A grid that travels carries its body through any distance, and turns with it: angular velocity and shape last.

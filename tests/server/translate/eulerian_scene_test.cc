@@ -248,7 +248,8 @@ TEST(EulerianScene, ContactsNameBodiesThatDoNotOverlap) {
   EXPECT_TRUE(WithSecondBlock(9, "contacts { bodies: ['block', 'second'] friction: 0.3 }").empty());
   EXPECT_TRUE(WithSecondBlock(7.8, "contacts {}").empty());  // 0.2 cells deep
   EXPECT_TRUE(WithSecondBlock(5, "").empty());
-  EXPECT_THAT(At(WithSecondBlock(5, "contacts {}"), "bodies[1]"), HasSubstr("overlaps with the body `block` by 0.03 m"));
+  EXPECT_THAT(At(WithSecondBlock(5, "contacts {}"), "bodies[1]"),
+              HasSubstr("overlaps with the body `block` by 0.03 m"));
   EXPECT_THAT(At(WithSecondBlock(9, "contacts { bodies: ['block', 'secnd'] }"), "contacts[0].bodies[1]"),
               HasSubstr("secnd"));
   EXPECT_THAT(At(WithSecondBlock(9, "contacts { bodies: ['block', 'block'] }"), "contacts[0].bodies[1]"),
