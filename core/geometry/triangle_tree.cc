@@ -167,6 +167,24 @@ TriangleTree::Nearest TriangleTree::FindNearest(const Vec3& point, double within
   return nearest;
 }
 
+void TriangleTree::FindWithin(const Vec3& point, double reach, std::vector<std::int32_t>& triangles) const {
+  const double most = reach * reach;
+  const auto end = static_cast<std::int32_t>(boxes_.size());
+  for (std::int32_t i = 0; i < end;) {
+    const Box& box = boxes_[i];
+    if (SquaredDistanceTo(box, point) > most) {
+      i = box.end;
+      continue;
+    }
+    for (std::int32_t k = box.first; k < box.first + box.count; ++k) {
+      const auto& [a, b, c] = surface_.triangles[order_[k]];
+      const Vec3 nearest = NearestOfTriangle(point, surface_.nodes[a], surface_.nodes[b], surface_.nodes[c]);
+      if ((nearest - point).squaredNorm() <= most) triangles.push_back(order_[k]);
+    }
+    ++i;
+  }
+}
+
 double TriangleTree::Distance(const Vec3& point) const { return std::sqrt(FindNearest(point).squared_distance); }
 
 double TriangleTree::SignedDistance(const Vec3& point) const {

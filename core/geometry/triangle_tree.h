@@ -26,6 +26,8 @@ class TriangleTree {
 
   // The nearest point of those within a distance; triangle -1 if there is none.
   Nearest FindNearest(const Vec3& point, double within = std::numeric_limits<double>::infinity()) const;
+  // Adds all triangles that are not farther from a point than `reach`, in no particular order.
+  void FindWithin(const Vec3& point, double reach, std::vector<std::int32_t>& triangles) const;
   double Distance(const Vec3& point) const;
 
   // Generalized winding number of the surface around a point: 1 inside and 0 outside of a closed surface, in between

@@ -81,13 +81,27 @@ void CheckElements(const Scene& scene, Problems& problems) {
   }
 }
 
+// Rigid bodies are obstacles without friction here, whose motion bodies do not change.
+void CheckObstacles(const Scene& scene, Problems& problems) {
+  for (std::size_t k = 0; k < scene.rigid_bodies.size(); ++k) {
+    const std::string path = IndexPath("rigid_bodies", k);
+    if (scene.rigid_bodies[k].free) {
+      problems.Add(JoinPath(path, "free"), "the tet method does not support rigid bodies that move freely",
+                   "prescribe its motion");
+    }
+    if (scene.rigid_bodies[k].friction > 0) {
+      problems.Add(JoinPath(path, "friction"), "the tet method does not support friction", "omit it");
+    }
+  }
+}
+
 }  // namespace
 
 void CheckTet(const Scene& scene, Problems& problems) {
   if (scene.method != Method::kTet) return;
   const TetMethod& method = scene.tet;
   CheckElements(scene, problems);
-  RefuseRigidBodies(scene, "tet", problems);
+  CheckObstacles(scene, problems);
   if (method.precision == Precision::kSingle && method.stepping != Stepping::kExplicit &&
       method.stepping != Stepping::kMixed) {
     problems.Add("tet.precision", "implicit steps need double precision", "omit it, or use explicit or mixed stepping");

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 
 namespace fascicle {
 namespace {
@@ -63,6 +64,12 @@ RunWarnings::RunWarnings(const Scene& scene, const std::vector<SeriesInfo>& seri
       watches_.push_back({b, Quantity::kStrain, {}, {}});
     }
   }
+  constexpr std::string_view kContact = "contact/", kDepth = "/relative_depth";
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const std::string& name = series[k].name;
+    if (!name.starts_with(kContact) || !name.ends_with(kDepth)) continue;
+    contacts_.push_back({name.substr(kContact.size(), name.size() - kContact.size() - kDepth.size()), k, {}});
+  }
   // Work of activation is known in quasi-static runs only, which integrate it along each step.
   if (scene.method != Method::kTet || scene.tet.stepping == Stepping::kQuasiStatic || IsActivated(scene)) return;
   for (const auto& [name, sign] :
@@ -95,7 +102,15 @@ void RunWarnings::ObserveFrame(const Frame& frame, const MethodRun& method, cons
       }
     }
   }
+  ObserveContact(frame);
   ObserveEnergy(frame);
+}
+
+void RunWarnings::ObserveContact(const Frame& frame) {
+  for (ContactWatch& contact : contacts_) {
+    const double depth = frame.series[contact.column];
+    if (!contact.deepest.seen || depth > contact.deepest.value) contact.deepest = {depth, frame.time, -1, true};
+  }
 }
 
 void RunWarnings::ObserveElements(Watch& watch, const std::vector<double>& values, double time) {
@@ -205,6 +220,16 @@ std::optional<Warning> RunWarnings::StepWarning() const {
 std::vector<Warning> RunWarnings::List() const {
   std::vector<Warning> warnings;
   for (const Watch& watch : watches_) AddRange(watch, warnings);
+  for (const ContactWatch& contact : contacts_) {
+    if (!(contact.deepest.value > 1)) continue;
+    warnings.push_back({"CONTACT_DEPTH",
+                        Format("bodies penetrate by %.2f times a tenth of an element's edge in the contact %s",
+                               contact.deepest.value, contact.name.c_str()),
+                        "use a finer mesh there, a smaller time_step, or load and move more slowly",
+                        contact.deepest.time,
+                        {},
+                        {}});
+  }
   if (std::optional<Warning> energy = EnergyWarning()) warnings.push_back(*std::move(energy));
   if (std::optional<Warning> step = StepWarning()) warnings.push_back(*std::move(step));
   return warnings;
@@ -223,6 +248,7 @@ void RunWarnings::VisitNumbers(Self& self, const Visit& visit) {
     visit_extreme(watch.lowest);
     visit_extreme(watch.highest);
   }
+  for (auto& contact : self.contacts_) visit_extreme(contact.deepest);
   visit(self.energy_at_start_);
   visit(self.gap_);
   visit(self.gap_time_);

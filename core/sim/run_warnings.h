@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/base/archive.h"
@@ -43,6 +44,12 @@ class RunWarnings {
     Quantity quantity = Quantity::kVolumeRatio;
     Extreme lowest, highest;
   };
+  // A contact: the column of its relative depth.
+  struct ContactWatch {
+    std::string name;
+    std::size_t column = 0;
+    Extreme deepest;
+  };
   // Columns of Frame::series whose sum must not change, with their signs.
   struct Term {
     std::size_t column = 0;
@@ -54,11 +61,13 @@ class RunWarnings {
   void AddRange(const Watch& watch, std::vector<Warning>& warnings) const;
   std::optional<Warning> EnergyWarning() const;
   std::optional<Warning> StepWarning() const;
+  void ObserveContact(const Frame& frame);
   template <class Self, class Visit>
   static void VisitNumbers(Self& self, const Visit& visit);
 
   const Scene* scene_;
   std::vector<Watch> watches_;
+  std::vector<ContactWatch> contacts_;
   std::vector<Term> balance_;                                            // empty: not judged
   double energy_at_start_ = 0, gap_ = 0, gap_time_ = 0, exchanged_ = 0;  // [J], [s]
   bool has_start_ = false;

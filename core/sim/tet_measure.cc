@@ -1,6 +1,7 @@
 #include "core/sim/tet_measure.h"
 
 #include "core/sim/series.h"
+#include "core/tet/contact.h"
 #include "core/tet/diagnostics.h"
 #include "core/tet/floor_contact.h"
 
@@ -15,6 +16,41 @@ std::size_t NodeOf(const TetModel& model, const Probe& probe) {
   return model.bodies()[probe.body].node_begin + static_cast<std::size_t>(probe.node);
 }
 
+// Of what touches: the force of bodies on each rigid body, or of one body on another, its moment, and depths.
+void AddContactSeries(const TetModel& model, std::vector<SeriesInfo>& series) {
+  const auto add = [&](const std::string& of, const std::string& force, const std::string& origin) {
+    const std::string name = "contact/" + of + "/";
+    for (const char* axis : kAxisNames) series.push_back({name + "force/" + axis, "N", force + " along " + axis});
+    for (const char* axis : kAxisNames) {
+      series.push_back({name + "moment/" + axis, "N m", "moment of that force about " + origin + ", along " + axis});
+    }
+    series.push_back({name + "depth", "m", "deepest penetration"});
+    series.push_back({name + "relative_depth", "1",
+                      "largest penetration relative to the allowed one, a tenth of an element's edge"});
+  };
+  for (const RigidBody& rigid : model.scene().rigid_bodies) {
+    add(rigid.name, "force of all bodies on `" + rigid.name + "`", "the origin of its frame");
+  }
+  for (const TouchingPair& pair : PairsOf(model.scene().contacts, model.scene().bodies.size())) {
+    const std::string &a = model.scene().bodies[pair.a].name, &b = model.scene().bodies[pair.b].name;
+    add(a + "/" + b, "force of `" + a + "` on `" + b + "`", "the origin");
+  }
+}
+
+void AddContactValues(const TetModel& model, const TetState& state, const Controls& now, ThreadTeam& team,
+                      std::vector<double>& values) {
+  if (model.contact().empty()) return;
+  const std::vector<Touch> touches = TouchesOf(model, state, now, team);
+  std::vector<ContactSum> sums = SumsOfRigidBodies(PlacementsOf(model, now), touches);
+  const std::vector<ContactSum> of_contacts = SumsOfContacts(model, state.positions, touches);
+  sums.insert(sums.end(), of_contacts.begin(), of_contacts.end());
+  for (const ContactSum& sum : sums) {
+    values.insert(values.end(), sum.force.begin(), sum.force.end());
+    values.insert(values.end(), sum.moment.begin(), sum.moment.end());
+    values.insert(values.end(), {sum.depth, sum.excess});
+  }
+}
+
 }  // namespace
 
 std::vector<SeriesInfo> SeriesOf(const TetModel& model) {
@@ -26,8 +62,8 @@ std::vector<SeriesInfo> SeriesOf(const TetModel& model) {
       {"solver/step", "s", "length of the last time step"},
       {"solver/iterations", "1", "iterations of linear solves, or of Newton's method, since the previous frame"},
   };
-  if (!model.scene().floors.empty()) {
-    series.push_back({"energy/contact", "J", "energy stored in contacts with floors"});
+  if (!model.scene().floors.empty() || !model.contact().empty()) {
+    series.push_back({"energy/contact", "J", "energy stored in contacts"});
   }
   for (const Floor& floor : model.scene().floors) {
     for (const char* axis : kAxisNames) {
@@ -49,6 +85,7 @@ std::vector<SeriesInfo> SeriesOf(const TetModel& model) {
 std::vector<SeriesInfo> LaterSeriesOf(const TetModel& model) {
   std::vector<SeriesInfo> series = {{"energy/external_work", "J", "work of loads, gravity and supports so far"}};
   if (IsQuasiStatic(model)) series.push_back({"energy/activation_work", "J", "work of the fibres' activation so far"});
+  AddContactSeries(model, series);
   AddMomentSeries(model.scene(), series);
   AddInnerProbeSeries(model.scene(), series);
   return series;
@@ -58,6 +95,7 @@ std::vector<double> MeasureLaterSeries(const TetModel& model, const TetState& st
                                        const std::vector<Reaction>& reactions, ThreadTeam& team) {
   std::vector<double> values = {state.external_work};
   if (IsQuasiStatic(model)) values.push_back(state.activation_work);
+  AddContactValues(model, state, now, team, values);
   AddMomentValues(model.scene(), reactions, values);
   const ProbeMeasures probes = {
       [&](const Probe& probe) { return DisplacementAt(model, probe, state); },
@@ -76,7 +114,10 @@ std::vector<double> MeasureSeries(const TetModel& model, const TetState& state, 
   std::vector<double> values = {elastic,         KineticEnergy(model, state.velocities, team),
                                 state.load_work, state.dissipated,
                                 state.time_step, static_cast<double>(state.iterations - iterations_before)};
-  if (!model.scene().floors.empty()) values.push_back(FloorEnergy(model, state.positions));
+  if (!model.scene().floors.empty() || !model.contact().empty()) {
+    const double of_rigid_bodies = model.contact().empty() ? 0 : ContactEnergy(TouchesOf(model, state, now, team));
+    values.push_back(FloorEnergy(model, state.positions) + of_rigid_bodies);
+  }
   for (const Vec3& force : FloorForces(model, state.positions)) {
     values.insert(values.end(), force.begin(), force.end());
   }

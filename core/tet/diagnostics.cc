@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/tet/branches.h"
+#include "core/tet/contact.h"
 #include "core/tet/floor_contact.h"
 #include "core/tet/points.h"
 
@@ -40,6 +41,7 @@ struct NodalForces {
     ExternalForce(model, controls, team, external);
     AddPositionLoads(model, controls.load_scales, state.positions, external);
     AddFloorForce(model, state.positions, external);
+    if (!model.contact().empty()) AddContactForce(TouchesOf(model, state, controls, team), external);
   }
 };
 

@@ -23,6 +23,8 @@ constexpr int kMostExpansions = 30;
 // by this factor from the first.
 constexpr int kMostCorrections = 12;
 constexpr double kFirstTolerance = 1e-4, kToleranceFactor = 1e-2;
+// Where contacts are deeper than this part of what is allowed, all become firmer by a factor, up to the last one.
+constexpr double kDeep = 0.9, kFirmer = 4, kFirmest = 256;
 // A correction agrees with the positions if it changes by less than this part of the forces.
 constexpr double kAgreement = 1e-6;
 
@@ -204,8 +206,25 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
     solve.options.before = &now.previous_positions;
     solve.options.ahead = dt / now.time_step;
   }
-  const NewtonResult result =
-      is_alpha ? SolveCorrected(solve, now, step, 1 - alpha.force_weight, next) : SolvePositions(solve, next);
+  if (HasContact()) {
+    contact_drive_ = {
+        PlacementsOf(model_, step.next), next.contact_firmness, &now.positions, potential_.floor_start, {}};
+    if (is_alpha) contact_drive_.at_start = PlacementsOf(model_, step.now);
+    potential_.contact = &contact_drive_;
+  }
+  const auto solve_once = [&] {
+    return is_alpha ? SolveCorrected(solve, now, step, 1 - alpha.force_weight, next) : SolvePositions(solve, next);
+  };
+  NewtonResult result = solve_once();
+  while (result.end == NewtonResult::End::kConverged && MakeFirmer(step.next, next)) {
+    contact_drive_.firmness = next.contact_firmness;
+    solve.options.guess = solve.options.before = nullptr;
+    if (is_alpha) held_load_ = external_next_;
+    for (std::size_t n = 0; is_alpha && n < model_.nodes(); ++n) held_load_[n] += scheme.kept[n];
+    const NewtonResult again = solve_once();
+    AddTo(result, again);
+  }
+  potential_.contact = nullptr;
 
   StepReport report;
   report.iterations = result.iterations;
@@ -233,11 +252,15 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
     }
     PrescribeVelocities(model_, step.next, next.velocities);
   }
-  if (is_alpha && !model_.scene().floors.empty()) {
-    // The next step begins with the floors' own force, in place of that which made the mean exact.
+  if (is_alpha && (!model_.scene().floors.empty() || HasContact())) {
+    // The next step begins with the contacts' own force, in place of that which made the mean exact.
     NodalVector own(model_.nodes(), Vec3::Zero()), mean(model_.nodes(), Vec3::Zero());
     AddFloorForce(model_, next.positions, own);
     AddFloorForce(model_, next.positions, mean, &now.positions);
+    if (HasContact()) {
+      AddContactForce(contact_.Find(contact_drive_, next.positions, team_), mean);
+      AddContactForce(TouchesAt(next, step.next), own);
+    }
     for (std::size_t n = 0; n < model_.nodes(); ++n) {
       const Vec3 free = model_.mass()[n] * model_.inverse_mass()[n];
       next.force[n] += free.cwiseProduct(own[n] - mean[n]);
@@ -252,6 +275,13 @@ StepReport TetSolver::StepImplicit(const TetState& now, const StepControls& step
   next.smallest_ratio = SmallestRatio(next.positions);
   next.peak_kinetic = now.peak_kinetic;
   return report;
+}
+
+bool TetSolver::MakeFirmer(const Controls& controls, TetState& made) {
+  if (!HasContact() || made.contact_firmness >= kFirmest) return false;
+  if (!(LargestExcess(TouchesAt(made, controls)) > kDeep)) return false;
+  made.contact_firmness *= kFirmer;
+  return true;
 }
 
 // Solves for the positions at the end of a step whose forces are corrected so that they do the work that the energy

@@ -14,6 +14,7 @@
 #include "core/linalg/nodal_vector.h"
 #include "core/scene/nodal_forces.h"
 #include "core/scene/scene.h"
+#include "core/tet/contact_model.h"
 #include "core/tet/element.h"
 #include "core/tet/element_blocks.h"
 #include "core/tet/position_loads.h"
@@ -223,6 +224,8 @@ class TetModel {
   // of the surface and h = mass / (density A). So contact does not reduce the stable step below that of the elements,
   // and the penetration depth decreases with the element size.
   const std::vector<ContactNode>& contact_nodes() const { return contact_nodes_; }
+  // What may touch rigid bodies; empty without any.
+  const ContactModel& contact() const { return contact_; }
   bool has_gravity() const { return scene_->gravity.acceleration != Vec3::Zero(); }
   bool has_damping() const { return has_mass_damping_ || has_strain_damping_; }
   bool has_mass_damping() const { return has_mass_damping_; }
@@ -262,6 +265,7 @@ class TetModel {
   PositionLoads position_loads_;
   std::vector<Support> supports_;
   std::vector<ContactNode> contact_nodes_;
+  ContactModel contact_;
   bool has_mass_damping_ = false;
   bool has_strain_damping_ = false;
   bool depends_on_rate_ = false;

@@ -88,6 +88,7 @@ void TetModelBuilder::Build() {
     AddSupports(static_cast<std::int32_t>(b));
     if (!scene_.floors.empty()) AddContactNodes(model_.bodies_[b]);
   }
+  AddContact();
   SetNodeUses();
   if (model_.order() == ElementOrder::kLinear) SetSmoothing();
   SetChunks();

@@ -17,7 +17,7 @@ namespace fascicle {
 //
 // Bodies, nodes, elements, laws and patches are in model_builder.cc, the chunks and blocks of the elements in
 // model_chunks.cc, what acts on regions (loads, supports, contact with floors) in model_regions.cc, the nodes and faces
-// of quadratic hexahedra in model_hexahedra.cc.
+// of quadratic hexahedra in model_hexahedra.cc, the points of surfaces in model_contact.cc.
 class TetModelBuilder {
  public:
   TetModelBuilder(const Scene& scene, TetModel& model, std::stop_token stop)
@@ -73,6 +73,11 @@ class TetModelBuilder {
   void AddSupports(std::int32_t body_index);
   std::map<std::int32_t, double> SurfaceAreas(const TetBody& body) const;
   void AddContactNodes(const TetBody& body);
+  std::vector<PressureFace> BoundaryFaces(const TetBody& body) const;
+  bool IsHeld(const SurfacePoint& point) const;
+  void AddSurfacePoints(const TetBody& body);
+  TouchingSurface SurfaceOfBody(std::int32_t index);
+  void AddContact();
 
   // The mid-edge node between nodes i and j of a quadratic element.
   std::int32_t MiddleOf(std::int32_t i, std::int32_t j) const;

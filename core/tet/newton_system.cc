@@ -103,12 +103,14 @@ std::vector<double> ForceRounding(const TetModel& model) {
 NewtonSystem::NewtonSystem(const TetModel& model, Profile* profile, const std::stop_token& stop)
     : model_(model),
       profile_(profile),
-      assembly_(model, stop),
+      stop_(stop),
       force_floor_(ForceFloor(model)),
       force_rounding_(ForceRounding(model)),
-      energy_rounding_(EnergyRounding(model)) {
+      energy_rounding_(EnergyRounding(model)),
+      contact_(model) {
+  assembly_.emplace(model, couplings_, stop);
   unknowns_ = model.patches().size();
-  for (const auto& free : assembly_.matrix().free) unknowns_ += std::count(free.begin(), free.end(), true);
+  for (const auto& free : assembly_->matrix().free) unknowns_ += std::count(free.begin(), free.end(), true);
   const LinearSolver choice = model.scene().tet.linear_solver;
   prefers_iterative_ =
       choice == LinearSolver::kIterative || (choice == LinearSolver::kAutomatic && unknowns_ > kMostDirectUnknowns);
@@ -121,9 +123,19 @@ bool NewtonSystem::SolveDirectly() {
   return true;
 }
 
-void NewtonSystem::StartStep() {
+void NewtonSystem::StartStep(const NodalVector& x, ThreadTeam& team) {
   is_iterative_ = prefers_iterative_;
   solves_ = {};
+  if (!model_.contact().passes.empty()) {
+    std::vector<std::vector<std::int32_t>> couplings = contact_.Couplings(x, team);
+    if (couplings != couplings_) {
+      const StageTimer timer(profile_, "matrix pattern");
+      couplings_ = std::move(couplings);
+      direct_.reset();
+      iterative_.reset();
+      assembly_.emplace(model_, couplings_, stop_);
+    }
+  }
   if (iterative_) iterative_->ForgetAggregation();
 }
 
@@ -161,6 +173,11 @@ NewtonSystem::Evaluation NewtonSystem::Evaluate(const IncrementalPotential& pote
     AddFloorForce(model_, x, force, potential.floor_start);
     total.energy += FloorEnergy(model_, x, potential.floor_start);
   }
+  if (potential.contact != nullptr) {
+    const std::vector<Touch>& touches = contact_.Find(*potential.contact, x, team);
+    AddContactForce(touches, force);
+    total.energy += ContactEnergy(touches);
+  }
   total.valid &= elements.finite && std::isfinite(total.energy);
   const double loads = SumOverNodes(team, model_.nodes(), [&](std::size_t n) { return load[n].squaredNorm(); });
   total.force_scale = std::hypot(std::sqrt(elements.squares), force_floor_, std::sqrt(loads));
@@ -179,7 +196,7 @@ bool NewtonSystem::FindStep(const IncrementalPotential& potential, const NodalVe
   if (options.projection != projection_) Project(potential, x, options.projection, prescribed, team);
   dp.resize(model_.patches().size());
   if (!Solve(options.tolerance, team, dx, dp)) return false;
-  const FreeComponents& free = assembly_.matrix().free;
+  const FreeComponents& free = assembly_->matrix().free;
   ForNodes(team, model_.nodes(), [&](std::size_t n) {
     for (int c = 0; c < 3; ++c) dx[n][c] = free[n][c] ? dx[n][c] : prescribed[n][c];
   });
@@ -197,7 +214,7 @@ bool NewtonSystem::FindChordStep(const IncrementalPotential& potential, std::spa
 }
 
 double NewtonSystem::WorkOfPressures(const NodalVector& dx, std::span<const double> dp, ThreadTeam& team) const {
-  const SaddleMatrix& matrix = assembly_.matrix();
+  const SaddleMatrix& matrix = assembly_->matrix();
   return team.Sum(dp.size(), [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t n = begin; n < end; ++n) sum += dp[n] * matrix.VolumeOf(n, dx);
@@ -211,10 +228,10 @@ void NewtonSystem::Assemble(const IncrementalPotential& potential, const NodalVe
                             ThreadTeam& team) {
   const StageTimer timer(profile_, "assembly");
   Smooth(potential, pressure);
-  assembly_.Assemble(potential, x, acting_, forces_.ratio, team, forces_);
+  assembly_->Assemble(potential, x, {acting_, forces_.ratio, TouchesOf(potential)}, team, forces_);
   projection_ = 0;
   has_projected_ = direct_is_current_ = iterative_is_current_ = false;
-  SaddleMatrix& matrix = assembly_.matrix();
+  SaddleMatrix& matrix = assembly_->matrix();
   side_.assign(model_.nodes(), Vec3::Zero());
   volume_side_.assign(matrix.patches(), 0.0);
   if (std::any_of(prescribed.begin(), prescribed.end(), [](const Vec3& d) { return d != Vec3::Zero(); })) {
@@ -229,7 +246,7 @@ void NewtonSystem::Assemble(const IncrementalPotential& potential, const NodalVe
 void NewtonSystem::SetSide(const IncrementalPotential& potential, std::span<const double> pressure,
                            const NodalVector& force, ThreadTeam& team) {
   const VolumePatches& patches = model_.patches();
-  const SaddleMatrix& matrix = assembly_.matrix();
+  const SaddleMatrix& matrix = assembly_->matrix();
   ForNodes(team, model_.nodes(), [&](std::size_t n) {
     for (int c = 0; c < 3; ++c) side_[n][c] = matrix.free[n][c] ? force[n][c] - side_[n][c] : 0;
   });
@@ -243,10 +260,10 @@ void NewtonSystem::SetSide(const IncrementalPotential& potential, std::span<cons
 void NewtonSystem::Project(const IncrementalPotential& potential, const NodalVector& x, double projection,
                            const NodalVector& prescribed, ThreadTeam& team) {
   const StageTimer timer(profile_, "projection");
-  SaddleMatrix& matrix = assembly_.matrix();
-  const BlockValues& whole = assembly_.projection();
+  SaddleMatrix& matrix = assembly_->matrix();
+  const BlockValues& whole = assembly_->projection();
   if (!has_projected_) {
-    assembly_.AssembleProjection(potential, x, acting_, team, forces_);
+    assembly_->AssembleProjection(potential, x, {acting_, forces_.ratio, TouchesOf(potential)}, team, forces_);
     Multiply(matrix.pattern, whole, prescribed, team, projected_side_);
     has_projected_ = true;
   }
@@ -269,7 +286,7 @@ void NewtonSystem::Project(const IncrementalPotential& potential, const NodalVec
 }
 
 bool NewtonSystem::Solve(double tolerance, ThreadTeam& team, NodalVector& dx, std::vector<double>& dp) {
-  const SaddleMatrix& matrix = assembly_.matrix();
+  const SaddleMatrix& matrix = assembly_->matrix();
   if (is_iterative_) {
     if (!iterative_) iterative_ = std::make_unique<IterativeSaddleSolver>(model_, matrix);
     if (!iterative_is_current_) {
@@ -293,6 +310,10 @@ bool NewtonSystem::Solve(double tolerance, ThreadTeam& team, NodalVector& dx, st
   direct_is_current_ = true;
   direct_->Solve(side_, volume_side_, dx, dp);
   return true;
+}
+
+std::span<const Touch> NewtonSystem::TouchesOf(const IncrementalPotential& potential) const {
+  return potential.contact == nullptr ? std::span<const Touch>() : std::span<const Touch>(contact_.touches());
 }
 
 // Computes the pressures that act on elements.

@@ -1,7 +1,11 @@
 #ifndef FASCICLE_CORE_TET_NEWTON_SYSTEM_H_
 #define FASCICLE_CORE_TET_NEWTON_SYSTEM_H_
 
+#include <optional>
+#include <stop_token>
+
 #include "core/base/profile.h"
+#include "core/tet/contact.h"
 #include "core/tet/saddle_solvers.h"
 
 namespace fascicle {
@@ -66,7 +70,8 @@ class NewtonSystem {
 
   // Call before the first FindStep of a time step. Discards everything from earlier steps, so that a run resumed from a
   // checkpoint has the same bits.
-  void StartStep();
+  //   x  the positions at its start, near which contacts couple the nodes of different bodies
+  void StartStep(const NodalVector& x, ThreadTeam& team);
 
   // Switches to direct solves for the rest of this time step. False if that is already so, or if the systems are too
   // large.
@@ -80,7 +85,9 @@ class NewtonSystem {
 
   const TetModel& model_;
   Profile* const profile_;
-  SaddleAssembly assembly_;
+  std::stop_token stop_;
+  std::vector<std::vector<std::int32_t>> couplings_;  // of assembly_, beside those of elements
+  std::optional<SaddleAssembly> assembly_;
   // Each is created when it is first needed.
   std::unique_ptr<DirectSaddleSolver> direct_;
   std::unique_ptr<IterativeSaddleSolver> iterative_;
@@ -92,12 +99,15 @@ class NewtonSystem {
   double energy_rounding_ = 0;   // [J]
   std::vector<double> acting_;   // W p for each patch [Pa]
   NodalVector expansion_force_;  // of LoadExpansion [N]
+  ContactSearch contact_;        // at the x of the last Evaluate
   void Assemble(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> pressure,
                 const NodalVector& force, const NodalVector& prescribed, ThreadTeam& team);
   void SetSide(const IncrementalPotential& potential, std::span<const double> pressure, const NodalVector& force,
                ThreadTeam& team);
   void Project(const IncrementalPotential& potential, const NodalVector& x, double projection,
                const NodalVector& prescribed, ThreadTeam& team);
+  // What touches at the x of the last Evaluate.
+  std::span<const Touch> TouchesOf(const IncrementalPotential& potential) const;
   bool Solve(double tolerance, ThreadTeam& team, NodalVector& dx, std::vector<double>& dp);
 
   bool direct_is_current_ = false, iterative_is_current_ = false;  // whether the solvers have taken the matrix

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/tet/face_shapes.h"
 #include "core/tet/model.h"
 
 namespace fascicle {
@@ -15,50 +16,37 @@ struct FacePoint {
   std::array<double, kNodes> N, d1, d2;
 };
 
+template <int kNodes>
+FacePoint<kNodes> PointOf(double weight, const FaceShape<kNodes>& shape) {
+  return {weight, shape.N, shape.d1, shape.d2};
+}
+
 // The centroid, exact for linear faces: their area vector is constant.
 std::array<FacePoint<3>, 1> LinearFacePoints() { return {{{0.5, {1. / 3, 1. / 3, 1. / 3}, {-1, 1, 0}, {-1, 0, 1}}}}; }
 
-FacePoint<6> QuadraticFacePoint(double L1, double L2, double weight) {
-  const double L0 = 1 - L1 - L2;
-  return {weight / 2,
-          {L0 * (2 * L0 - 1), L1 * (2 * L1 - 1), L2 * (2 * L2 - 1), 4 * L0 * L1, 4 * L1 * L2, 4 * L2 * L0},
-          {1 - 4 * L0, 4 * L1 - 1, 0, 4 * (L0 - L1), 4 * L2, -4 * L2},
-          {1 - 4 * L0, 0, 4 * L2 - 1, -4 * L1, 4 * L1, 4 * (L0 - L2)}};
-}
-
 // Six points, exact for polynomials of degree 4 [Dunavant 1985], which N_a (x,1 x x,2) is.
 std::array<FacePoint<6>, 6> QuadraticFacePoints() {
-  constexpr double kA = 0.44594849091596488632, kWeightA = 0.22338158967801146570;
-  constexpr double kB = 0.09157621350977074346, kWeightB = 0.10995174365532186764;
-  return {QuadraticFacePoint(kA, kA, kWeightA),         QuadraticFacePoint(1 - 2 * kA, kA, kWeightA),
-          QuadraticFacePoint(kA, 1 - 2 * kA, kWeightA), QuadraticFacePoint(kB, kB, kWeightB),
-          QuadraticFacePoint(1 - 2 * kB, kB, kWeightB), QuadraticFacePoint(kB, 1 - 2 * kB, kWeightB)};
+  constexpr double kA = 0.44594849091596488632, kWeightA = 0.22338158967801146570 / 2;
+  constexpr double kB = 0.09157621350977074346, kWeightB = 0.10995174365532186764 / 2;
+  return {PointOf(kWeightA, QuadraticFace(kA, kA)),         PointOf(kWeightA, QuadraticFace(1 - 2 * kA, kA)),
+          PointOf(kWeightA, QuadraticFace(kA, 1 - 2 * kA)), PointOf(kWeightB, QuadraticFace(kB, kB)),
+          PointOf(kWeightB, QuadraticFace(1 - 2 * kB, kB)), PointOf(kWeightB, QuadraticFace(kB, 1 - 2 * kB))};
 }
 
 // 2 x 2 Gauss points, exact for N_a (x,1 x x,2) of a bilinear side.
 std::array<FacePoint<4>, 4> BilinearFacePoints() {
   constexpr double kNear = 0.21132486540518711775;  // (1 - 1/sqrt(3)) / 2
-  const auto point = [](double u, double v) -> FacePoint<4> {
-    return {0.25, {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v}, {v - 1, 1 - v, v, -v}, {u - 1, -u, u, 1 - u}};
-  };
+  const auto point = [](double u, double v) { return PointOf(0.25, BilinearFace(u, v)); };
   return {point(kNear, kNear), point(1 - kNear, kNear), point(1 - kNear, 1 - kNear), point(kNear, 1 - kNear)};
 }
 
 // 3 x 3 Gauss points, exact for N_a (x,1 x x,2) of a biquadratic side.
 std::array<FacePoint<9>, 9> BiquadraticFacePoints() {
-  // The step of each node along u and v: corners, edges, middle.
-  constexpr int kSteps[9][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 0}, {2, 1}, {1, 2}, {0, 1}, {1, 1}};
   using Shape = HexahedralQuadraticShape;
   std::array<FacePoint<9>, 9> points;
   for (int q = 0; q < 9; ++q) {
-    const double u = Shape::Place(q, 0), v = Shape::Place(q, 1);
-    points[q].weight = Shape::LineWeight(q % 3) * Shape::LineWeight(q / 3);
-    for (int a = 0; a < 9; ++a) {
-      const auto [i, j] = kSteps[a];
-      points[q].N[a] = QuadraticFactor(i, u) * QuadraticFactor(j, v);
-      points[q].d1[a] = QuadraticFactorSlope(i, u) * QuadraticFactor(j, v);
-      points[q].d2[a] = QuadraticFactor(i, u) * QuadraticFactorSlope(j, v);
-    }
+    points[q] = PointOf(Shape::LineWeight(q % 3) * Shape::LineWeight(q / 3),
+                        BiquadraticFace(Shape::Place(q, 0), Shape::Place(q, 1)));
   }
   return points;
 }

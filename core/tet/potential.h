@@ -3,6 +3,7 @@
 
 #include "core/materials/tensor_algebra.h"
 #include "core/tet/branches.h"
+#include "core/tet/contact.h"
 #include "core/tet/points.h"
 
 namespace fascicle {
@@ -14,7 +15,8 @@ namespace fascicle {
 // The terms are: elastic and active energy of points and patches; inertia and mass damping with a coefficient m and a
 // centre c for each node; the viscous increment W_v = dt (mu' |dE|^2 + lambda'/2 tr(dE)^2) / dt^2, where dE is the
 // change of Green strain during the step and whose derivative is the viscous stress of ViscousStress at the mean rate
-// of the step; the energy of floors W_c (FloorEnergy); loads f, with the second-order term of those that depend on
+// of the step; the energy of floors and rigid bodies W_c (FloorEnergy,
+// ContactEnergy); loads f, with the second-order term of those that depend on
 // positions, 1/2 (x - c) . S (x - c), see LoadExpansion. W includes Maxwell branches (branches.h). Quasi-static steps
 // have neither m nor W_v.
 struct IncrementalPotential {
@@ -26,6 +28,7 @@ struct IncrementalPotential {
   const NodalVector* previous = nullptr;     // positions one step ago, for W_v [m]
   double viscous_rate = 0;                   // 1/dt [1/s]; 0 without W_v
   const NodalVector* floor_start = nullptr;  // of the step, for floors whose work is exact (floor_contact.h); or null
+  const ContactDrive* contact = nullptr;     // null: no rigid bodies
   // Whether UntanglingLaw replaces W, U and W_v.
   bool untangling = false;
 };

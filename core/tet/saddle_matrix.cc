@@ -43,13 +43,15 @@ void SaddleMatrix::IsolatePrescribed(ThreadTeam& team) {
   }
 }
 
-SaddleAssembly::SaddleAssembly(const TetModel& model, const std::stop_token& stop) : model_(model) {
+SaddleAssembly::SaddleAssembly(const TetModel& model, std::span<const std::vector<std::int32_t>> couplings,
+                               const std::stop_token& stop)
+    : model_(model) {
   for (const Vec3& m : model.inverse_mass()) matrix_.free.push_back({m[0] != 0, m[1] != 0, m[2] != 0});
-  model.VisitElement([&]<class Element>(Element) { FindPattern<Element>(stop); });
+  model.VisitElement([&]<class Element>(Element) { FindPattern<Element>(couplings, stop); });
 }
 
 template <class Element>
-void SaddleAssembly::FindPattern(const std::stop_token& stop) {
+void SaddleAssembly::FindPattern(std::span<const std::vector<std::int32_t>> couplings, const std::stop_token& stop) {
   constexpr int kNodes = Element::kNodes;
   const VolumePatches& patches = model_.patches();
   const auto of_element = [&](std::size_t e) {
@@ -57,11 +59,11 @@ void SaddleAssembly::FindPattern(const std::stop_token& stop) {
     return model_.NodesOf<Element>(e);
   };
   const std::vector<LineSpringLoad>& lines = model_.position_loads().line_springs;
-  if (lines.empty()) {
+  if (lines.empty() && couplings.empty()) {
     matrix_.pattern = PatternOfElements(model_.nodes(), model_.elements(), of_element);
   } else {
-    // A line spring couples its nodes as if they were those of one element.
-    std::vector<std::vector<std::int32_t>> coupled;
+    // A line spring or a contact couples its nodes as if they were those of one element.
+    std::vector<std::vector<std::int32_t>> coupled(couplings.begin(), couplings.end());
     for (const LineSpringLoad& line : lines) coupled.push_back(fascicle::NodesOf(line));
     matrix_.pattern = PatternOfElements(model_.nodes(), model_.elements() + coupled.size(), [&](std::size_t e) {
       if (e >= model_.elements()) return coupled[e - model_.elements()];
@@ -137,9 +139,8 @@ void SaddleAssembly::FindSmoothedPattern() {
 }
 
 void SaddleAssembly::Assemble(const IncrementalPotential& potential, const NodalVector& x,
-                              std::span<const double> acting, std::span<const double> ratio, ThreadTeam& team,
-                              ForceWorkspace& workspace) {
-  AssembleStiffness(model_, potential, x, acting, *layout_, team, workspace, matrix_.A);
+                              const PressuresAndTouches& at, ThreadTeam& team, ForceWorkspace& workspace) {
+  AssembleStiffness(model_, potential, x, at.acting, *layout_, team, workspace, matrix_.A);
   model_.VisitElement([&]<class Element>(Element) { AssembleVolumes<Element>(x, team); });
   SmoothVolumes(team);
   const auto diagonal = [&](std::size_t n) -> Mat3& {
@@ -151,6 +152,9 @@ void SaddleAssembly::Assemble(const IncrementalPotential& potential, const Nodal
     ForFloorStiffness(model_, x, potential.floor_start,
                       [&](std::size_t n, const Mat3& stiffness) { diagonal(n) += stiffness; });
   }
+  ForContactStiffness(at.touches, false, [&](std::int32_t row, std::int32_t column, const Mat3& block) {
+    if (const std::int32_t place = matrix_.pattern.Find(row, column); place >= 0) matrix_.A[place] += block;
+  });
   if (potential.expansion != nullptr) {
     for (const auto& [row, column, block] : potential.expansion->stiffness) {
       matrix_.A[matrix_.pattern.PlaceOf(row, column)] += block;
@@ -164,15 +168,18 @@ void SaddleAssembly::Assemble(const IncrementalPotential& potential, const Nodal
   const VolumePatches& patches = model_.patches();
   for (std::size_t n = 0; n < patches.size(); ++n) {
     matrix_.C[n] =
-        potential.untangling ? 1 : patches.rest_volume[n] / PatchEnergy{patches.modulus[n]}.ConvexSlope(ratio[n]);
+        potential.untangling ? 1 : patches.rest_volume[n] / PatchEnergy{patches.modulus[n]}.ConvexSlope(at.ratio[n]);
   }
   if (potential.untangling) std::fill(matrix_.B.begin(), matrix_.B.end(), Vec3::Zero());
 }
 
 void SaddleAssembly::AssembleProjection(const IncrementalPotential& potential, const NodalVector& x,
-                                        std::span<const double> acting, ThreadTeam& team, ForceWorkspace& workspace) {
+                                        const PressuresAndTouches& at, ThreadTeam& team, ForceWorkspace& workspace) {
   projection_.resize(matrix_.pattern.blocks());
-  fascicle::AssembleProjection(model_, potential, x, acting, *layout_, team, workspace, projection_);
+  fascicle::AssembleProjection(model_, potential, x, at.acting, *layout_, team, workspace, projection_);
+  ForContactStiffness(at.touches, true, [&](std::int32_t row, std::int32_t column, const Mat3& block) {
+    if (const std::int32_t place = matrix_.pattern.Find(row, column); place >= 0) projection_[place] -= block;
+  });
 }
 
 // B before smoothing, row by row.

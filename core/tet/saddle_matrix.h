@@ -47,19 +47,29 @@ struct SaddleMatrix {
   void IsolatePrescribed(ThreadTeam& team);
 };
 
+// What a matrix depends on beside the positions.
+struct PressuresAndTouches {
+  std::span<const double> acting;  // W p of the patches [Pa]
+  std::span<const double> ratio;   // theta of the patches
+  std::span<const Touch> touches;  // at the positions
+};
+
 // Assembles SaddleMatrix from the element matrices (element_matrices.h). Blocks and rows are added up in the order of
 // the elements, so the bits do not depend on the number of threads. Not thread-safe.
 class SaddleAssembly {
  public:
   // Finds the sparsity pattern. The model must outlive the assembly.
-  explicit SaddleAssembly(const TetModel& model, const std::stop_token& stop = {});
+  //   couplings  lists of nodes that are coupled beside those of each element
+  explicit SaddleAssembly(const TetModel& model, std::span<const std::vector<std::int32_t>> couplings = {},
+                          const std::stop_token& stop = {});
 
-  // Assembles at positions x with acting pressures W p [Pa] and volume ratios theta of the patches. Exact tangents.
-  void Assemble(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> acting,
-                std::span<const double> ratio, ThreadTeam& team, ForceWorkspace& workspace);
+  // Assembles at positions x. Exact tangents.
+  void Assemble(const IncrementalPotential& potential, const NodalVector& x, const PressuresAndTouches& at,
+                ThreadTeam& team, ForceWorkspace& workspace);
 
-  // The change of A when the tangent of every point is replaced by the nearest positive semidefinite one.
-  void AssembleProjection(const IncrementalPotential& potential, const NodalVector& x, std::span<const double> acting,
+  // The change of A when the tangent of every point is replaced by the nearest positive semidefinite one, and the
+  // stiffness of contacts by that without curvature.
+  void AssembleProjection(const IncrementalPotential& potential, const NodalVector& x, const PressuresAndTouches& at,
                           ThreadTeam& team, ForceWorkspace& workspace);
   const BlockValues& projection() const { return projection_; }
 
@@ -68,7 +78,7 @@ class SaddleAssembly {
 
  private:
   template <class Element>
-  void FindPattern(const std::stop_token& stop);
+  void FindPattern(std::span<const std::vector<std::int32_t>> couplings, const std::stop_token& stop);
   void FindSmoothedPattern();
   template <class Element>
   void AssembleVolumes(const NodalVector& x, ThreadTeam& team);

@@ -42,7 +42,7 @@ double SumOfModuli(const Material& material) {
 }  // namespace
 
 TetSolver::TetSolver(const TetModel& model, ThreadTeam& team, Profile* profile)
-    : model_(model), team_(team), profile_(profile), method_(model.scene().tet) {
+    : model_(model), team_(team), profile_(profile), method_(model.scene().tet), contact_(model) {
   if (!IsImplicit()) return;
   const StageTimer timer(profile_, "matrix pattern");
   newton_ = std::make_unique<NewtonSolver>(model, team, profile);
@@ -54,6 +54,7 @@ TetState TetSolver::InitialState(const Controls& start) {
   TetState state;
   state.positions = model_.InitialPositions();
   state.velocities = model_.InitialVelocities();
+  state.contact_firmness = HasContact() ? 1 : 0;
   if (IsImplicit()) {
     state.accelerations.assign(model_.nodes(), Vec3::Zero());
     state.previous_velocities = state.velocities;
@@ -73,7 +74,7 @@ void TetSolver::CompleteState(const Controls& start, TetState& state) {
   PrescribeVelocities(model_, start, state.velocities);
   const ForceReport forces =
       UpdateForce(method_.stepping == Stepping::kExplicit && model_.has_strain_damping() ? &state.velocities : nullptr,
-                  FibreDrive{start.activations}, state);
+                  FibreDrive{start.activations}, start, state);
   if (method_.stepping == Stepping::kNewmark && forces.valid) SetFirstAcceleration(start, state);
   state.stable.activation.assign(start.activations.size(), 0.0);
   if (HasBranches()) state.branches = RelaxedBranches(model_, state.positions, team_, forces_);
@@ -202,7 +203,8 @@ void TetSolver::RefreshStableStep(TetState& state, const Controls& now) {
 
 // A fixed step that is not stable is halved until it is.
 double TetSolver::TargetStep(const TetState& state) const {
-  const double limit = state.stable.limit;
+  const double limit =
+      state.contact_excess > 0 ? HardenedStep(state.contact_excess) * state.stable.limit : state.stable.limit;
   double step = method_.safety * limit;
   if (method_.time_step && !std::isnan(limit)) {
     step = *method_.time_step;

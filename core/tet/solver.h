@@ -116,7 +116,8 @@ class TetSolver {
   void Drift(const TetState& now, const StepControls& step, TetState& next);
   CgResult SolveDamping(const NodalVector& x, const NodalVector& internal, const NodalVector& external,
                         double half_step, TetState& next);
-  ForceReport UpdateForce(const NodalVector* viscous_velocity, const FibreDrive& drive, TetState& next);
+  ForceReport UpdateForce(const NodalVector* viscous_velocity, const FibreDrive& drive, const Controls& controls,
+                          TetState& next);
   // Computes the quantities that detect an unstable step; next.velocities are those of the half step.
   void MeasureMotion(const TetState& now, const TetState& next, StepReport& report) const;
 
@@ -128,6 +129,14 @@ class TetSolver {
   // The activations and, if there are any, the branches at a state.
   FibreDrive StateDrive(const TetState& state, std::span<const double> activations);
   NodalVector ElasticAndFloorForce(const FibreDrive& drive, const NodalVector& x);
+  bool HasContact() const { return !model_.contact().empty(); }
+  // What touches rigid bodies at a state, under the controls of its time.
+  const std::vector<Touch>& TouchesAt(const TetState& state, const Controls& controls);
+  // The same with contact.
+  NodalVector InternalForce(const FibreDrive& drive, const TetState& state, const Controls& controls);
+  double WorkOfRigidBodies(const TetState& now, const StepControls& step, const TetState& next);
+  // Whether contacts are deeper than they may be; their firmness in `made` is then larger.
+  bool MakeFirmer(const Controls& controls, TetState& made);
   double ElasticEnergyAt(const FibreDrive& drive, const NodalVector& x);
 
   bool IsStableStepDue(const TetState& state, const Controls& now) const;
@@ -154,6 +163,8 @@ class TetSolver {
   std::unique_ptr<NewtonSolver> newton_;                 // for implicit steppings
   std::unique_ptr<EnergyCorrection> energy_correction_;  // for kNewmark
   IncrementalPotential potential_;
+  ContactSearch contact_;
+  ContactDrive contact_drive_;  // of potential_
   TetState next_;
 };
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/tet/chunk_tasks.h"
-#include "core/tet/floor_contact.h"
+#include "core/tet/contact.h"
 
 namespace fascicle {
 namespace {
@@ -51,6 +51,7 @@ void TetStiffness::Apply(const TetModel& model, const NodalVector& p, ThreadTeam
   });
   AddSlots<3>(sharing, workspace.slot_sums.data(), team, Numbers(product));
   AddFloorStiffness(model, p, product);
+  AddContactBound(model, p, product);
   AddSpringStiffness(model, p, product);
 }
 

@@ -26,6 +26,7 @@ Controls ControlsPart(const Controls& whole, double part) {
   for (double& activation : controls.activations) activation *= part;
   for (double& scale : controls.load_scales) scale *= part;
   for (RigidMotion& motion : controls.motions) motion = MotionPart(motion, part);
+  for (RigidMotion& motion : controls.rigid_motions) motion = MotionPart(motion, part);
   controls.gravity_scale *= part;
   return controls;
 }
@@ -82,7 +83,16 @@ StepReport TetSolver::SolveStatic(const Controls& controls, TetState& state) {
   PrescribePositions(model_, controls, target);
   next_.positions = state.positions;
   next_.pressures = state.pressures;
-  const NewtonResult result = SolvePositions({target, controls, {}}, next_);
+  next_.contact_firmness = state.contact_firmness;
+  if (HasContact()) {
+    contact_drive_ = {PlacementsOf(model_, controls), state.contact_firmness, &state.positions, nullptr, {}};
+    potential_.contact = &contact_drive_;
+  }
+  NewtonResult result = SolvePositions({target, controls, {}}, next_);
+  while (result.end == NewtonResult::End::kConverged && MakeFirmer(controls, next_)) {
+    contact_drive_.firmness = next_.contact_firmness;
+    result = SolvePositions({target, controls, {}}, next_);
+  }
   StepReport report;
   report.iterations = result.iterations;
   report.problem = ProblemOfStart(result);
@@ -93,6 +103,7 @@ StepReport TetSolver::SolveStatic(const Controls& controls, TetState& state) {
   if (report.problem == StepProblem::kNone) {
     std::swap(state.positions, next_.positions);
     std::swap(state.pressures, next_.pressures);
+    state.contact_firmness = next_.contact_firmness;
   }
   potential_ = {};
   return report;

@@ -16,6 +16,10 @@ void TetState::Save(ArchiveWriter& archive) const {
   archive.PutDoubles("pressures", pressures);
   if (!branches.empty()) archive.PutDoubles("branches", branches);
   archive.PutDouble("next_step", next_step);
+  if (contact_firmness > 0) {
+    archive.PutDouble("contact_firmness", contact_firmness);
+    archive.PutDouble("contact_excess", contact_excess);
+  }
   archive.PutDouble("smallest_ratio", smallest_ratio);
   archive.PutDouble("peak_kinetic", peak_kinetic);
   archive.PutDouble("time_step", time_step);
@@ -45,6 +49,10 @@ void TetState::Load(ArchiveReader& archive) {
   archive.GetDoubles("pressures", std::span(pressures));
   if (!branches.empty()) archive.GetDoubles("branches", std::span(branches));
   next_step = archive.GetDouble("next_step");
+  if (contact_firmness > 0) {
+    contact_firmness = archive.GetDouble("contact_firmness");
+    contact_excess = archive.GetDouble("contact_excess");
+  }
   smallest_ratio = archive.GetDouble("smallest_ratio");
   peak_kinetic = archive.GetDouble("peak_kinetic");
   time_step = archive.GetDouble("time_step");

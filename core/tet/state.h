@@ -24,8 +24,8 @@ struct TetState {
   std::int64_t step = 0;
   NodalVector positions;   // x [m]
   NodalVector velocities;  // v [m/s]
-  // Force at `positions` [N]: elastic forces and floors; with explicit stepping also the viscous force of the previous
-  // half step. Of kNewmark: all forces on free components, loads and damping included.
+  // Force at `positions` [N]: elastic forces, floors and rigid bodies; with explicit stepping also the viscous force of
+  // the previous half step. Of kNewmark: all forces on free components, loads and damping included.
   NodalVector force;
   // For implicit and quasi-static steps: accelerations [m/s^2] (kNewmark), positions and velocities one step ago
   // (kBdf2), the pressure of each patch [Pa], and the length of the next step to try [s], 0 for the whole interval.
@@ -33,6 +33,8 @@ struct TetState {
   std::vector<double> pressures;
   double next_step = 0;
   std::vector<double> branches;  // of viscoelastic materials: see branches.h; empty without
+  double contact_firmness = 0;   // factor on the stiffness of contacts with rigid bodies; 0 without any
+  double contact_excess = 0;     // of explicit steps: largest depth relative to the allowed one
   double smallest_ratio = 1;     // least J of all elements, at most 1
   double peak_kinetic = 0;       // largest kinetic energy of the free components at any half step so far [J]
   double time_step = 0;          // of the last step [s]

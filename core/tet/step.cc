@@ -22,6 +22,7 @@ StepReport TetSolver::Attempt(const TetState& now, const Controls& controls_now,
   made.time_step = dt;
   made.dissipated = now.dissipated;
   made.iterations = now.iterations;
+  made.contact_firmness = now.contact_firmness;
   UpdateExternalForces(now, step);
   if (HasBranches()) SetStepDrive(model_, now.branches, dt, team_, step_branches_);
   const StepReport report = IsImplicit()                              ? StepImplicit(now, step, made)
@@ -68,7 +69,7 @@ StepReport TetSolver::StepExplicit(const TetState& now, const StepControls& step
   CompleteExternalForces(step, next.positions);
   // f' = f(x', v_half)
   const ForceReport forces =
-      UpdateForce(model_.has_strain_damping() ? &next.velocities : nullptr, DriveOf(now, step), next);
+      UpdateForce(model_.has_strain_damping() ? &next.velocities : nullptr, DriveOf(now, step), step.next, next);
   MeasureMotion(now, next, report);
   next.dissipated += dt * forces.dissipated_power;
   if (model_.has_mass_damping()) {
@@ -99,7 +100,7 @@ StepReport TetSolver::StepMixed(const TetState& now, const StepControls& step, T
   Drift(now, step, next);
   CompleteExternalForces(step, next.positions);
   // f' = f(x')
-  const ForceReport forces = UpdateForce(nullptr, DriveOf(now, step), next);
+  const ForceReport forces = UpdateForce(nullptr, DriveOf(now, step), step.next, next);
   MeasureMotion(now, next, report);
   report.problem = ProblemOf(forces, first);
   report.iterations = first.iterations;
@@ -137,15 +138,26 @@ FibreDrive TetSolver::DriveOf(const TetState& now, const StepControls& step) con
   return drive;
 }
 
-ForceReport TetSolver::UpdateForce(const NodalVector* viscous_velocity, const FibreDrive& drive, TetState& next) {
+ForceReport TetSolver::UpdateForce(const NodalVector* viscous_velocity, const FibreDrive& drive,
+                                   const Controls& controls, TetState& next) {
   const StageTimer timer(profile_, "elastic force");
   const ForceReport report =
       viscous_velocity == nullptr
           ? ElasticForce(model_, drive, next.positions, team_, forces_, next.force)
           : ElasticAndViscousForce(model_, drive, next.positions, *viscous_velocity, team_, forces_, next.force);
   AddFloorForce(model_, next.positions, next.force);
+  if (HasContact()) {
+    const StageTimer contact_timer(profile_, "contact");
+    AddContactForce(TouchesAt(next, controls), next.force);
+    next.contact_excess = LargestExcess(contact_.touches());
+  }
   next.smallest_ratio = report.smallest_ratio;
   return report;
+}
+
+const std::vector<Touch>& TetSolver::TouchesAt(const TetState& state, const Controls& controls) {
+  return contact_.Find({PlacementsOf(model_, controls), state.contact_firmness, nullptr, nullptr, {}}, state.positions,
+                       team_);
 }
 
 // Solves (M + dt/2 a M - dt/2 D) v = M v0 + dt/2 f for v, with v0 = next.velocities, in which prescribed components

@@ -71,6 +71,7 @@ void TetSolver::AddWork(const TetState& now, const StepControls& step, TetState&
     return;
   }
   next.external_work += of_loads;
+  if (HasContact()) next.external_work += WorkOfRigidBodies(now, step, next);
   if (SupportsMove(model_, now.positions, next.positions)) next.external_work += DynamicWorkOfSupports(now, step, next);
 }
 
@@ -79,8 +80,8 @@ void TetSolver::AddWork(const TetState& now, const StepControls& step, TetState&
 double TetSolver::DynamicWorkOfSupports(const TetState& now, const StepControls& step, const TetState& next) {
   const NodalVector *from = &now.force, *to = &next.force;
   if (IsImplicit()) {
-    force_before_ = ElasticAndFloorForce(StateDrive(now, step.now.activations), now.positions);
-    force_after_ = ElasticAndFloorForce(DriveOf(now, step), next.positions);
+    force_before_ = InternalForce(StateDrive(now, step.now.activations), now, step.now);
+    force_after_ = InternalForce(DriveOf(now, step), next, step.next);
     from = &force_before_;
     to = &force_after_;
   }
@@ -119,6 +120,22 @@ NodalVector TetSolver::ElasticAndFloorForce(const FibreDrive& drive, const Nodal
   return force;
 }
 
+NodalVector TetSolver::InternalForce(const FibreDrive& drive, const TetState& state, const Controls& controls) {
+  NodalVector force = ElasticAndFloorForce(drive, state.positions);
+  if (HasContact()) AddContactForce(TouchesAt(state, controls), force);
+  return force;
+}
+
+// By the mean of the forces at both ends; of a step whose contact forces are exact, by these.
+double TetSolver::WorkOfRigidBodies(const TetState& now, const StepControls& step, const TetState& next) {
+  const Placements from = PlacementsOf(model_, step.now), to = PlacementsOf(model_, step.next);
+  const double before = fascicle::WorkOfRigidBodies(TouchesAt(now, step.now), from, to, from);
+  const std::vector<Touch>& touches = method_.stepping == Stepping::kNewmark
+                                          ? contact_.Find(contact_drive_, next.positions, team_)
+                                          : TouchesAt(next, step.next);
+  return 0.5 * (before + fascicle::WorkOfRigidBodies(touches, from, to, to));
+}
+
 // Energy is a function of positions and activations, so the work along any path between two equilibria is its change.
 // Along the straight path, which Lobatto's rule integrates, external forces and activation together do that work. Their
 // own parts by the trapezoidal rule differ from it in the third order of the step, because states on the path are not
@@ -145,8 +162,16 @@ void TetSolver::AddStaticWork(const TetState& now, const StepControls& step, dou
     at_end = ElasticAndFloorForce(StateDrive(next, a1), next.positions);
     along_path += next.dissipated - now.dissipated;
   }
+  double by_rigid_bodies = 0;
+  if (HasContact()) {
+    along_path -= ContactEnergy(TouchesAt(now, step.now));
+    AddContactForce(contact_.touches(), at_start);
+    along_path += ContactEnergy(TouchesAt(next, step.next));
+    AddContactForce(contact_.touches(), at_end);
+    by_rigid_bodies = WorkOfRigidBodies(now, step, next);
+  }
   // What external forces do, by the trapezoidal rule.
-  double boundary = of_loads;
+  double boundary = of_loads + by_rigid_bodies;
   ForPrescribed(model_, [&](std::size_t n, int c) {
     const double sum = at_start[n][c] + external_now_[n][c] + at_end[n][c] + external_next_[n][c];
     boundary -= 0.5 * sum * moved[n][c];

@@ -15,7 +15,7 @@ class CoreTangent {
   void Evaluate(const FibreDrive& drive, const NodalVector& x) {
     ElasticForce(model_, drive, x, team_, workspace_, force_);
     potential_.drive = drive;
-    assembly_.Assemble(potential_, x, workspace_.pressure, workspace_.ratio, team_, workspace_);
+    assembly_.Assemble(potential_, x, {workspace_.pressure, workspace_.ratio, {}}, team_, workspace_);
   }
   // Of the last Evaluate: force [N], and the tangent times p.
   const NodalVector& force() const { return force_; }

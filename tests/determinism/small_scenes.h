@@ -1,7 +1,9 @@
 #ifndef FASCICLE_TESTS_DETERMINISM_SMALL_SCENES_H_
 #define FASCICLE_TESTS_DETERMINISM_SMALL_SCENES_H_
 
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/brick_bodies.h"
@@ -42,6 +44,35 @@ inline Scene BusyScene(Stepping stepping, ElementOrder element, int across) {
   scene.output.frame_interval = 0.0008;
   scene.output.fields = {OutputField::kVelocity, OutputField::kCauchyStress, OutputField::kFibreStretch};
   scene.output.probes = {{"bar", 1, 100}};
+  return scene;
+}
+
+// Two blocks that are pressed together, and a bone that moves into one of them.
+inline Scene ContactScene(Stepping stepping, ElementOrder element, int across) {
+  const auto block = [&](const std::string& name, double z, int divisions) {
+    return MakeBody(name,
+                    MakeBox(Vec3(0, 0, z), Vec3(0.02, 0.02, 0.01), {divisions, divisions, divisions}, CellsOf(element)),
+                    NeoHookean(std::array{2e4, 0.4}));
+  };
+  Body low = block("low", 0, across), high = block("high", 0.0100001, across + 1);
+  low.constraints = {Fix(kZ0)};
+  Constraint press = Fix(kZ1);
+  press.motion.translation[2] = Curve{{0, 0.01}, {0, -0.002}};
+  press.motion.translation[0] = Curve{{0, 0.01}, {0, 0.001}};
+  high.constraints = {press};
+  high.damping.mass_proportional = 5;
+  Scene scene;
+  scene.bodies = {low, high};
+  RigidBody bone{"bone", Cylinder{0.003, 0.03}, {Vec3(-0.00301, 0.01, 0.006), {1, 0, 0, 0}}, Motion(), {}, "", 0, {0}};
+  bone.pose.quaternion = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
+  bone.motion->translation[0] = Curve{{0, 0.01}, {0, 0.001}};
+  scene.rigid_bodies = {bone};
+  scene.contacts = {{{0, 1}}};
+  scene.tet.stepping = stepping;
+  scene.tet.element = element;
+  scene.duration = 0.006;
+  scene.output.frame_interval = 0.0008;
+  scene.output.fields = {OutputField::kVelocity, OutputField::kCauchyStress};
   return scene;
 }
 
@@ -139,6 +170,15 @@ inline std::vector<NamedScene> SmallScenes() {
   scenes.push_back(ViscoelasticScene("explicit", Stepping::kExplicit, ElementOrder::kLinear));
   scenes.push_back(ViscoelasticScene("newmark", Stepping::kNewmark, ElementOrder::kLinear));
   scenes.push_back(ViscoelasticScene("quasi_static", Stepping::kQuasiStatic, ElementOrder::kQuadratic));
+  for (const auto& [name, stepping] :
+       {std::pair("explicit", Stepping::kExplicit), std::pair("mixed", Stepping::kMixed),
+        std::pair("backward_euler", Stepping::kBackwardEuler), std::pair("newmark", Stepping::kNewmark),
+        std::pair("bdf2", Stepping::kBdf2), std::pair("quasi_static", Stepping::kQuasiStatic)}) {
+    const bool is_explicit = stepping == Stepping::kExplicit || stepping == Stepping::kMixed;
+    scenes.push_back(
+        {"tet_contact_" + std::string(name), ContactScene(stepping, ElementOrder::kLinear, is_explicit ? 6 : 3)});
+  }
+  scenes.push_back({"tet_contact_quadratic", ContactScene(Stepping::kQuasiStatic, ElementOrder::kQuadratic, 2)});
   const Material linear = LinearElastic(std::array{1e5, 0.3}), corotated = CorotatedLinear(std::array{1e5, 0.3});
   scenes.push_back(ControlledScene("bdf2", Stepping::kBdf2, ElementOrder::kLinear));
   scenes.push_back(VoxelSceneOf("static", VoxelStepping::kStatic, linear));
