@@ -13,6 +13,7 @@
 #include "client/lib/watch.h"
 #include "client/lib/watch_jobs.h"
 #include "client/lib/watch_log.h"
+#include "proto/frames/replayed_input.h"
 
 namespace fascicle::client {
 namespace {
@@ -249,14 +250,7 @@ Result<v1::Job> Client::SubmitAgain(const std::string& name) {
   request.mutable_job()->set_owner(job.value().owner());
   request.set_request_id(RandomRequestId());
   for (v1::SteeringInput& input : *steering.value().mutable_inputs()) {
-    if (input.has_step()) {
-      input.clear_at_time();
-      input.set_at_step(input.step());
-    }
-    input.clear_step();
-    input.clear_applied();
-    input.clear_accept_time();
-    *request.mutable_job()->add_inputs() = std::move(input);
+    *request.mutable_job()->add_inputs() = ReplayedInput(std::move(input));
   }
   return impl_->Create({}, request, {});
 }

@@ -410,6 +410,16 @@ MeshReport CheckMesh(const TetMesh& mesh, Problems& problems, const std::stop_to
   return report;
 }
 
+void CheckMadeMesh(const TetMesh& mesh, Problems& problems, const std::stop_token& stop) {
+  MeshReport report;
+  MeasureBox(mesh, report);
+  CheckCoordinates(mesh, problems);
+  CheckSize(report, problems);
+  CheckCoincidentNodes(mesh, report, stop, problems);
+  CheckVolumes(mesh, stop, problems);
+  CheckHexahedra(mesh, stop, problems);
+}
+
 bool OrientConsistently(TetMesh& mesh) {
   if (mesh.tetrahedra.empty()) return false;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {

@@ -29,6 +29,10 @@ struct MeshReport {
 // Stopped after a stop request.
 MeshReport CheckMesh(const TetMesh& mesh, Problems& problems, const std::stop_token& stop = {});
 
+// The same for a mesh of shapes.h, whose nodes and tetrahedra fit together by construction: only what its measures may
+// make wrong. Several times faster.
+void CheckMadeMesh(const TetMesh& mesh, Problems& problems, const std::stop_token& stop = {});
+
 // Reorients all tetrahedra if every one has a negative volume (a file with the other convention); a mixture is left for
 // CheckMesh to report. Returns whether it did so.
 bool OrientConsistently(TetMesh& mesh);

@@ -292,12 +292,17 @@ struct JobManager::Impl {
     return active.find(id) != active.end() || queue.ThreadsOf(id) > 0;
   }
 
+  bool IsHeld(std::string_view id) {
+    const std::lock_guard lock(mutex);
+    return held.contains(id);
+  }
+
   // Makes a change of a job that is at rest: change(record), where the record is empty if there is no such job. Returns
-  // false as long as the job is active or about to be, or a worker has not left it yet.
+  // false as long as the job is active or about to be, a worker has not left it yet, or its inputs are being stored.
   template <class Change>
   bool WhenInactive(std::string_view id, const Change& change) {
     const std::lock_guard lock(change_mutex);
-    if (IsWithWorker(id)) return false;
+    if (IsWithWorker(id) || IsHeld(id)) return false;
     std::optional<JobRecord> record = store.GetJob(id);
     if (record && !IsAtRest(record->state)) return false;
     change(std::move(record));
@@ -357,21 +362,50 @@ struct JobManager::Impl {
                           std::to_string(most) + ": delete some of them");
   }
 
+  // Keeps a job at rest where it is while its inputs are read or stored, without `change_mutex`.
+  class Hold {
+   public:
+    Hold() = default;
+    ~Hold() {
+      if (impl_ == nullptr) return;
+      const std::lock_guard lock(impl_->mutex);
+      impl_->held.erase(id_);
+    }
+    Hold(const Hold&) = delete;
+    Hold& operator=(const Hold&) = delete;
+
+    // False if another one holds it; needs `change_mutex`.
+    bool Take(Impl& impl, std::string_view id) {
+      const std::lock_guard lock(impl.mutex);
+      if (!impl.held.insert(std::string(id)).second) return false;
+      impl_ = &impl;
+      id_ = id;
+      return true;
+    }
+
+   private:
+    Impl* impl_ = nullptr;
+    std::string id_;
+  };
+
   // Calls use(inputs of the job) and returns its result; nothing if there is no such job. Those of a job that has ended
   // are closed.
   template <class Use>
   auto WithSteering(std::string_view id, const Use& use) -> std::optional<decltype(use(std::declval<JobSteering&>()))> {
     while (true) {
       const std::shared_ptr<ActiveJob> job = FindActive(id);
-      // A job at rest stays so meanwhile.
-      std::unique_lock rest(change_mutex, std::defer_lock);
-      if (job == nullptr) rest.lock();
-      const std::optional<JobRecord> record = store.GetJob(id);
-      if (!record) return std::nullopt;
-      if (job == nullptr && (!IsAtRest(record->state) || IsWithWorker(id))) {
-        rest.unlock();
-        WaitBriefly();
-        continue;
+      Hold hold;
+      std::optional<JobRecord> record;
+      {
+        std::unique_lock rest(change_mutex, std::defer_lock);
+        if (job == nullptr) rest.lock();
+        record = store.GetJob(id);
+        if (!record) return std::nullopt;
+        if (job == nullptr && (!IsAtRest(record->state) || IsWithWorker(id) || !hold.Take(*this, id))) {
+          rest.unlock();
+          WaitBriefly();
+          continue;
+        }
       }
       JobSteering resting;
       JobSteering& steering = job == nullptr ? resting : job->steering();
@@ -411,6 +445,7 @@ struct JobManager::Impl {
   std::map<std::string, int> coming;              // jobs of an owner that are being stored
   std::set<std::string, std::less<>> with_scene;  // those of the queue that have their scene
   std::set<std::shared_ptr<ActiveJob>> running;   // with a worker
+  std::set<std::string, std::less<>> held;        // jobs at rest that stay so; see Hold
   bool is_draining = false;
 
   std::stop_source drain;
@@ -618,7 +653,7 @@ JobManager::RestartResult JobManager::Restart(std::string_view id, bool from_sta
     record->first_frame = 0;
     record->state = JobState::kQueued;
     record->failure.clear();
-    record->warnings.clear();
+    record->warnings = impl_->codec.encode_warnings({}, record->warnings);
     record->end_time_us = 0;
     record->crash_score = 0;
     impl_->Put(*record);

@@ -39,7 +39,8 @@ struct JobCodec {
   std::function<std::string(const Scene&, const FrameLayout&)> encode_geometry;
   std::function<std::string(const Frame&)> encode_frame;
   std::function<std::string(const Failure&)> encode_failure;
-  std::function<std::string(const std::vector<Warning>&)> encode_warnings;  // empty if there are none
+  // Keeps what `earlier` ones tell beside warnings: where the job was imported from. Empty if there is nothing to tell.
+  std::function<std::string(const std::vector<Warning>&, const std::string& earlier)> encode_warnings;
   // The sum of this run and the earlier ones.
   std::function<std::string(const RunProfile&)> encode_profile;
   std::function<std::string(const LogLine&)> encode_line;

@@ -136,11 +136,11 @@ std::string Encode(const JobCodec& codec, const Failure& failure) {
   }
 }
 
-std::string Encode(const JobCodec& codec, const std::vector<Warning>& warnings) {
+std::string Encode(const JobCodec& codec, const std::vector<Warning>& warnings, const std::string& earlier) {
   try {
-    return codec.encode_warnings(warnings);
+    return codec.encode_warnings(warnings, earlier);
   } catch (...) {
-    return {};
+    return earlier;
   }
 }
 
@@ -152,11 +152,24 @@ std::string Encode(const JobCodec& codec, const RunProfile& profile) {
   }
 }
 
+// Warns of inputs that were accepted for a step that the run has not reached.
+void TellUnreached(ActiveJob& job, std::vector<Warning>& warnings) {
+  const std::vector<std::int64_t> inputs = job.steering().Unreached();
+  if (inputs.empty()) return;
+  Warning warning;
+  warning.reason = "INPUT_NOT_REACHED";
+  warning.message = (inputs.size() == 1 ? "input " : std::to_string(inputs.size()) + " inputs, the first of them ") +
+                    std::to_string(inputs.front()) + ", had no effect: the run ended before that step or time";
+  warning.advice = "give an earlier step or time, or a longer duration";
+  warning.time = job.View({}).progress.time;
+  warnings.push_back(std::move(warning));
+}
+
 // The final change of the record.
 ActiveJob::Change EndOf(const JobCodec& codec, const RunProfile& profile, const Outcome& outcome) {
   return [&](JobRecord& record) {
     record.profile = Encode(codec, profile);
-    record.warnings = Encode(codec, outcome.warnings);
+    record.warnings = Encode(codec, outcome.warnings, record.warnings);
     const JobState before = record.state;
     switch (outcome.kind) {
       case Outcome::Kind::kSucceeded:
@@ -211,7 +224,10 @@ void RunJob(const RunContext& context, ActiveJob& job, const std::function<void(
   } catch (const std::exception& error) {
     outcome = Failed("STORAGE", error.what(), "check the free space and the health of the server's disk", job);
   }
-  if (outcome.kind != Outcome::Kind::kCancelled) job.steering().Close();
+  if (outcome.kind != Outcome::Kind::kCancelled) {
+    job.steering().Close();
+    TellUnreached(job, outcome.warnings);
+  }
   End(context, job, profile, outcome);
   notify();
 }

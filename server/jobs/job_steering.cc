@@ -191,4 +191,13 @@ void JobSteering::Close() {
   is_closed_ = true;
 }
 
+std::vector<std::int64_t> JobSteering::Unreached() {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::int64_t> sequences;
+  for (const auto& [place, waiting] : by_step_) sequences.push_back(waiting.record.sequence);
+  for (const auto& [place, waiting] : by_time_) sequences.push_back(waiting.record.sequence);
+  std::sort(sequences.begin(), sequences.end());
+  return sequences;
+}
+
 }  // namespace fascicle::server

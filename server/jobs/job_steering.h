@@ -39,6 +39,8 @@ class JobSteering final : public SteeringSource {
   bool TryClose() override;
   // The run has ended: there are no more inputs.
   void Close();
+  // The sequence numbers of the inputs that no step of the run has taken, in ascending order.
+  std::vector<std::int64_t> Unreached();
 
  private:
   struct Waiting {

@@ -33,6 +33,11 @@ void Executor::Post(Task task) {
   wake_.notify_one();
 }
 
+bool Executor::HasNoneWaiting() {
+  const std::lock_guard lock(mutex_);
+  return ready_.empty();
+}
+
 void Executor::PostAfter(std::chrono::milliseconds delay, Task task) {
   {
     std::lock_guard lock(mutex_);

@@ -29,6 +29,8 @@ class Executor {
   Executor& operator=(const Executor&) = delete;
 
   void Post(Task task);
+  // Whether no task waits for a thread.
+  bool HasNoneWaiting();
   void PostAfter(std::chrono::milliseconds delay, Task task);
 
  private:

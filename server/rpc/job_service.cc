@@ -78,10 +78,12 @@ grpc::ServerUnaryReactor* JobServiceImpl::CreateJob(grpc::CallbackServerContext*
       response->set_threads(request->job().threads());
       return reactor->Finish(status);
     }
-    // Threads that wait for the disk, so that many jobs share a commit.
-    context_.commits.Post([this, reactor, request, response, checked, place] {
+    const auto store = [this, reactor, request, response, checked, place] {
       reactor->Finish(Guarded(context_.log, "CreateJob", [&] { return StoreJob(*request, *checked, *response); }));
-    });
+    };
+    // A single client is spared a change of threads. Of many, other threads wait for the disk, and share a commit.
+    if (context_.slow.HasNoneWaiting()) return store();
+    context_.commits.Post(store);
   });
   return reactor;
 }

@@ -50,8 +50,12 @@ JobCodec MakeJobCodec(ResultCache* results) {
           .encode_frame = [](const Frame& frame) { return Serialize(EncodeFrame(frame)); },
           .encode_failure = [](const Failure& failure) { return Serialize(EncodeFailure(failure)); },
           .encode_warnings =
-              [](const std::vector<Warning>& warnings) {
-                return warnings.empty() ? std::string() : Serialize(EncodeWarnings(warnings));
+              [](const std::vector<Warning>& warnings, const std::string& earlier) {
+                v1::Warnings before, message = EncodeWarnings(warnings);
+                if (before.ParseFromString(earlier) && before.has_imported()) {
+                  *message.mutable_imported() = before.imported();
+                }
+                return Serialize(message);
               },
           .encode_profile = [](const RunProfile& profile) { return Serialize(EncodeProfile(profile)); },
           .encode_line = [](const LogLine& line) { return Serialize(EncodeLine(line)); },

@@ -190,7 +190,11 @@ std::optional<TranslatedTetrahedra> TranslateTetrahedra(const BodySource& source
                                             : TetrahedraOfShape(source, path, problems);
   if (!mesh) return std::nullopt;
   Problems own;
-  CheckMesh(*mesh, own, source.tools.stop);
+  if (source.wire.mesh().has_file()) {
+    CheckMesh(*mesh, own, source.tools.stop);
+  } else {
+    CheckMadeMesh(*mesh, own, source.tools.stop);
+  }
   problems.Append(SourcePath(source.wire.mesh(), source.path), own);
   if (!IsAddressable(*mesh)) return std::nullopt;
   return TranslatedTetrahedra{std::move(*mesh), own.empty(), std::move(remarks.node_places)};

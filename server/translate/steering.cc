@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "proto/frames/replayed_input.h"
 #include "server/translate/values.h"
 
 namespace fascicle::server {
@@ -213,11 +214,8 @@ v1::SteeringInput InputForSpec(const SteeringRecord& record) {
   if (!input.ParseFromString(record.input)) {
     throw std::runtime_error("the stored input " + std::to_string(record.sequence) + " can't be read");
   }
-  if (record.step) {
-    input.clear_at_time();
-    input.set_at_step(*record.step);
-  }
-  return input;
+  if (record.step) input.set_step(*record.step);
+  return ReplayedInput(std::move(input));
 }
 
 std::vector<SteeringRecord> InputsOfSpec(const std::string& spec) {

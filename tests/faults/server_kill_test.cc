@@ -126,7 +126,7 @@ TEST(ServerKillTest, NothingAcknowledgedIsLostOrDoubled) {
     std::atomic<bool> gone = false;
     std::thread submitter([&] { SubmitUntilGone(address, (round + 1) * kJobsPerRound, ledger); });
     std::thread watcher([&] { WatchUntilGone(address, ledger, gone); });
-    std::this_thread::sleep_for(std::chrono::milliseconds(100 + random() % 600));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50 + random() % 400));
     server.Signal(SIGKILL);
     gone = true;
     submitter.join();

@@ -2,9 +2,11 @@
 // the contract (server/rpc/README.md) on the recorded histories, and every frame as the store has it.
 #include <signal.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <random>
@@ -82,37 +84,70 @@ History Follow(const Address& address, const std::string& job, unsigned seed, st
   return history;
 }
 
-// The clauses that a history can break. `stored` are the bytes of the frames.
-void Check(const History& history, const std::vector<std::string>& stored) {
-  ASSERT_FALSE(history.empty());
+// The first clause that a history breaks; empty if none. `stored` are the bytes of the frames.
+std::string BrokenClause(const History& history, const std::vector<std::string>& stored) {
+  if (history.empty()) return "nothing was seen";
   std::int64_t next = 0, generation = 0;
   for (const Seen& seen : history) {
-    EXPECT_EQ(seen.requested, next) << "resumed elsewhere";
+    if (seen.requested != next) return "resumed elsewhere";
     if (seen.record.header) {
-      EXPECT_EQ(seen.record.header->next_index(), seen.requested);
+      if (seen.record.header->next_index() != seen.requested) return "the header tells another index";
       const std::int64_t now = seen.record.header->generation();
-      EXPECT_TRUE(generation == 0 || now == generation) << "what was seen was replaced";
+      if (generation != 0 && now != generation) return "what was seen was replaced";
       generation = now;
     }
     std::int64_t told = seen.requested;
     for (const auto& beat : seen.record.heartbeats) {
-      EXPECT_GE(beat.next_index(), told) << "a heartbeat went back";
+      if (beat.next_index() < told) return "a heartbeat went back";
       told = beat.next_index();
     }
     for (const v1::Frame& frame : seen.record.frames) {
-      ASSERT_EQ(frame.index(), next) << "each once and in order";
-      ASSERT_LT(static_cast<std::size_t>(next), stored.size());
-      ASSERT_TRUE(frame.SerializeAsString() == stored[static_cast<std::size_t>(next)]) << "frame " << next;
+      if (frame.index() != next) return "frames come each once and in order";
+      if (static_cast<std::size_t>(next) >= stored.size()) return "more frames than stored";
+      if (frame.SerializeAsString() != stored[static_cast<std::size_t>(next)]) return "another frame than stored";
       ++next;
     }
-    EXPECT_EQ(seen.record.end.has_value(), seen.record.status.ok());
-    EXPECT_EQ(seen.record.end.has_value(), &seen == &history.back());
-    if (seen.record.end) {
-      EXPECT_EQ(seen.record.end->next_index(), next);
-      EXPECT_EQ(seen.record.end->job().state(), v1::Job::STATE_SUCCEEDED);
-    }
+    if (seen.record.end.has_value() != seen.record.status.ok()) return "an end and another status";
+    if (seen.record.end.has_value() != (&seen == &history.back())) return "an end that is none";
+    if (!seen.record.end) continue;
+    if (seen.record.end->next_index() != next) return "the end tells another index";
+    if (seen.record.end->job().state() != v1::Job::STATE_SUCCEEDED) return "the end tells another state";
   }
-  EXPECT_EQ(static_cast<std::size_t>(next), stored.size());
+  return static_cast<std::size_t>(next) == stored.size() ? "" : "frames are missing at the end";
+}
+
+// Histories with a fault put in are told from the one they were made of.
+void ExpectFaultsSeen(const History& history, const std::vector<std::string>& stored) {
+  const auto with = [&](const std::function<void(History&)>& fault) {
+    History changed = history;
+    fault(changed);
+    return BrokenClause(changed, stored);
+  };
+  // A stream with several frames, and the last.
+  const auto several =
+      std::find_if(history.begin(), history.end(), [](const Seen& s) { return s.record.frames.size() > 2; });
+  ASSERT_NE(several, history.end());
+  const auto at = several - history.begin();
+  const auto frames_of = [at](History& h) -> std::vector<v1::Frame>& {
+    return h[static_cast<std::size_t>(at)].record.frames;
+  };
+  EXPECT_NE(with([&](History& h) { frames_of(h).erase(frames_of(h).begin() + 1); }), "") << "lost";
+  EXPECT_NE(with([&](History& h) { frames_of(h).insert(frames_of(h).begin() + 1, frames_of(h)[0]); }), "")
+      << "repeated";
+  EXPECT_NE(with([&](History& h) { std::swap(frames_of(h)[0], frames_of(h)[1]); }), "") << "out of order";
+  EXPECT_NE(with([&](History& h) { frames_of(h)[1].set_time(frames_of(h)[1].time() + 1e-9); }), "") << "another frame";
+  EXPECT_NE(with([&](History& h) { frames_of(h).pop_back(); }), "") << "lost between two streams";
+  EXPECT_NE(with([](History& h) { h.pop_back(); }), "") << "no end";
+  EXPECT_NE(with([](History& h) { h.insert(h.begin(), h.back()); }), "") << "an end too early";
+  EXPECT_NE(with([](History& h) { h.back().record.end->set_next_index(0); }), "") << "a wrong end";
+  EXPECT_NE(with([](History& h) { h.back().record.header->set_generation(77); }), "") << "replaced";
+  EXPECT_NE(with([](History& h) {
+              auto& beats = h.back().record.heartbeats;
+              beats.resize(beats.size() + 2);
+              beats[beats.size() - 2].set_next_index(1'000'000);
+            }),
+            "")
+      << "a heartbeat that goes back";
 }
 
 TEST(StreamContract, HoldsForEveryHistory) {
@@ -164,9 +199,10 @@ TEST(StreamContract, HoldsForEveryHistory) {
   }
   std::size_t streams = 0;
   for (std::size_t i = 0; i < kClients; ++i) {
-    Check(histories[i], stored[jobs[i % kJobs]]);
+    EXPECT_EQ(BrokenClause(histories[i], stored[jobs[i % kJobs]]), "") << "client " << i;
     streams += histories[i].size();
   }
+  ExpectFaultsSeen(histories[0], stored[jobs[0]]);
   EXPECT_LE(cuts, 0) << "not all disconnects took place";
   std::printf("%d disconnects and %d restarts: %zu streams of %d clients, all as the store has it\n", Disconnects(),
               restarts, streams, kClients);

@@ -97,7 +97,7 @@ client::WatchEvents Into(Received& received) {
 client::ScenePackage PackageOf(const v1::Scene& scene) { return {scene, {}}; }
 
 // Some seconds of work in frames of a few KiB.
-v1::Scene KillScene() { return LargeSteps(2500); }
+v1::Scene KillScene() { return LargeSteps(1000); }
 
 std::vector<std::string> Undisturbed(const v1::Scene& scene) {
   const auto server = server::EmbeddedServer::Start({});
@@ -197,7 +197,7 @@ TEST_F(ProcessTest, AProfileSurvivesAKillAndTheNextRunAddsToIt) {
 }
 
 TEST_F(ProcessTest, DrainsWithOpenStreamsAndTheClientsResume) {
-  const v1::Scene scene = LargeSteps(400);
+  const v1::Scene scene = LargeSteps(200);
   const std::vector<std::string> expected = Undisturbed(scene);
   Start();
   constexpr int kJobs = 4, kWatchers = 20;

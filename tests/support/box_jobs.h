@@ -98,7 +98,7 @@ inline JobCodec BoxCodec() {
   };
   codec.encode_frame = EncodeFrame;
   codec.encode_failure = [](const Failure& failure) { return failure.reason + ": " + failure.message; };
-  codec.encode_warnings = [](const std::vector<Warning>& warnings) {
+  codec.encode_warnings = [](const std::vector<Warning>& warnings, const std::string&) {
     std::string text;
     for (const Warning& warning : warnings) text += warning.reason + ": " + warning.message + "\n";
     return text;

@@ -74,6 +74,17 @@ TEST_F(JobSteeringTest, InputsComeWithTheirStepsInTheOrderOfTheirNumbers) {
   EXPECT_EQ(steering.Apply(Asap(6), false).reason, "JOB_ENDED");
 }
 
+TEST_F(JobSteeringTest, InputsThatNoStepHasTakenAreKnown) {
+  JobSteering steering;
+  Begin(steering, 0);
+  steering.Apply(AtTime(1, 9), false);
+  steering.Apply(Asap(2), false);
+  steering.Apply(AtStep(3, 100), false);
+  steering.Take(1, 0);
+  steering.Close();
+  EXPECT_THAT(steering.Unreached(), ElementsAre(1, 3));
+}
+
 TEST_F(JobSteeringTest, ARestartedRunGetsTheInputsAfterItsCheckpoint) {
   {
     JobSteering steering;

@@ -181,6 +181,8 @@ TEST_F(SteeringServiceTest, AJobMayBringItsInputs) {
   ASSERT_TRUE(stubs_->Create(request, plain).ok());
   *request.mutable_job()->add_inputs() = Input(1, 0.3);
   request.mutable_job()->mutable_inputs(0)->set_at_step(4);
+  *request.mutable_job()->add_inputs() = Input(2, 0.4);
+  request.mutable_job()->mutable_inputs(1)->set_at_step(1'000'000);
   ASSERT_TRUE(stubs_->Create(request, steered).ok());
   for (const v1::Job* job : {&plain, &steered}) {
     ASSERT_TRUE(stubs_->AwaitState(job->name(), v1::Job::STATE_SUCCEEDED));
@@ -190,6 +192,14 @@ TEST_F(SteeringServiceTest, AJobMayBringItsInputs) {
   ASSERT_EQ(with.size(), 11u);
   for (std::size_t k = 0; k < 11; ++k) EXPECT_EQ(without[k].digest() == with[k].digest(), with[k].step() < 4) << k;
   EXPECT_TRUE(List(steered.name()).inputs(0).applied());
+  EXPECT_FALSE(List(steered.name()).inputs(1).applied());
+  const auto warnings_of = [&](const v1::Job& job) {
+    std::string reasons;
+    const v1::Job ended = stubs_->Get(job.name());
+    for (const v1::Warning& warning : ended.warnings()) reasons += warning.reason() + " ";
+    return reasons;
+  };
+  EXPECT_EQ(warnings_of(steered), warnings_of(plain) + "INPUT_NOT_REACHED ");
   request.mutable_job()->mutable_inputs(0)->set_sequence(2);
   EXPECT_EQ(ReasonOf(stubs_->Create(request, plain)), "3 INVALID_ARGUMENT");
 }

@@ -181,6 +181,7 @@ TEST_F(TransferTest, ASteeredJobTakesItsInputsAlong) {
   ASSERT_TRUE(there.stubs->jobs->RestartJob(&context, restart, &again).ok());
   ASSERT_TRUE(there.stubs->AwaitState(job.name(), v1::Job::STATE_SUCCEEDED));
   EXPECT_EQ(there.stubs->Get(job.name()).generation(), imported.generation()) << "a frame was replaced";
+  EXPECT_EQ(there.stubs->Get(job.name()).imported().SerializeAsString(), imported.imported().SerializeAsString());
   const auto original = here.stubs->List(job.name()), computed = there.stubs->List(job.name());
   ASSERT_EQ(computed.size(), original.size());
   for (std::size_t k = 0; k < computed.size(); ++k) EXPECT_EQ(computed[k].digest(), original[k].digest()) << k;
