@@ -294,6 +294,41 @@ TEST_F(ExampleTest, FusiformBipennate) {
   EXPECT_LT(pull, 0.85 * Final(parallel, "muscle/reaction/insertion/z"));
 }
 
+// The force of a body at its insertion, which follows the forearm, and its torque about the elbow.
+void ExpectTorqueIsForceTimesArm(const json& summary, const std::string& body, double tolerance) {
+  const auto final = [&](const std::string& series) { return summary["series"].at(series)["final"].get<double>(); };
+  const auto along = [&](const char* axis) { return final(body + "/reaction/line/" + axis); };
+  const double force = std::hypot(along("x"), along("y"), along("z"));
+  const double torque = force * final("skeleton/" + body + "_line/moment_arm/elbow");
+  EXPECT_NEAR(final("skeleton/elbow/torque/" + body), torque, tolerance * std::abs(torque)) << body;
+}
+
+TEST_F(ExampleTest, UpperArmIsometric) {
+  const json summary = RunExample("upper_arm_isometric");
+  for (const std::string body : {"biceps", "triceps"}) {
+    const double pull = Final(summary, body + "/reaction/origin/y");
+    EXPECT_GT(pull, body == "biceps" ? 50 : 10) << body;
+    for (const char* axis : {"x", "y", "z"}) {
+      EXPECT_NEAR(Final(summary, body + "/reaction/origin/" + axis), -Final(summary, body + "/reaction/line/" + axis),
+                  0.01 * pull);
+    }
+    ExpectTorqueIsForceTimesArm(summary, body, 0.05);
+  }
+  EXPECT_GT(Final(summary, "skeleton/elbow/torque/biceps"), 0);
+  EXPECT_LT(Final(summary, "skeleton/elbow/torque/triceps"), 0);
+}
+
+TEST_F(ExampleTest, UpperArm) {
+  const json summary = RunExample("upper_arm");
+  EXPECT_NEAR(Final(summary, "skeleton/elbow/angle"), 1.5, 1e-12);
+  const double needed = Final(summary, "skeleton/elbow/torque");
+  EXPECT_NEAR(Final(summary, "skeleton/elbow/muscle_torque"), needed, 1e-6 * needed);
+  EXPECT_NEAR(Final(summary, "biceps/activation"), Final(summary, "biceps_line/activation"), 1e-12);
+  ExpectTorqueIsForceTimesArm(summary, "biceps", 0.15);
+  ExpectTorqueIsForceTimesArm(summary, "triceps", 0.15);
+  EXPECT_FALSE(summary.contains("notes")) << summary["notes"];
+}
+
 TEST_F(ExampleTest, FusiformBspline) {
   const json summary = RunExample("fusiform_bspline");
   const double pull = Final(summary, "muscle/reaction/insertion/z");

@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "core/geometry/capsule_surface.h"
-#include "tests/core/sim/same_bits.h"
+#include "core/skeleton/skeleton_mechanics.h"
+#include "same_bits.h"
 #include "tests/support/two_bone_arm.h"
 
 namespace fascicle {

@@ -64,21 +64,25 @@ TEST(SkeletonTranslation, JointsAreSortedAndCoordinatesMoveThem) {
 
 TEST(SkeletonTranslation, BodiesFollowBonesAndMuscles) {
   const auto scene = Merged(R"(
-    skeleton { drive { curves { curves { muscle: "flexor" curve { times: [0, 1] values: [0, 0.7] } } } } }
+    skeleton { drive { curves { curves { muscle: "flexor" curve { times: [0, 1] values: [0, 0.7] } }
+                                curves { muscle: "extensor" curve { times: 0 values: 0.2 } } } } }
     bodies {
       name: "box" unit: LENGTH_UNIT_CM mesh { box { size: [2, 3, 4] divisions: [2, 3, 4] } }
       material { muscle {} } fibres { constant { direction: [0, 0, 1] } }
       regions { name: "bottom" plane { point: [0, 0, 0] normal: [0, 0, -1] } }
       regions { name: "top" plane { point: [0, 0, 4] normal: [0, 0, 1] } }
+      regions { name: "half" plane { point: [0, 0, 2] normal: [0, 0, 1] } }
       constraints { region: "bottom" motion { bone: "humerus" } } constraints { region: "top" motion { bone: "forearm" } }
       activation_muscle: "flexor"
-      region_activations { region: "top" muscle: "extensor" }
+      region_activations { region: "half" muscle: "extensor" }
     })");
   ASSERT_TRUE(scene);
   const Body& box = scene->bodies[0];
   EXPECT_EQ(box.constraints[0].motion.bone, 0);
   EXPECT_EQ(box.constraints[1].motion.bone, 1);
   EXPECT_EQ(box.activation.values, (std::vector<double>{0, 0.7}));
+  ASSERT_EQ(box.tet().activations.more.size(), 1u);
+  EXPECT_EQ(box.tet().activations.more[0].values, std::vector<double>{0.2});
 }
 
 TEST(SkeletonTranslation, MotionsOfFilesAreInRadiansFromTheirStart) {
