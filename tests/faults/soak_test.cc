@@ -1,14 +1,15 @@
 // Everything that clients do, for a long time: memory and files do not grow. FASCICLE_SOAK_SECONDS is the duration, 300
 // by default. A control with clients that leave more and more behind shows that growth would be seen.
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <random>
 #include <thread>
 
-#include "stream_clients.h"
 #include "tests/support/files.h"
 #include "tests/support/server_process.h"
+#include "tests/support/service_fixture.h"
 
 namespace fascicle::service_test {
 namespace {
@@ -165,12 +166,28 @@ TEST_F(SoakTest, NothingGrows) {
 
 TEST_F(SoakTest, GrowthWouldBeSeen) {
   Stubs stubs(address_);
-  const std::string job = stubs.Submit(LargeFrames(4));
-  ASSERT_TRUE(stubs.AwaitState(job, v1::Job::STATE_SUCCEEDED, 60s));
-  std::vector<std::unique_ptr<StreamClients>> left;  // readers that never read on
+  v1::Scene scene = LargeFrames(2);  // with a geometry that the buffers of a connection can't hold
+  for (int i = 0; i < 3; ++i) scene.mutable_bodies(0)->mutable_mesh()->mutable_box()->set_divisions(i, 40);
+  const std::string job = stubs.Submit(scene);
+  ASSERT_TRUE(stubs.AwaitState(job, v1::Job::STATE_SUCCEEDED, 120s));
+  // Readers of the geometry that never read; those of frames would share what waits for them.
+  struct Left {
+    explicit Left(const std::string& address) : stubs(address) {}
+    ~Left() {
+      context.TryCancel();
+      reader->Finish();
+    }
+    Stubs stubs;
+    grpc::ClientContext context;
+    std::unique_ptr<grpc::ClientReader<v1::GetGeometryResponse>> reader;
+  };
+  std::vector<std::unique_ptr<Left>> left;
   std::thread client([&] {
+    v1::GetGeometryRequest request;
+    request.set_name(job);
     while (!stop_) {
-      left.push_back(std::make_unique<StreamClients>(address_, AllFramesOf(job), 1, true));
+      Left& one = *left.emplace_back(std::make_unique<Left>(address_));
+      one.reader = one.stubs.frames->GetGeometry(&one.context, request);
       ++actions_;
       std::this_thread::sleep_for(200ms);
     }

@@ -209,6 +209,66 @@ TEST_F(StreamTest, HeartbeatsTellOfAJobThatWaitsAndOfOneThatIsSlow) {
   EXPECT_GT(beats.back().progress().time_step(), 0);
 }
 
+// Timers that come too late to help.
+class StreamWakeTest : public ServiceTest {
+ protected:
+  server::ServerOptions Options() override {
+    server::ServerOptions options;
+    options.heartbeat_interval = 60s;
+    options.progress_interval = 20s;
+    return options;
+  }
+  StreamRecord ReadSoon(const v1::StreamFramesRequest& request) {
+    const auto start = std::chrono::steady_clock::now();
+    StreamRecord record = ReadStream(*stubs_, request);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, 10s);
+    EXPECT_TRUE(record.end.has_value());
+    return record;
+  }
+};
+
+TEST_F(StreamWakeTest, WhatIsStoredIsSentAtOnce) {
+  EXPECT_EQ(ReadSoon(AllFramesOf(stubs_->Submit(SwingingBox(1, 0.01)))).frames.size(), 101u);
+  v1::StreamFramesRequest latest = AllFramesOf(stubs_->Submit(SwingingBox(1, 0.01)));
+  latest.set_mode(v1::StreamFramesRequest::MODE_LATEST);
+  const StreamRecord record = ReadSoon(latest);
+  ASSERT_FALSE(record.frames.empty());
+  EXPECT_EQ(record.frames.back().index(), 100);
+}
+
+TEST_F(StreamWakeTest, AReaderGetsMoreWhenItHasRoom) {
+  const std::string large = stubs_->Submit(LargeFrames(4)), small = stubs_->Submit(SwingingBox(2, 0.01));
+  for (const std::string& name : {large, small}) {
+    ASSERT_TRUE(stubs_->AwaitState(name, v1::Job::STATE_SUCCEEDED, 60s));
+  }
+  EXPECT_EQ(ReadSoon(AllFramesOf(large)).frames.size(), 4u);
+  EXPECT_EQ(ReadSoon(AllFramesOf(small)).frames.size(), 201u);
+}
+
+class StreamProgressTest : public ServiceTest {
+ protected:
+  server::ServerOptions Options() override {
+    server::ServerOptions options;
+    options.heartbeat_interval = 60s;
+    options.progress_interval = 50ms;
+    return options;
+  }
+};
+
+TEST_F(StreamProgressTest, IsToldBetweenFrames) {
+  v1::Scene slow = SwingingBox(1000, 500);
+  for (int i = 0; i < 3; ++i) slow.mutable_bodies(0)->mutable_mesh()->mutable_box()->set_divisions(i, 8);
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + 20s);
+  const auto reader = stubs_->frames->StreamFrames(&context, AllFramesOf(stubs_->Submit(slow)));
+  v1::StreamFramesResponse message;
+  int beats = 0;
+  while (beats < 6 && reader->Read(&message)) beats += message.has_heartbeat();
+  EXPECT_EQ(beats, 6);
+  context.TryCancel();
+  reader->Finish();
+}
+
 TEST_F(StreamTest, AStreamOfADeletedJobEnds) {
   const std::string name = stubs_->Submit(LongScene());
   ASSERT_TRUE(stubs_->AwaitFrames(name, 1));
