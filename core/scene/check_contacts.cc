@@ -31,20 +31,14 @@ void CheckContact(const Scene& scene, const Contact& contact, const std::string&
     problems.Add(JoinPath(path, "bodies"), "a contact needs at least two bodies",
                  "name another body, or omit the contact");
   }
-  if (scene.method != Method::kTet) return;
-  if (contact.friction > 0) {
-    problems.Add(JoinPath(path, "friction"), "the tet method has no friction between bodies", "omit it");
-  }
-  if (contact.lasting) {
-    problems.Add(JoinPath(path, "lasting"), "the tet method has no lasting contact", "omit it");
-  }
 }
 
 }  // namespace
 
 void CheckContacts(const Scene& scene, Problems& problems) {
-  if (!scene.contacts.empty() && scene.method == Method::kVoxel) {
-    problems.Add("contacts", "the voxel method does not support contacts", "omit them, or use another method");
+  if (!scene.contacts.empty() && scene.method != Method::kEulerian) {
+    problems.Add("contacts", "only the eulerian method supports contacts between bodies",
+                 "omit them, or use the eulerian method");
     return;
   }
   if (scene.contacts.size() > kMostContacts) {
@@ -54,10 +48,7 @@ void CheckContacts(const Scene& scene, Problems& problems) {
     return;
   }
   for (std::size_t k = 0; k < scene.contacts.size(); ++k) {
-    const std::string path = IndexPath("contacts", k);
-    const std::size_t before = problems.count();
-    CheckContact(scene, scene.contacts[k], path, problems);
-    if (problems.count() == before) CheckOverlaps(scene, scene.contacts[k], path, problems);
+    CheckContact(scene, scene.contacts[k], IndexPath("contacts", k), problems);
   }
 }
 

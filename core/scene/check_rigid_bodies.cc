@@ -127,21 +127,6 @@ void CheckRigidBody(const Scene& scene, const RigidBody& rigid, const std::strin
   }
 }
 
-// The deepest node of a body inside of another one's surface.
-void CheckOverlap(const Body& body, const Body& other, const std::string& path, Problems& problems) {
-  const auto *shape = std::get_if<TetShape>(&body.shape), *onto = std::get_if<TetShape>(&other.shape);
-  if (shape == nullptr || onto == nullptr || onto->mesh.tetrahedra.empty()) return;
-  const ObstacleShape surface = TriangleMesh{StartPositions(*onto), BoundaryTriangles(onto->mesh)};
-  const ObstacleDistance distance(surface);
-  const auto [deepest, place] =
-      DeepestOf(StartPositions(*shape), [&](std::size_t, const Vec3& x) { return -distance.At(x).distance; });
-  if (!(deepest > kDeepestStart * std::min(MeanElementSize(*shape), MeanElementSize(*onto)))) return;
-  problems.Add(path,
-               "the body `" + body.name + "` starts " + Text("%.3g m inside of `", deepest) + other.name + "`, at " +
-                   PlaceText(place),
-               "move one of them, or make them smaller there");
-}
-
 }  // namespace
 
 void CheckRigidBodies(const Scene& scene, Problems& problems) {
@@ -154,13 +139,6 @@ void CheckRigidBodies(const Scene& scene, Problems& problems) {
       problems.Add(JoinPath(path, "name"), "`" + rigid.name + "` is the name of another rigid body or floor");
     }
     CheckRigidBody(scene, rigid, path, problems);
-  }
-}
-
-void CheckOverlaps(const Scene& scene, const Contact& contact, const std::string& path, Problems& problems) {
-  for (const TouchingPair& pair : PairsOf({contact}, scene.bodies.size())) {
-    CheckOverlap(scene.bodies[pair.a], scene.bodies[pair.b], path, problems);
-    CheckOverlap(scene.bodies[pair.b], scene.bodies[pair.a], path, problems);
   }
 }
 

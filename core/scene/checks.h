@@ -30,11 +30,8 @@ void CheckSupports(const Scene& scene, Problems& problems);
 void CheckFloors(const Scene& scene, Problems& problems);
 // Rigid bodies have a proper shape, pose and motion, and a name of their own; no body starts deep inside of one.
 void CheckRigidBodies(const Scene& scene, Problems& problems);
-// Contacts are between different bodies that exist and, with the tet method, do not overlap at the start; friction is no
-// less than 0.
+// Contacts are between different bodies that exist, and friction is no less than 0; only the eulerian method has them.
 void CheckContacts(const Scene& scene, Problems& problems);
-// Bodies of tetrahedra or hexahedra that touch by a contact do not overlap at the start.
-void CheckOverlaps(const Scene& scene, const Contact& contact, const std::string& path, Problems& problems);
 // A skeleton: as many shapes, motions and activations as bones, coordinates and muscles; names apart from the floors';
 // constant gravity.
 void CheckSkeleton(const Scene& scene, Problems& problems);

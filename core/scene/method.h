@@ -80,7 +80,8 @@ struct EulerianMethod {
 };
 template <>
 inline constexpr auto kFieldNames<EulerianMethod> = FieldNames("cell_size", "margin", "", "volume", "stabilization",
-                                                               "elastic_force", "time_step", "advection", "grid_motion");
+                                                               "elastic_force", "time_step", "advection",
+                                                               "grid_motion");
 template <>
 inline constexpr auto kFieldNames<Bounds> = FieldNames("lowest", "highest");
 

@@ -12,7 +12,7 @@ namespace fascicle::server {
 namespace {
 
 // Triangles of all rigid bodies together.
-constexpr std::int64_t kMostTriangles = 2'000'000;
+constexpr std::int64_t kMostObstacleTriangles = 2'000'000;
 // Holes of a surface are closed up to this part of its diagonal.
 constexpr double kLargestHole = 0.5;
 
@@ -105,10 +105,10 @@ class RigidBodyReader {
 
   void Close(const std::string& path, TriangleMesh& surface, Problems& problems) {
     triangles_ += static_cast<std::int64_t>(surface.triangles.size());
-    if (triangles_ > kMostTriangles) {
+    if (triangles_ > kMostObstacleTriangles) {
       problems.Add("",
                    std::to_string(triangles_) + " triangles of rigid bodies are too many; at most " +
-                       std::to_string(kMostTriangles),
+                       std::to_string(kMostObstacleTriangles),
                    "use a coarser surface");
       return;
     }

@@ -47,27 +47,21 @@ inline Scene BusyScene(Stepping stepping, ElementOrder element, int across) {
   return scene;
 }
 
-// Two blocks that are pressed together, and a bone that moves into one of them.
+// A block that is pressed and sheared, and a bone that moves into it.
 inline Scene ContactScene(Stepping stepping, ElementOrder element, int across) {
-  const auto block = [&](const std::string& name, double z, int divisions) {
-    return MakeBody(name,
-                    MakeBox(Vec3(0, 0, z), Vec3(0.02, 0.02, 0.01), {divisions, divisions, divisions}, CellsOf(element)),
-                    NeoHookean(std::array{2e4, 0.4}));
-  };
-  Body low = block("low", 0, across), high = block("high", 0.0100001, across + 1);
-  low.constraints = {Fix(kZ0)};
+  Body block =
+      BoxBody(Vec3(0.02, 0.02, 0.01), {across, across, across}, NeoHookean(std::array{2e4, 0.4}), CellsOf(element));
   Constraint press = Fix(kZ1);
-  press.motion.translation[2] = Curve{{0, 0.01}, {0, -0.002}};
+  press.motion.translation[2] = Curve{{0, 0.01}, {0, -0.001}};
   press.motion.translation[0] = Curve{{0, 0.01}, {0, 0.001}};
-  high.constraints = {press};
-  high.damping.mass_proportional = 5;
+  block.constraints = {Fix(kZ0), press};
+  block.damping.mass_proportional = 5;
   Scene scene;
-  scene.bodies = {low, high};
-  RigidBody bone{"bone", Cylinder{0.003, 0.03}, {Vec3(-0.00301, 0.01, 0.006), {1, 0, 0, 0}}, Motion(), {}, "", 0, {0}};
+  scene.bodies = {block};
+  RigidBody bone{"bone", Cylinder{0.003, 0.03}, {Vec3(-0.00301, 0.01, 0.006), {1, 0, 0, 0}}, Motion(), {}, "", 0, {}};
   bone.pose.quaternion = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
-  bone.motion->translation[0] = Curve{{0, 0.01}, {0, 0.001}};
+  bone.motion->translation[0] = Curve{{0, 0.01}, {0, 0.002}};
   scene.rigid_bodies = {bone};
-  scene.contacts = {{{0, 1}}};
   scene.tet.stepping = stepping;
   scene.tet.element = element;
   scene.duration = 0.006;

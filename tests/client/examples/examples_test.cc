@@ -429,20 +429,6 @@ TEST_F(ExampleTest, TorusBounce) {
   EXPECT_NEAR(impulse / touching, weight, 0.3 * weight);
 }
 
-TEST_F(ExampleTest, MuscleOverBone) {
-  const json summary = RunExample("muscle_over_bone", {"--out", folder_ / "out"});
-  for (const std::string contact : {"contact/bone", "contact/muscle/pad"}) {
-    const std::vector<double> depths = SeriesOf(folder_ / "out/series.csv", contact + "/relative_depth");
-    EXPECT_LT(*std::max_element(depths.begin(), depths.end()), 1) << contact;
-  }
-  const double on_bone = Final(summary, "contact/bone/force/y"), on_pad = Final(summary, "contact/muscle/pad/force/y");
-  EXPECT_LT(on_bone, -0.1);
-  EXPECT_GT(on_pad, 0.01);
-  EXPECT_NEAR(Final(summary, "muscle/reaction/origin/y") + Final(summary, "muscle/reaction/insertion/y"),
-              on_bone + on_pad, 1e-4 * std::abs(on_bone));
-  EXPECT_NEAR(Final(summary, "pad/reaction/back/y"), -on_pad, 1e-4 * on_pad);
-}
-
 // Nothing moves before the load ends, from the first frame on.
 TEST_F(ExampleTest, ReleasedBar) {
   RunExample("released_bar", {"--out", folder_ / "out"});
