@@ -30,7 +30,7 @@ void CheckSupports(const Scene& scene, Problems& problems);
 void CheckFloors(const Scene& scene, Problems& problems);
 // Rigid bodies have a proper shape, pose and motion, and a name of their own; no body starts deep inside of one.
 void CheckRigidBodies(const Scene& scene, Problems& problems);
-// Contacts are between different bodies that exist, and friction is no less than 0; only the eulerian method has them.
+// Contacts are between different bodies that exist, which do not rub or stick yet; only the eulerian method has them.
 void CheckContacts(const Scene& scene, Problems& problems);
 // A skeleton: as many shapes, motions and activations as bones, coordinates and muscles; names apart from the floors';
 // constant gravity.

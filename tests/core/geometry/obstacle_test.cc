@@ -31,13 +31,13 @@ TriangleMesh Bracket() {
   return mesh;
 }
 
-std::vector<ObstacleShape> Shapes() {
+std::vector<ObstacleShape> EachShape() {
   return {HalfSpace(), Ball{0.8}, Cuboid{Vec3(1, 2, 0.5)}, Cylinder{0.6, 1.5}, Bracket()};
 }
 
 // The normal is the gradient of the distance, and the curvature that of the normal, inside and outside.
 TEST(ObstacleTest, NormalAndCurvatureAreDerivatives) {
-  const std::vector<ObstacleShape> shapes = Shapes();
+  const std::vector<ObstacleShape> shapes = EachShape();
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1.5, 2.5);
   for (std::size_t k = 0; k < shapes.size(); ++k) {

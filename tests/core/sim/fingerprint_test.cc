@@ -39,6 +39,11 @@ class Change {
     if (IsPlace(path)) value = static_cast<Enum>(static_cast<int>(value) + 1);
   }
 
+  // A kind without any value.
+  template <class Empty>
+  requires std::is_empty_v<Empty>
+  void Visit(Empty&, const std::string&) {}
+
   void Visit(std::string& text, const std::string& path) {
     if (IsPlace(path)) text += "x";
   }

@@ -13,7 +13,7 @@ namespace {
 
 using namespace fascicle::testing;
 
-constexpr double kSize = 0.02;
+constexpr double kCubeSize = 0.02;
 
 RigidBody Rigid(const std::string& name, ObstacleShape shape, const Vec3& position) {
   return {name, std::move(shape), {position, {1, 0, 0, 0}}, {}, {}, "", 0, {}};
@@ -22,7 +22,7 @@ RigidBody Rigid(const std::string& name, ObstacleShape shape, const Vec3& positi
 // A cube of 2 cm at the origin with a side on z = 0.
 Scene CubeScene(Stepping stepping, ElementOrder element, const std::array<int, 3>& divisions = {3, 3, 3}) {
   Scene scene;
-  scene.bodies = {BoxBody(Vec3::Constant(kSize), divisions, NeoHookean(std::array{2e4, 0.3}), CellsOf(element))};
+  scene.bodies = {BoxBody(Vec3::Constant(kCubeSize), divisions, NeoHookean(std::array{2e4, 0.3}), CellsOf(element))};
   scene.tet.stepping = stepping;
   scene.tet.element = element;
   scene.duration = 1;
@@ -107,7 +107,7 @@ TEST(ContactTest, APlateGivesAUniformPressure) {
     Scene scene = CubeScene(Stepping::kQuasiStatic, element);
     scene.bodies[0].constraints = {Fix(kX0, {true, false, false}), Fix(kY0, {false, true, false}),
                                    Fix(kZ0, {false, false, true})};
-    RigidBody plate = Rigid("plate", HalfSpace(), Vec3(0, 0, kSize));
+    RigidBody plate = Rigid("plate", HalfSpace(), Vec3(0, 0, kCubeSize));
     plate.pose.quaternion = {0, 1, 0, 0};  // faces down
     plate.motion = Along(2, Curve{{0, 1}, {0, -0.004}});
     scene.rigid_bodies = {plate};
@@ -122,8 +122,8 @@ TEST(ContactTest, APlateGivesAUniformPressure) {
     EXPECT_GT(force, 1);
     EXPECT_NEAR(force, run.Last("box/reaction/z0/z"), 1e-6 * force);
     // About the corner of the cube, which has grown by 5 to 8 %.
-    EXPECT_NEAR(run.Last("contact/plate/moment/x"), 1.06 * kSize / 2 * force, 0.03 * kSize / 2 * force);
-    EXPECT_NEAR(run.Last("contact/plate/moment/y"), -run.Last("contact/plate/moment/x"), 1e-6 * force * kSize);
+    EXPECT_NEAR(run.Last("contact/plate/moment/x"), 1.06 * kCubeSize / 2 * force, 0.03 * kCubeSize / 2 * force);
+    EXPECT_NEAR(run.Last("contact/plate/moment/y"), -run.Last("contact/plate/moment/x"), 1e-6 * force * kCubeSize);
     const double work = run.Last("energy/external_work");
     EXPECT_NEAR(run.Last("energy/elastic") + run.Last("energy/contact"), work, 1e-3 * work);
     EXPECT_LT(run.Last("contact/plate/relative_depth"), 1);
