@@ -5,9 +5,9 @@ namespace fascicle {
 
 void CheckScene(const Scene& scene, Problems& problems, const std::stop_token& stop) {
   using namespace scene_checks;  // NOLINT(google-build-using-namespace): all of them
-  for (const auto check :
-       {CheckBodies, CheckCurves, CheckMaterials, CheckActivations, CheckInitialState, CheckFibres, CheckConstraints,
-        CheckLoads, CheckFloors, CheckRigidBodies, CheckContacts, CheckSkeleton, CheckTet, CheckVoxel, CheckEulerian, CheckOutput}) {
+  for (const auto check : {CheckBodies, CheckCurves, CheckMaterials, CheckActivations, CheckInitialState, CheckFibres,
+                           CheckConstraints, CheckLoads, CheckFloors, CheckRigidBodies, CheckContacts, CheckSkeleton,
+                           CheckTet, CheckVoxel, CheckEulerian, CheckOutput}) {
     ThrowIfStopped(stop);
     check(scene, problems);
   }

@@ -48,11 +48,11 @@ void RefuseRigidBodies(const Scene& scene, const std::string& method, Problems& 
 // tet: single precision requires explicit or mixed stepping and elastic materials; rigid bodies that move freely,
 // friction.
 void CheckTet(const Scene& scene, Problems& problems);
-// voxel: the two supported laws, viscoelasticity, activation, floors, rigid bodies, damping, and single axes of supports on images
-// that are not aligned with the world.
+// voxel: the two supported laws, viscoelasticity, activation, floors, rigid bodies, damping, and single axes of
+// supports on images that are not aligned with the world.
 void CheckVoxel(const Scene& scene, Problems& problems);
-// eulerian: regions by tag, single axes, rigid bodies, damping, viscoelasticity, laws that depend on the rate; plasticity and
-// plane force fields, also in scenes of other methods.
+// eulerian: regions by tag, single axes, rigid bodies, damping, viscoelasticity, laws that depend on the rate;
+// plasticity and plane force fields, also in scenes of other methods.
 void CheckEulerian(const Scene& scene, Problems& problems);
 
 }  // namespace fascicle::scene_checks

@@ -25,7 +25,8 @@ struct TouchingPair {
   bool lasting = false;
 };
 
-// The pairs that contacts name in a scene of so many bodies, ascending; where several name a pair, the last one applies.
+// The pairs that contacts name in a scene of so many bodies, ascending; where several name a pair, the last one
+// applies.
 std::vector<TouchingPair> PairsOf(const std::vector<Contact>& contacts, std::size_t bodies);
 
 }  // namespace fascicle

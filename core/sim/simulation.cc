@@ -71,7 +71,7 @@ ProblemText TextOf(StepProblem problem, Method method) {
     case StepProblem::kInaccurate:
       return {"STEP_TOO_SMALL",
               "the error of a step exceeds step_error, even with the step reduced to a few "
-              "ten-thousandths",
+              "ten-millionths",
               "use a larger step_error; a load or motion that jumps needs any"};
     case StepProblem::kUnstable:
       return {"STEP_TOO_SMALL", "the motion gains energy, even with the step reduced to a thousandth",

@@ -16,6 +16,8 @@ constexpr int kEasyIterations = 10;
 constexpr double kFarthest = 4;
 // A run fails when it needs steps shorter than this part of its longest step.
 constexpr double kShortestStep = 0x1p-12;
+// The same of runs whose error is controlled: where a load jumps, any step may be needed.
+constexpr double kShortestAccurateStep = 0x1p-24;
 // A step whose loads still depend on its positions after this many expansions is too long.
 constexpr int kMostExpansions = 30;
 
@@ -153,7 +155,7 @@ bool TetSolver::CutImplicit(TetState& state, const StepReport& report, double dt
   // Steps end at frames.
   double longest = std::min(scene.duration, scene.output.frame_interval);
   if (method_.time_step) longest = std::min(longest, *method_.time_step);
-  return !(state.next_step < kShortestStep * longest);
+  return !(state.next_step < (ControlsError() ? kShortestAccurateStep : kShortestStep) * longest);
 }
 
 // The leading error of the step that begins at a state.

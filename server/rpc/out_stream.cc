@@ -65,7 +65,7 @@ void OutStream::RunFill() {
     Fill();
     return grpc::Status::OK;
   });
-  if (!status.ok()) Abort(status);
+  if (!status.ok()) Complete(status);  // after the messages that are ready: what was read before the fault is whole
   {
     std::unique_lock lock(mutex_);
     Pump(lock);

@@ -1,4 +1,4 @@
-// Error and time of every element with every stepping, in motion: bodies let go from a static equilibrium swing, and
+// Error and time of every element with every stepping, in motion: bodies released from a static equilibrium swing, and
 // frequency and amplitude of a point are compared with those of a fine mesh of hexahedra of 27 nodes. One thread,
 // meshes of as many nodes for each element. A tool for development; prints a table.
 #include <algorithm>

@@ -12,8 +12,8 @@ namespace {
 
 using namespace fascicle::testing;
 
-constexpr double kYoung = 1e5, kPoisson = 0.3;
-constexpr double kModulus = kYoung / (1 - kPoisson * kPoisson);  // E* beside a rigid body
+constexpr double kBlockYoung = 1e5, kBlockPoisson = 0.3;
+constexpr double kBlockModulus = kBlockYoung / (1 - kBlockPoisson * kBlockPoisson);  // E* beside a rigid body
 
 // Distances from the middle of the contact: they grow by a constant ratio from `least` to `most`.
 struct Grading {
@@ -38,7 +38,7 @@ Body GradedBlock(const Grading& along, const Grading& across, bool is_plane) {
   for (Vec3& X : mesh.nodes) {
     X = Vec3(along.At(X[0]), is_plane ? along.least * X[1] : across.At(X[1]), -across.At(1 - X[2]));
   }
-  Body body = MakeBody("block", std::move(mesh), LinearElastic(std::array{kYoung, kPoisson}));
+  Body body = MakeBody("block", std::move(mesh), LinearElastic(std::array{kBlockYoung, kBlockPoisson}));
   body.constraints = {Fix(kX0, {true, false, false}), Fix(kY0, {false, true, false}), Fix(kZ0)};
   if (is_plane) body.constraints.push_back(Fix(kY1, {false, true, false}));
   return body;
@@ -80,8 +80,8 @@ TEST(HertzTest, BallOnPlane) {
   SteppedRun run(Indentation(GradedBlock(grading, grading, false), Ball{R}, R, approach), 2);
   ASSERT_TRUE(run.To(1));
   const Indented found = Measure(run, grading.least * grading.least / 4);
-  const double force = 4. / 3 * kModulus * std::sqrt(R) * std::pow(approach, 1.5) / 4;  // on a quarter
-  const double peak = 2 * kModulus * a / (std::numbers::pi * R);
+  const double force = 4. / 3 * kBlockModulus * std::sqrt(R) * std::pow(approach, 1.5) / 4;  // on a quarter
+  const double peak = 2 * kBlockModulus * a / (std::numbers::pi * R);
   std::printf("ball: force %.4f, peak %.4f, reach %.3f of Hertz; depth %.3f of the allowed\n", found.force / force,
               found.peak / peak, found.reach / a, found.relative_depth);
   EXPECT_NEAR(found.force, force, 0.03 * force);
@@ -102,7 +102,7 @@ TEST(HertzTest, CylinderOnPlane) {
   ASSERT_TRUE(run.To(1));
   const Indented found = Measure(run, grading.least * thickness / 4);
   const double per_length = 2 * found.force / thickness;
-  const double width = std::sqrt(4 * per_length * R / (std::numbers::pi * kModulus));
+  const double width = std::sqrt(4 * per_length * R / (std::numbers::pi * kBlockModulus));
   const double peak = 2 * per_length / (std::numbers::pi * width);
   std::printf("cylinder: half width %.3g m, peak %.4f, reach %.3f of Hertz; depth %.3f of the allowed\n", width,
               found.peak / peak, found.reach / width, found.relative_depth);

@@ -8,6 +8,7 @@
 
 #include "tests/support/files.h"
 #include "tests/support/sample_models.h"
+#include "tests/support/sample_osim.h"
 #include "tests/support/volume_files.h"
 
 namespace fascicle::testing {
@@ -253,6 +254,9 @@ void WriteInputs(const std::filesystem::path& folder) {
   write("knee.vtu", kVtkHexahedron);
   for (const char* name : {"model.feb", "biceps.feb"}) write(name, kSmallModel);
   write("knee.feb", kFebioHexahedron);
+  for (const char* name : {"arm.osim", "arm26.osim"}) write(name, kSmallOsim);
+  write("flexion.mot", kSmallMotion);
+  write("upper.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
   write("ankle.feb", FebioWithContact());
   write("test.csv", "stretch,stress [Pa]\n1,0\n1.1,6200\n1.2,11500\n1.4,21000\n1.6,30500\n1.8,41500\n");
   write("rubber.csv", "stretch,stress [Pa]\n1,0\n1.1,27000\n1.3,66000\n1.6,105000\n2,142000\n");

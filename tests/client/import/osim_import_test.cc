@@ -97,7 +97,8 @@ TEST_P(OsimMistakes, AreReportedWithTheirLine) {
   const std::string line = "arm.osim:" + std::to_string(LineOf(text, mistake.at.empty() ? mistake.by : mistake.at));
   bool found = false;
   for (const Problem& problem : problems.kept()) {
-    found |= problem.path.starts_with(line + ":") && problem.message.find(mistake.message) != std::string::npos;
+    found |= (problem.path == line || problem.path.starts_with(line + ":")) &&
+             problem.message.find(mistake.message) != std::string::npos;
   }
   EXPECT_TRUE(found) << "expected `" << mistake.message << "` at " << line << " in\n" << problems.ToString();
 }

@@ -30,7 +30,9 @@ TEST(CurvesTest, AllAreVisitedWithTheirPaths) {
                   "bodies[0].loads[0].scale", "bodies[0].loads[1].scale", "bodies[0].loads[2].scale",
                   "bodies[0].loads[2].stern.angle", "bodies[0].loads[2].stern.activation", "bodies[0].loads[3].scale",
                   "bodies[0].loads[4].scale", "bodies[0].loads[5].scale", "bodies[0].loads[6].scale", "gravity.scale",
-                  "skeleton.drive[0]", "squeezes[0].scale"));
+                  "rigid_bodies[0].motion.translation[0]", "rigid_bodies[0].motion.translation[1]",
+                  "rigid_bodies[0].motion.translation[2]", "rigid_bodies[0].motion.rotation.angle", "skeleton.drive[0]",
+                  "squeezes[0].scale"));
 }
 
 TEST(CurvesTest, EachIsChecked) {
