@@ -238,6 +238,9 @@ Problems WithSecondBlock(double at, const std::string& contacts) {
   v1::Body& second = *scene.add_bodies();
   second = scene.bodies(0);
   second.set_name("second");
+  second.clear_regions();  // they are where the first block is
+  second.clear_constraints();
+  second.clear_loads();
   for (const double x : {at, 0.0, 0.0}) second.mutable_mesh()->mutable_box()->add_origin(x);
   EXPECT_TRUE(google::protobuf::TextFormat::MergeFromString(contacts, &scene)) << contacts;
   return ProblemsOf(scene);
