@@ -238,7 +238,7 @@ Problems WithSecondBlock(double at, const std::string& contacts) {
   v1::Body& second = *scene.add_bodies();
   second = scene.bodies(0);
   second.set_name("second");
-  second.clear_regions();  // they are where the first block is
+  second.clear_regions();  // those are at the first block
   second.clear_constraints();
   second.clear_loads();
   for (const double x : {at, 0.0, 0.0}) second.mutable_mesh()->mutable_box()->add_origin(x);
@@ -252,7 +252,7 @@ TEST(EulerianScene, ContactsNameBodiesThatDoNotOverlap) {
   EXPECT_TRUE(WithSecondBlock(7.8, "contacts {}").empty());  // 0.2 cells deep
   EXPECT_TRUE(WithSecondBlock(5, "").empty());
   EXPECT_THAT(At(WithSecondBlock(5, "contacts {}"), "bodies[1]"),
-              HasSubstr("overlaps with the body `block` by 0.03 m"));
+              HasSubstr("overlaps with the body `block` by 0.0289 m"));
   EXPECT_THAT(At(WithSecondBlock(9, "contacts { bodies: ['block', 'secnd'] }"), "contacts[0].bodies[1]"),
               HasSubstr("secnd"));
   EXPECT_THAT(At(WithSecondBlock(9, "contacts { bodies: ['block', 'block'] }"), "contacts[0].bodies[1]"),
