@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kMostContacts = 100;
 
 void CheckContact(const Scene& scene, const Contact& contact, const std::string& path, Problems& problems) {
-  // The eulerian method has code for both, whose results are not verified.
+  // The eulerian method has code for both, whose results are not verified yet.
   if (contact.friction != 0) {
     problems.Add(JoinPath(path, "friction"), "friction between bodies is not supported yet", "omit it");
   }
