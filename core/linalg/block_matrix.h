@@ -18,11 +18,6 @@ struct BlockPattern {
   std::size_t blocks() const { return column.size(); }
   // Index of block (row, col), which must exist.
   std::int32_t PlaceOf(std::int32_t row, std::int32_t col) const;
-  // The same of a block that may not exist: then -1.
-  std::int32_t Find(std::int32_t row, std::int32_t col) const {
-    const std::int32_t place = PlaceOf(row, col);
-    return place < begin[row + 1] && column[place] == col ? place : -1;
-  }
 };
 
 // The pattern of a matrix that couples all nodes of each element; `nodes_of(e)` is a range of node numbers.

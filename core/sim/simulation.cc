@@ -72,7 +72,7 @@ ProblemText TextOf(StepProblem problem, Method method) {
       return {"STEP_TOO_SMALL",
               "the error of a step exceeds step_error, even with the step reduced to a few "
               "ten-millionths",
-              "use a larger step_error; a load or motion that jumps needs any"};
+              "use a larger step_error, or let loads and motions change gradually: no step across a jump is accurate"};
     case StepProblem::kUnstable:
       return {"STEP_TOO_SMALL", "the motion gains energy, even with the step reduced to a thousandth",
               "omit time_step to use a stable step, or use a smaller safety"};

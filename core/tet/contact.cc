@@ -14,8 +14,6 @@ constexpr std::size_t kPointGrain = 512;
 constexpr double kHardening = 4;
 // Cosines of the angles beyond which a face counts for nothing, and within which it counts completely.
 constexpr double kAside = 0.2, kFacing = 0.5;
-// A node that is deeper in another body than this part of an edge may be beyond the reach of forces; the allowed part.
-constexpr double kDeepPart = 0.3, kAllowedPart = 0.1;
 
 bool Hardens(const TetModel& model) {
   const Stepping stepping = model.scene().tet.stepping;
@@ -43,23 +41,11 @@ Placements PlacementsOf(const TetModel& model, const Controls& controls) {
   return placements;
 }
 
-void Touch::AddNodes(const std::array<std::int32_t, 9>& of, const std::array<double, 9>& with, int number,
-                     double factor) {
-  for (int a = 0; a < number; ++a, ++count) {
-    nodes[count] = of[a];
-    weights[count] = factor * with[a];
-  }
-}
-
-ContactSearch::ContactSearch(const TetModel& model) : model_(model), start_depths_(model.contact().passes.size()) {
-  const ContactModel& contact = model.contact();
-  seen_.resize(contact.rigid.size() * contact.points.size());
-  std::size_t points = contact.points.size();
-  for (const TouchingSurface& surface : contact.surfaces) points = std::max(points, surface.points.size());
-  for (const ContactPass& pass : contact.passes) faces_.emplace_back(model, pass);
-  found_.resize(points);
-  at_points_.resize(points);
-}
+ContactSearch::ContactSearch(const TetModel& model)
+    : model_(model),
+      seen_(model.contact().rigid.size() * model.contact().points.size()),
+      found_(model.contact().points.size()),
+      at_points_(model.contact().points.size()) {}
 
 const std::vector<Touch>& ContactSearch::Find(const ContactDrive& drive, const NodalVector& x, ThreadTeam& team) {
   touches_.clear();
@@ -70,9 +56,6 @@ const std::vector<Touch>& ContactSearch::Find(const ContactDrive& drive, const N
       FindOnRigid(drive, x, static_cast<std::int32_t>(r), contact.point_begin[b], contact.point_begin[b + 1], team);
     }
   }
-  if (contact.passes.empty()) return touches_;
-  if (drive.start != nullptr && start_ != *drive.start) FindStart(*drive.start, team);
-  for (std::size_t p = 0; p < contact.passes.size(); ++p) FindOnBody(drive, x, static_cast<std::int32_t>(p), team);
   return touches_;
 }
 
@@ -114,7 +97,9 @@ Touch ContactSearch::TouchOnRigid(const ContactDrive& drive, const NodalVector& 
   const Placement& placement = drive.now[static_cast<std::size_t>(rigid)];
   Touch touch;
   touch.rigid = rigid;
-  touch.AddNodes(point.nodes, point.weights, point.count, 1);
+  touch.nodes = point.nodes;
+  touch.weights = point.weights;
+  touch.count = point.count;
   touch.allowed_depth = point.allowed_depth;
   touch.place = point.PositionIn(x);
   const ObstacleDistance::Place at = shape.At(placement.ToBody(touch.place));
@@ -126,7 +111,7 @@ Touch ContactSearch::TouchOnRigid(const ContactDrive& drive, const NodalVector& 
     const Placement& before = drive.at_start[static_cast<std::size_t>(rigid)];
     start = -shape.At(before.ToBody(point.PositionIn(*drive.start))).distance;
   }
-  Respond(drive, x, point, 1, start, touch);
+  Respond(drive, x, point, start, touch);
   return touch;
 }
 
@@ -150,10 +135,10 @@ double ContactSearch::StiffnessFacing(const SurfacePoint& point, const Vec3& nor
   return sum;
 }
 
-void ContactSearch::Respond(const ContactDrive& drive, const NodalVector& x, const SurfacePoint& point, double factor,
-                            double start, Touch& touch) const {
+void ContactSearch::Respond(const ContactDrive& drive, const NodalVector& x, const SurfacePoint& point, double start,
+                            Touch& touch) const {
   const NodalVector& faces = drive.faces == nullptr ? x : *drive.faces;
-  const double firm = drive.firmness * factor * StiffnessFacing(point, touch.normal, faces);
+  const double firm = drive.firmness * StiffnessFacing(point, touch.normal, faces);
   if (Hardens(model_)) {
     touch.response = HardeningResponse(firm, touch.depth, touch.allowed_depth);
   } else if (drive.start == nullptr) {
@@ -161,80 +146,6 @@ void ContactSearch::Respond(const ContactDrive& drive, const NodalVector& x, con
   } else {
     touch.response = ResponseAt(firm, touch.depth, start);
   }
-}
-
-// The depths of all points of passes at the start of a step; those beyond reach count as at its end.
-void ContactSearch::FindStart(const NodalVector& start, ThreadTeam& team) {
-  start_ = start;
-  for (std::size_t p = 0; p < faces_.size(); ++p) {
-    FaceSearch& search = faces_[p];
-    search.Update(start, team);
-    std::vector<double>& depths = start_depths_[p];
-    depths.resize(model_.contact().surfaces[static_cast<std::size_t>(model_.contact().passes[p].from)].points.size());
-    team.For(depths.size(), kPointGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto nearest = search.Find(start, i);
-        depths[i] = nearest ? -nearest->distance : -search.reach();
-      }
-    });
-  }
-}
-
-void ContactSearch::FindOnBody(const ContactDrive& drive, const NodalVector& x, std::int32_t index, ThreadTeam& team) {
-  const auto p = static_cast<std::size_t>(index);
-  const ContactPass& pass = model_.contact().passes[p];
-  const std::vector<TouchingSurface>& surfaces = model_.contact().surfaces;
-  const TouchingSurface& from = surfaces[static_cast<std::size_t>(pass.from)];
-  const TouchingSurface& onto = surfaces[static_cast<std::size_t>(pass.onto)];
-  FaceSearch& search = faces_[p];
-  search.Update(x, team);
-  team.For(from.points.size(), kPointGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto nearest = search.Find(x, i);
-      const double start = drive.start == nullptr ? 0 : start_depths_[p][i];
-      found_[i] = nearest && (nearest->distance < 0 || start > 0);
-      if (found_[i] == 0) continue;
-      const SurfacePoint& point = from.points[i];
-      Touch& touch = at_points_[i] = {};
-      touch.pass = index;
-      touch.AddNodes(point.nodes, point.weights, point.count, 1);
-      touch.AddNodes(onto.faces[static_cast<std::size_t>(nearest->face)].nodes, nearest->weights, point.count, -1);
-      touch.allowed_depth = point.allowed_depth;
-      touch.place = point.PositionIn(x);
-      touch.depth = -nearest->distance;
-      touch.normal = nearest->normal;
-      touch.curvature = nearest->curvature;
-      Respond(drive, x, point, pass.factor, start, touch);
-    }
-  });
-  TakeFound(0, from.points.size());
-}
-
-std::vector<std::vector<std::int32_t>> ContactSearch::Couplings(const NodalVector& x, ThreadTeam& team) {
-  constexpr double kNear = 0.5;  // of the reach
-  std::vector<std::vector<std::int32_t>> couplings;
-  for (std::size_t p = 0; p < faces_.size(); ++p) {
-    const ContactPass& pass = model_.contact().passes[p];
-    const TouchingSurface& from = model_.contact().surfaces[static_cast<std::size_t>(pass.from)];
-    const TouchingSurface& onto = model_.contact().surfaces[static_cast<std::size_t>(pass.onto)];
-    faces_[p].Update(x, team);
-    for (std::size_t i = 0; i < from.points.size(); ++i) {
-      const SurfacePoint& point = from.points[i];
-      std::vector<std::int32_t> nodes;
-      faces_[p].ForFacesNear(x, i, kNear * faces_[p].reach(), [&](std::int32_t face) {
-        const auto& of_face = onto.faces[static_cast<std::size_t>(face)].nodes;
-        nodes.insert(nodes.end(), of_face.begin(), of_face.begin() + point.count);
-      });
-      if (nodes.empty()) continue;
-      nodes.insert(nodes.end(), point.nodes.begin(), point.nodes.begin() + point.count);
-      std::sort(nodes.begin(), nodes.end());
-      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-      couplings.push_back(std::move(nodes));
-    }
-  }
-  std::sort(couplings.begin(), couplings.end());
-  couplings.erase(std::unique(couplings.begin(), couplings.end()), couplings.end());
-  return couplings;
 }
 
 std::vector<Touch> TouchesOf(const TetModel& model, const TetState& state, const Controls& controls, ThreadTeam& team) {
@@ -273,49 +184,13 @@ void AddTouch(const Touch& touch, const Vec3& force, const Vec3& origin, Contact
   sum.moment += (touch.place - origin).cross(force);
 }
 
-// How deep nodes of one surface are inside of the other one [m], at least 0.
-double DeepestNode(const ContactModel& contact, const ContactPass& pass, const NodalVector& x) {
-  const TouchingSurface& from = contact.surfaces[static_cast<std::size_t>(pass.from)];
-  const TouchingSurface& onto = contact.surfaces[static_cast<std::size_t>(pass.onto)];
-  TriangleMesh facets;
-  for (const std::int32_t n : onto.nodes) facets.nodes.push_back(x[n]);
-  facets.triangles = onto.facets;
-  const ObstacleShape shape = std::move(facets);
-  const ObstacleDistance distance(shape);
-  double deepest = 0;
-  for (const std::int32_t n : from.nodes) deepest = std::max(deepest, -distance.At(x[n]).distance);
-  return deepest;
-}
-
 }  // namespace
 
 std::vector<ContactSum> SumsOfRigidBodies(const Placements& placements, std::span<const Touch> touches) {
   std::vector<ContactSum> sums(placements.size());
   for (const Touch& touch : touches) {
-    if (touch.rigid < 0) continue;
     const auto r = static_cast<std::size_t>(touch.rigid);
     AddTouch(touch, -touch.response.force * touch.normal, placements[r].position, sums[r]);
-  }
-  return sums;
-}
-
-std::vector<ContactSum> SumsOfContacts(const TetModel& model, const NodalVector& x, std::span<const Touch> touches) {
-  std::vector<ContactSum> sums(model.contact().passes.size() / 2);
-  for (const Touch& touch : touches) {
-    if (touch.pass < 0) continue;
-    // Points of the first body in even passes: their force is that of the other body on it.
-    const double sign = touch.pass % 2 == 0 ? -1 : 1;
-    AddTouch(touch, sign * touch.response.force * touch.normal, Vec3::Zero(),
-             sums[static_cast<std::size_t>(touch.pass / 2)]);
-  }
-  const ContactModel& contact = model.contact();
-  for (std::size_t p = 0; p < contact.passes.size(); ++p) {
-    // Facets of curved faces are not exact.
-    const double edge = contact.surfaces[static_cast<std::size_t>(contact.passes[p].onto)].edge;
-    const double deepest = DeepestNode(contact, contact.passes[p], x);
-    if (!(deepest > kDeepPart * edge)) continue;
-    sums[p / 2].depth = std::max(sums[p / 2].depth, deepest);
-    sums[p / 2].excess = std::max(sums[p / 2].excess, deepest / (kAllowedPart * edge));
   }
   return sums;
 }
@@ -324,7 +199,6 @@ double WorkOfRigidBodies(std::span<const Touch> touches, const Placements& from,
                          const Placements& at) {
   double work = 0;
   for (const Touch& touch : touches) {
-    if (touch.rigid < 0) continue;
     const auto r = static_cast<std::size_t>(touch.rigid);
     const Vec3 X = at[r].ToBody(touch.place);
     work += touch.response.force * touch.normal.dot(to[r].ToWorld(X) - from[r].ToWorld(X));
@@ -333,16 +207,11 @@ double WorkOfRigidBodies(std::span<const Touch> touches, const Placements& from,
 }
 
 void AddContactBound(const TetModel& model, const NodalVector& p, NodalVector& product) {
-  const auto add = [&](const SurfacePoint& point, double factor) {
-    const Vec3 along = factor * point.stiffness * point.PositionIn(p);
-    for (int a = 0; a < point.count; ++a) product[point.nodes[a]] += point.weights[a] * along;
-  };
   const ContactModel& contact = model.contact();
   const auto of_rigid = static_cast<double>(std::min<std::size_t>(2, contact.rigid.size()));
-  for (const SurfacePoint& point : contact.points) add(point, of_rigid);
-  // (a - b)^2 <= 2 a^2 + 2 b^2, of the body's own points and as much of those that touch it.
-  for (const TouchingSurface& surface : contact.surfaces) {
-    for (const SurfacePoint& point : surface.points) add(point, 2);
+  for (const SurfacePoint& point : contact.points) {
+    const Vec3 along = of_rigid * point.stiffness * point.PositionIn(p);
+    for (int a = 0; a < point.count; ++a) product[point.nodes[a]] += point.weights[a] * along;
   }
 }
 

@@ -7,16 +7,13 @@
 #include <vector>
 
 #include "core/scene/controls.h"
-#include "core/tet/face_search.h"
 #include "core/tet/floor_contact.h"
 #include "core/tet/state.h"
 
-// Contact of bodies with rigid bodies and with each other: penalty forces on the points of their surfaces
-// (ContactModel),
+// Contact of bodies with rigid bodies: penalty forces on the points of their surfaces (ContactModel),
 //   f = k d n,   energy k d^2 / 2,   d = -phi(x) where positive,
-// with the signed distance phi of the rigid body at its present pose, or of the other body's surface, and its gradient
-// n. The nodes of the face that is nearest take the opposite force. Without friction. In explicit and mixed stepping
-// the force is k d (1 + 4 (d / a)^2), with the allowed depth a.
+// with the signed distance phi of the rigid body at its present pose, and its gradient n. Without friction. In explicit
+// and mixed stepping the force is k d (1 + 4 (d / a)^2), with the allowed depth a.
 //
 // The force of a step is exact in the sense of floor_contact.h: with the positions at the start of the step, it has the
 // force f' whose mean with that at the start does the work of the energy, as far as the normal does not turn.
@@ -36,18 +33,16 @@ Placements PlacementsOf(const TetModel& model, const Controls& controls);
 
 // A point that touches something, or did at the start of the step.
 struct Touch {
-  std::int32_t rigid = -1, pass = -1;  // what it touches: a rigid body, or by a pass of ContactModel a body
-  // Nodes that take weight times force: those of the point, then those of the face that it touches.
-  std::array<std::int32_t, 18> nodes = {};
-  std::array<double, 18> weights = {};
+  std::int32_t rigid = 0;  // the rigid body that it touches
+  // Nodes that take weight times force.
+  std::array<std::int32_t, 9> nodes = {};
+  std::array<double, 9> weights = {};
   int count = 0;
   double depth = 0, allowed_depth = 0;  // [m]
   Vec3 place = Vec3::Zero();            // of the point [m]
   Vec3 normal = Vec3::Zero();           // n, away from what it touches
   Mat3 curvature = Mat3::Zero();        // dn/dx [1/m]
   FloorResponse response;
-
-  void AddNodes(const std::array<std::int32_t, 9>& of, const std::array<double, 9>& with, int number, double factor);
 };
 
 // What determines contact at the end of a step, apart from the positions.
@@ -62,20 +57,17 @@ struct ContactDrive {
   Placements at_start;
 };
 
-// Finds what touches. Remembers how far points are from rigid bodies and which faces are near them, so that distant
-// ones take little time; results do not depend on that. The same bits for any number of threads. Not thread-safe.
+// Finds what touches. Remembers how far points are from rigid bodies, so that distant ones take little time; results do
+// not depend on that. The same bits for any number of threads. Not thread-safe.
 class ContactSearch {
  public:
   // The model must outlive the object.
   explicit ContactSearch(const TetModel& model);
 
-  // Everything that touches at positions x, ordered by rigid body, pass and point. Valid until the next call.
+  // Everything that touches at positions x, ordered by rigid body and point. Valid until the next call.
   const std::vector<Touch>& Find(const ContactDrive& drive, const NodalVector& x, ThreadTeam& team);
   // The result of the last Find.
   const std::vector<Touch>& touches() const { return touches_; }
-
-  // Lists of nodes that contact between bodies couples with each other near positions x.
-  std::vector<std::vector<std::int32_t>> Couplings(const NodalVector& x, ThreadTeam& team);
 
  private:
   // Where a point was, in the frame of a rigid body, when its distance was found last.
@@ -87,12 +79,8 @@ class ContactSearch {
   void FindOnRigid(const ContactDrive& drive, const NodalVector& x, std::int32_t rigid, std::size_t begin,
                    std::size_t end, ThreadTeam& team);
   Touch TouchOnRigid(const ContactDrive& drive, const NodalVector& x, std::int32_t rigid, std::int32_t point) const;
-  // Touches of a pass between two bodies.
-  void FindOnBody(const ContactDrive& drive, const NodalVector& x, std::int32_t pass, ThreadTeam& team);
-  void FindStart(const NodalVector& start, ThreadTeam& team);
-  // Sets the response of a touch of a point, with a factor on its stiffness; `start`: its depth at the start of the
-  // step.
-  void Respond(const ContactDrive& drive, const NodalVector& x, const SurfacePoint& point, double factor, double start,
+  // Sets the response of a touch of a point; `start`: its depth at the start of the step.
+  void Respond(const ContactDrive& drive, const NodalVector& x, const SurfacePoint& point, double start,
                Touch& touch) const;
   // The stiffness of the sides of a point that face a normal, at positions x [N/m].
   double StiffnessFacing(const SurfacePoint& point, const Vec3& normal, const NodalVector& x) const;
@@ -100,11 +88,8 @@ class ContactSearch {
 
   const TetModel& model_;
   std::vector<Seen> seen_;           // rigid body after rigid body
-  std::vector<FaceSearch> faces_;    // of each pass
   std::vector<std::uint8_t> found_;  // of each point: whether it touches
   std::vector<Touch> touches_, at_points_;
-  NodalVector start_;                              // positions to which start_depths_ belong
-  std::vector<std::vector<double>> start_depths_;  // of each pass: of each point [m]
 };
 
 // What touches at a state, under the controls of its time.
@@ -120,16 +105,13 @@ double HardenedStep(double excess);
 // Largest depth relative to the allowed one.
 double LargestExcess(std::span<const Touch> touches);
 
-// All touches with a rigid body, or between two bodies.
+// All touches with a rigid body.
 struct ContactSum {
   double depth = 0, excess = 0;  // deepest, at least 0 [m]; largest relative to the allowed depth
-  // Force of bodies on the rigid body [N] and its moment about the origin of its frame [N m]; of the first body on the
-  // other one, and its moment about the origin.
+  // Force of bodies on the rigid body [N] and its moment about the origin of its frame [N m].
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
 };
 std::vector<ContactSum> SumsOfRigidBodies(const Placements& placements, std::span<const Touch> touches);
-// Of each pair of Scene::contacts, at positions x. Depths are those of nodes beyond the reach of forces, too.
-std::vector<ContactSum> SumsOfContacts(const TetModel& model, const NodalVector& x, std::span<const Touch> touches);
 
 // The work of moving rigid bodies on bodies between two placements, by the force at one of them [J].
 double WorkOfRigidBodies(std::span<const Touch> touches, const Placements& from, const Placements& to,

@@ -36,24 +36,6 @@ struct SurfacePoint {
   }
 };
 
-// The surface of a body that touches other bodies.
-struct TouchingSurface {
-  std::int32_t body = 0;
-  std::vector<PressureFace> faces;
-  std::vector<SurfacePoint> points;  // several times as many as nodes
-  std::vector<std::int32_t> nodes;   // of all faces, ascending
-  std::vector<Triangle> facets;      // of indices into `nodes`: as many for each face
-  std::int32_t facets_per_face = 1;
-  double edge = 0;      // mean edge of a face [m]
-  double per_area = 0;  // mean stiffness per area [N/m^3]
-};
-
-// Points of one surface on the faces of another one.
-struct ContactPass {
-  std::int32_t from = 0, onto = 0;  // indices into ContactModel::surfaces
-  double factor = 0.5;              // on the stiffness of the points
-};
-
 // What touches in a scene, and what stays constant of it.
 //
 // Points are those of a quadrature rule on the faces that contains all nodes and has positive weights, so that a
@@ -63,20 +45,13 @@ struct ContactPass {
 // right triangle or square of the face's area. Explicit and mixed steppings: c = 1 and M the longitudinal modulus, so
 // that contact hardly reduces the stable step. Others: c = 10, and M that of the law if Poisson's ratio were at most
 // 0.4, because bodies yield to contact by shear.
-//
-// Between bodies, points of either body touch the faces of the other one, with half of the stiffness of the softer one
-// each, so that none is preferred. There each face is first divided into smaller ones (see Lattice in
-// model_contact.cc), because a face of the other body may end within it: the forces of a constant pressure on its nodes
-// are then exact enough for the patch test.
 struct ContactModel {
   std::vector<SurfacePoint> points;            // that may touch rigid bodies
   std::vector<std::size_t> point_begin = {0};  // those of body b: points[point_begin[b] .. point_begin[b + 1])
   std::vector<ObstacleDistance> rigid;         // of each of Scene::rigid_bodies
   std::vector<SurfaceSide> sides;
-  std::vector<TouchingSurface> surfaces;
-  std::vector<ContactPass> passes;  // two for each pair of Scene::contacts
 
-  bool empty() const { return rigid.empty() && passes.empty(); }
+  bool empty() const { return rigid.empty(); }
 };
 
 }  // namespace fascicle

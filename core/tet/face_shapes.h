@@ -1,7 +1,6 @@
 #ifndef FASCICLE_CORE_TET_FACE_SHAPES_H_
 #define FASCICLE_CORE_TET_FACE_SHAPES_H_
 
-#include <algorithm>
 #include <array>
 
 #include "core/scene/method.h"
@@ -40,29 +39,6 @@ inline FaceShape<9> BiquadraticFace(double u, double v) {
     shape.d2[a] = QuadraticFactor(i, u) * QuadraticFactorSlope(j, v);
   }
   return shape;
-}
-
-// Calls visit(shape functions at a place) for faces of an order.
-template <class Visit>
-decltype(auto) WithFaceShape(ElementOrder order, double u, double v, const Visit& visit) {
-  switch (order) {
-    case ElementOrder::kLinear:
-      return visit(LinearFace(u, v));
-    case ElementOrder::kQuadratic:
-      return visit(QuadraticFace(u, v));
-    case ElementOrder::kHexahedral:
-      return visit(BilinearFace(u, v));
-    case ElementOrder::kHexahedralQuadratic:
-      break;
-  }
-  return visit(BiquadraticFace(u, v));
-}
-
-// Their values; zero beyond the nodes of the face.
-inline std::array<double, 9> FaceWeights(ElementOrder order, double u, double v) {
-  std::array<double, 9> weights = {};
-  WithFaceShape(order, u, v, [&](const auto& shape) { std::copy(shape.N.begin(), shape.N.end(), weights.begin()); });
-  return weights;
 }
 
 }  // namespace fascicle

@@ -76,7 +76,6 @@ class TetModelBuilder {
   std::vector<PressureFace> BoundaryFaces(const TetBody& body) const;
   bool IsHeld(const SurfacePoint& point) const;
   void AddSurfacePoints(const TetBody& body);
-  TouchingSurface SurfaceOfBody(std::int32_t index);
   void AddContact();
 
   // The mid-edge node between nodes i and j of a quadratic element.

@@ -14,8 +14,6 @@ constexpr double kTenthOfEdge = 0.1;
 constexpr double kFirmness = 10;
 // Largest bulk modulus that counts there, relative to the shear modulus: that of Poisson's ratio 0.4.
 constexpr double kMostBulk = 14. / 3;
-// Parts of an edge of a linear or bilinear face, and of others, between bodies.
-constexpr int kLinearParts = 4, kQuadraticParts = 2;
 
 double ContactModulus(const Material& material, bool is_explicit) {
   return std::visit(
@@ -81,8 +79,9 @@ class PointCollector {
   // The centroid of a quadratic triangle.
   void AddCentroid(const PressureFace& face, double stiffness, double allowed_depth) {
     SurfacePoint& point = points_.emplace_back();
+    const auto weights = QuadraticFace(1. / 3, 1. / 3).N;
+    std::copy(weights.begin(), weights.end(), point.weights.begin());
     point.nodes = face.nodes;
-    point.weights = FaceWeights(ElementOrder::kQuadratic, 1. / 3, 1. / 3);
     point.count = 6;
     point.stiffness = stiffness;
     point.allowed_depth = allowed_depth;
@@ -107,78 +106,6 @@ class PointCollector {
   std::vector<std::vector<SurfaceSide>> sides_;  // of each point
   std::map<std::int32_t, std::size_t> of_node_;
 };
-
-// Points of a face with their shares of its area: of the rule for its nodes, applied to equal parts of the face.
-class Lattice {
- public:
-  explicit Lattice(ElementOrder order) : parts_(IsQuadratic(order) ? kQuadraticParts : kLinearParts) {
-    for (int i = 0; i < parts_; ++i) {
-      for (int j = 0; j < parts_; ++j) {
-        const int u = kSteps * i, v = kSteps * j;
-        if (IsHexahedral(order)) {
-          AddSquare(u, v, IsQuadratic(order));
-        } else if (i + j < parts_) {
-          AddTriangle(u, v, kSteps, IsQuadratic(order));
-          if (i + j + 1 < parts_) AddTriangle(u + kSteps, v + kSteps, -kSteps, IsQuadratic(order));
-        }
-      }
-    }
-    double sum = 0;
-    for (const auto& [place, share] : shares_) sum += share;
-    for (auto& [place, share] : shares_) share /= sum;
-  }
-
-  // Calls visit(u, v, share).
-  template <class Visit>
-  void ForPoints(const Visit& visit) const {
-    const double scale = 1.0 / (kSteps * parts_);
-    for (const auto& [place, share] : shares_) visit(scale * place.first, scale * place.second, share);
-  }
-
- private:
-  static constexpr int kSteps = 6;  // of a part
-  static bool IsQuadratic(ElementOrder order) {
-    return order == ElementOrder::kQuadratic || order == ElementOrder::kHexahedralQuadratic;
-  }
-
-  void AddTriangle(int u, int v, int edge, bool quadratic) {
-    const int half = edge / 2, third = edge / 3;
-    const double corner = quadratic ? 1. / 20 : 1. / 3;
-    for (const auto& [a, b] : {std::pair(0, 0), std::pair(edge, 0), std::pair(0, edge)})
-      shares_[{u + a, v + b}] += corner;
-    if (!quadratic) return;
-    for (const auto& [a, b] : {std::pair(half, 0), std::pair(half, half), std::pair(0, half)}) {
-      shares_[{u + a, v + b}] += 2. / 15;
-    }
-    shares_[{u + third, v + third}] += 9. / 20;
-  }
-
-  void AddSquare(int u, int v, bool quadratic) {
-    const int count = quadratic ? 3 : 2, step = kSteps / (count - 1);
-    const auto weight = [&](int k) { return k == 1 && quadratic ? 4. / 6 : quadratic ? 1. / 6 : 1. / 2; };
-    for (int a = 0; a < count; ++a) {
-      for (int b = 0; b < count; ++b) shares_[{u + step * a, v + step * b}] += weight(a) * weight(b);
-    }
-  }
-
-  int parts_;
-  std::map<std::pair<int, int>, double> shares_;
-};
-
-// Facets of a face by its nodes.
-std::vector<Triangle> FacetsOf(ElementOrder order) {
-  switch (order) {
-    case ElementOrder::kLinear:
-      return {{0, 1, 2}};
-    case ElementOrder::kQuadratic:
-      return {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
-    case ElementOrder::kHexahedral:
-      return {{0, 1, 2}, {0, 2, 3}};
-    case ElementOrder::kHexahedralQuadratic:
-      break;
-  }
-  return {{0, 4, 8}, {4, 1, 8}, {1, 5, 8}, {5, 2, 8}, {2, 6, 8}, {6, 3, 8}, {3, 7, 8}, {7, 0, 8}};
-}
 
 }  // namespace
 
@@ -221,71 +148,10 @@ void TetModelBuilder::AddSurfacePoints(const TetBody& body) {
   model_.contact_.point_begin.push_back(model_.contact_.points.size());
 }
 
-TouchingSurface TetModelBuilder::SurfaceOfBody(std::int32_t index) {
-  const TetBody& body = model_.bodies_[static_cast<std::size_t>(index)];
-  const double modulus = ContactModulus(*body.source, scene_.tet.stepping);
-  const Lattice lattice(model_.order());
-  TouchingSurface surface;
-  surface.body = index;
-  surface.faces = BoundaryFaces(body);
-  double area = 0, stiffness = 0;
-  for (const PressureFace& face : surface.faces) {
-    HeedStop();
-    const FaceSize size = SizeOf(model_.order(), face, model_.rest_positions_);
-    const double per_area = 2 * modulus / size.edge;
-    const auto count = static_cast<int>(size.shares.size());
-    surface.nodes.insert(surface.nodes.end(), face.nodes.begin(), face.nodes.begin() + count);
-    lattice.ForPoints([&](double u, double v, double share) {
-      SurfacePoint point;
-      point.nodes = face.nodes;
-      point.count = count;
-      point.weights = FaceWeights(model_.order(), u, v);
-      point.stiffness = per_area * share * size.area;
-      point.allowed_depth = kTenthOfEdge * size.shortest;
-      point.first_side = static_cast<std::int32_t>(model_.contact_.sides.size());
-      point.sides = 1;
-      model_.contact_.sides.push_back(SideOf(model_.order(), face, point.stiffness));
-      surface.points.push_back(point);
-    });
-    area += size.area;
-    stiffness += per_area * size.area;
-    surface.edge += size.edge / static_cast<double>(surface.faces.size());
-  }
-  surface.per_area = stiffness / area;
-  std::sort(surface.nodes.begin(), surface.nodes.end());
-  surface.nodes.erase(std::unique(surface.nodes.begin(), surface.nodes.end()), surface.nodes.end());
-  const auto place = [&](std::int32_t n) {
-    return static_cast<std::int32_t>(std::lower_bound(surface.nodes.begin(), surface.nodes.end(), n) -
-                                     surface.nodes.begin());
-  };
-  const std::vector<Triangle> facets = FacetsOf(model_.order());
-  surface.facets_per_face = static_cast<std::int32_t>(facets.size());
-  for (const PressureFace& face : surface.faces) {
-    for (const auto& [a, b, c] : facets) {
-      surface.facets.push_back({place(face.nodes[a]), place(face.nodes[b]), place(face.nodes[c])});
-    }
-  }
-  return surface;
-}
-
 void TetModelBuilder::AddContact() {
-  ContactModel& contact = model_.contact_;
-  if (!scene_.rigid_bodies.empty()) {
-    for (const TetBody& body : model_.bodies_) AddSurfacePoints(body);
-    for (const RigidBody& rigid : scene_.rigid_bodies) contact.rigid.emplace_back(rigid.shape);
-  }
-  std::map<std::int32_t, std::int32_t> surface_of_body;
-  const auto surface = [&](std::int32_t body) {
-    const auto [place, is_new] = surface_of_body.try_emplace(body, static_cast<std::int32_t>(contact.surfaces.size()));
-    if (is_new) contact.surfaces.push_back(SurfaceOfBody(body));
-    return place->second;
-  };
-  for (const TouchingPair& pair : PairsOf(scene_.contacts, scene_.bodies.size())) {
-    const std::int32_t a = surface(static_cast<std::int32_t>(pair.a)), b = surface(static_cast<std::int32_t>(pair.b));
-    const double of_a = contact.surfaces[a].per_area, of_b = contact.surfaces[b].per_area;
-    contact.passes.push_back({a, b, 0.5 * std::min(1.0, of_b / of_a)});
-    contact.passes.push_back({b, a, 0.5 * std::min(1.0, of_a / of_b)});
-  }
+  if (scene_.rigid_bodies.empty()) return;
+  for (const TetBody& body : model_.bodies_) AddSurfacePoints(body);
+  for (const RigidBody& rigid : scene_.rigid_bodies) model_.contact_.rigid.emplace_back(rigid.shape);
 }
 
 }  // namespace fascicle

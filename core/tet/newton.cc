@@ -50,7 +50,7 @@ NewtonResult NewtonSolver::Solve(const IncrementalPotential& potential, const No
   is_evaluated_ = false;
   if (options.guess != nullptr) StartNearer(potential, *options.guess, pressure, x, pressure);
   if (options.before != nullptr) Extrapolate(potential, *options.before, options.ahead, x, pressure);
-  system_.StartStep(x, team_);
+  system_.StartStep();
   const NodalVector x_start = x;
   const std::vector<double> pressure_start = pressure;
   Iterate(potential, target, options, x, pressure, result);

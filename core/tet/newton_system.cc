@@ -103,14 +103,13 @@ std::vector<double> ForceRounding(const TetModel& model) {
 NewtonSystem::NewtonSystem(const TetModel& model, Profile* profile, const std::stop_token& stop)
     : model_(model),
       profile_(profile),
-      stop_(stop),
+      assembly_(model, stop),
       force_floor_(ForceFloor(model)),
       force_rounding_(ForceRounding(model)),
       energy_rounding_(EnergyRounding(model)),
       contact_(model) {
-  assembly_.emplace(model, couplings_, stop);
   unknowns_ = model.patches().size();
-  for (const auto& free : assembly_->matrix().free) unknowns_ += std::count(free.begin(), free.end(), true);
+  for (const auto& free : assembly_.matrix().free) unknowns_ += std::count(free.begin(), free.end(), true);
   const LinearSolver choice = model.scene().tet.linear_solver;
   prefers_iterative_ =
       choice == LinearSolver::kIterative || (choice == LinearSolver::kAutomatic && unknowns_ > kMostDirectUnknowns);
@@ -123,19 +122,9 @@ bool NewtonSystem::SolveDirectly() {
   return true;
 }
 
-void NewtonSystem::StartStep(const NodalVector& x, ThreadTeam& team) {
+void NewtonSystem::StartStep() {
   is_iterative_ = prefers_iterative_;
   solves_ = {};
-  if (!model_.contact().passes.empty()) {
-    std::vector<std::vector<std::int32_t>> couplings = contact_.Couplings(x, team);
-    if (couplings != couplings_) {
-      const StageTimer timer(profile_, "matrix pattern");
-      couplings_ = std::move(couplings);
-      direct_.reset();
-      iterative_.reset();
-      assembly_.emplace(model_, couplings_, stop_);
-    }
-  }
   if (iterative_) iterative_->ForgetAggregation();
 }
 
@@ -196,7 +185,7 @@ bool NewtonSystem::FindStep(const IncrementalPotential& potential, const NodalVe
   if (options.projection != projection_) Project(potential, x, options.projection, prescribed, team);
   dp.resize(model_.patches().size());
   if (!Solve(options.tolerance, team, dx, dp)) return false;
-  const FreeComponents& free = assembly_->matrix().free;
+  const FreeComponents& free = assembly_.matrix().free;
   ForNodes(team, model_.nodes(), [&](std::size_t n) {
     for (int c = 0; c < 3; ++c) dx[n][c] = free[n][c] ? dx[n][c] : prescribed[n][c];
   });
@@ -214,7 +203,7 @@ bool NewtonSystem::FindChordStep(const IncrementalPotential& potential, std::spa
 }
 
 double NewtonSystem::WorkOfPressures(const NodalVector& dx, std::span<const double> dp, ThreadTeam& team) const {
-  const SaddleMatrix& matrix = assembly_->matrix();
+  const SaddleMatrix& matrix = assembly_.matrix();
   return team.Sum(dp.size(), [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t n = begin; n < end; ++n) sum += dp[n] * matrix.VolumeOf(n, dx);
@@ -228,10 +217,10 @@ void NewtonSystem::Assemble(const IncrementalPotential& potential, const NodalVe
                             ThreadTeam& team) {
   const StageTimer timer(profile_, "assembly");
   Smooth(potential, pressure);
-  assembly_->Assemble(potential, x, {acting_, forces_.ratio, TouchesOf(potential)}, team, forces_);
+  assembly_.Assemble(potential, x, {acting_, forces_.ratio, TouchesOf(potential)}, team, forces_);
   projection_ = 0;
   has_projected_ = direct_is_current_ = iterative_is_current_ = false;
-  SaddleMatrix& matrix = assembly_->matrix();
+  SaddleMatrix& matrix = assembly_.matrix();
   side_.assign(model_.nodes(), Vec3::Zero());
   volume_side_.assign(matrix.patches(), 0.0);
   if (std::any_of(prescribed.begin(), prescribed.end(), [](const Vec3& d) { return d != Vec3::Zero(); })) {
@@ -246,7 +235,7 @@ void NewtonSystem::Assemble(const IncrementalPotential& potential, const NodalVe
 void NewtonSystem::SetSide(const IncrementalPotential& potential, std::span<const double> pressure,
                            const NodalVector& force, ThreadTeam& team) {
   const VolumePatches& patches = model_.patches();
-  const SaddleMatrix& matrix = assembly_->matrix();
+  const SaddleMatrix& matrix = assembly_.matrix();
   ForNodes(team, model_.nodes(), [&](std::size_t n) {
     for (int c = 0; c < 3; ++c) side_[n][c] = matrix.free[n][c] ? force[n][c] - side_[n][c] : 0;
   });
@@ -260,10 +249,10 @@ void NewtonSystem::SetSide(const IncrementalPotential& potential, std::span<cons
 void NewtonSystem::Project(const IncrementalPotential& potential, const NodalVector& x, double projection,
                            const NodalVector& prescribed, ThreadTeam& team) {
   const StageTimer timer(profile_, "projection");
-  SaddleMatrix& matrix = assembly_->matrix();
-  const BlockValues& whole = assembly_->projection();
+  SaddleMatrix& matrix = assembly_.matrix();
+  const BlockValues& whole = assembly_.projection();
   if (!has_projected_) {
-    assembly_->AssembleProjection(potential, x, {acting_, forces_.ratio, TouchesOf(potential)}, team, forces_);
+    assembly_.AssembleProjection(potential, x, {acting_, forces_.ratio, TouchesOf(potential)}, team, forces_);
     Multiply(matrix.pattern, whole, prescribed, team, projected_side_);
     has_projected_ = true;
   }
@@ -286,7 +275,7 @@ void NewtonSystem::Project(const IncrementalPotential& potential, const NodalVec
 }
 
 bool NewtonSystem::Solve(double tolerance, ThreadTeam& team, NodalVector& dx, std::vector<double>& dp) {
-  const SaddleMatrix& matrix = assembly_->matrix();
+  const SaddleMatrix& matrix = assembly_.matrix();
   if (is_iterative_) {
     if (!iterative_) iterative_ = std::make_unique<IterativeSaddleSolver>(model_, matrix);
     if (!iterative_is_current_) {

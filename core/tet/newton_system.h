@@ -1,7 +1,6 @@
 #ifndef FASCICLE_CORE_TET_NEWTON_SYSTEM_H_
 #define FASCICLE_CORE_TET_NEWTON_SYSTEM_H_
 
-#include <optional>
 #include <stop_token>
 
 #include "core/base/profile.h"
@@ -70,8 +69,7 @@ class NewtonSystem {
 
   // Call before the first FindStep of a time step. Discards everything from earlier steps, so that a run resumed from a
   // checkpoint has the same bits.
-  //   x  the positions at its start, near which contacts couple the nodes of different bodies
-  void StartStep(const NodalVector& x, ThreadTeam& team);
+  void StartStep();
 
   // Switches to direct solves for the rest of this time step. False if that is already so, or if the systems are too
   // large.
@@ -85,9 +83,7 @@ class NewtonSystem {
 
   const TetModel& model_;
   Profile* const profile_;
-  std::stop_token stop_;
-  std::vector<std::vector<std::int32_t>> couplings_;  // of assembly_, beside those of elements
-  std::optional<SaddleAssembly> assembly_;
+  SaddleAssembly assembly_;
   // Each is created when it is first needed.
   std::unique_ptr<DirectSaddleSolver> direct_;
   std::unique_ptr<IterativeSaddleSolver> iterative_;

@@ -15,10 +15,9 @@ namespace fascicle {
 // The terms are: elastic and active energy of points and patches; inertia and mass damping with a coefficient m and a
 // centre c for each node; the viscous increment W_v = dt (mu' |dE|^2 + lambda'/2 tr(dE)^2) / dt^2, where dE is the
 // change of Green strain during the step and whose derivative is the viscous stress of ViscousStress at the mean rate
-// of the step; the energy of floors and rigid bodies W_c (FloorEnergy,
-// ContactEnergy); loads f, with the second-order term of those that depend on
-// positions, 1/2 (x - c) . S (x - c), see LoadExpansion. W includes Maxwell branches (branches.h). Quasi-static steps
-// have neither m nor W_v.
+// of the step; the energy of floors and rigid bodies W_c (FloorEnergy, ContactEnergy); loads f, with the second-order
+// term of those that depend on positions, 1/2 (x - c) . S (x - c), see LoadExpansion. W includes Maxwell branches
+// (branches.h). Quasi-static steps have neither m nor W_v.
 struct IncrementalPotential {
   FibreDrive drive;
   const NodalVector* load = nullptr;         // f [N]

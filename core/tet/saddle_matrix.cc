@@ -43,15 +43,13 @@ void SaddleMatrix::IsolatePrescribed(ThreadTeam& team) {
   }
 }
 
-SaddleAssembly::SaddleAssembly(const TetModel& model, std::span<const std::vector<std::int32_t>> couplings,
-                               const std::stop_token& stop)
-    : model_(model) {
+SaddleAssembly::SaddleAssembly(const TetModel& model, const std::stop_token& stop) : model_(model) {
   for (const Vec3& m : model.inverse_mass()) matrix_.free.push_back({m[0] != 0, m[1] != 0, m[2] != 0});
-  model.VisitElement([&]<class Element>(Element) { FindPattern<Element>(couplings, stop); });
+  model.VisitElement([&]<class Element>(Element) { FindPattern<Element>(stop); });
 }
 
 template <class Element>
-void SaddleAssembly::FindPattern(std::span<const std::vector<std::int32_t>> couplings, const std::stop_token& stop) {
+void SaddleAssembly::FindPattern(const std::stop_token& stop) {
   constexpr int kNodes = Element::kNodes;
   const VolumePatches& patches = model_.patches();
   const auto of_element = [&](std::size_t e) {
@@ -59,11 +57,11 @@ void SaddleAssembly::FindPattern(std::span<const std::vector<std::int32_t>> coup
     return model_.NodesOf<Element>(e);
   };
   const std::vector<LineSpringLoad>& lines = model_.position_loads().line_springs;
-  if (lines.empty() && couplings.empty()) {
+  if (lines.empty()) {
     matrix_.pattern = PatternOfElements(model_.nodes(), model_.elements(), of_element);
   } else {
-    // A line spring or a contact couples its nodes as if they were those of one element.
-    std::vector<std::vector<std::int32_t>> coupled(couplings.begin(), couplings.end());
+    // A line spring couples its nodes as if they were those of one element.
+    std::vector<std::vector<std::int32_t>> coupled;
     for (const LineSpringLoad& line : lines) coupled.push_back(fascicle::NodesOf(line));
     matrix_.pattern = PatternOfElements(model_.nodes(), model_.elements() + coupled.size(), [&](std::size_t e) {
       if (e >= model_.elements()) return coupled[e - model_.elements()];
@@ -153,7 +151,7 @@ void SaddleAssembly::Assemble(const IncrementalPotential& potential, const Nodal
                       [&](std::size_t n, const Mat3& stiffness) { diagonal(n) += stiffness; });
   }
   ForContactStiffness(at.touches, false, [&](std::int32_t row, std::int32_t column, const Mat3& block) {
-    if (const std::int32_t place = matrix_.pattern.Find(row, column); place >= 0) matrix_.A[place] += block;
+    matrix_.A[matrix_.pattern.PlaceOf(row, column)] += block;
   });
   if (potential.expansion != nullptr) {
     for (const auto& [row, column, block] : potential.expansion->stiffness) {
@@ -178,7 +176,7 @@ void SaddleAssembly::AssembleProjection(const IncrementalPotential& potential, c
   projection_.resize(matrix_.pattern.blocks());
   fascicle::AssembleProjection(model_, potential, x, at.acting, *layout_, team, workspace, projection_);
   ForContactStiffness(at.touches, true, [&](std::int32_t row, std::int32_t column, const Mat3& block) {
-    if (const std::int32_t place = matrix_.pattern.Find(row, column); place >= 0) projection_[place] -= block;
+    projection_[matrix_.pattern.PlaceOf(row, column)] -= block;
   });
 }
 

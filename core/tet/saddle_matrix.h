@@ -59,9 +59,7 @@ struct PressuresAndTouches {
 class SaddleAssembly {
  public:
   // Finds the sparsity pattern. The model must outlive the assembly.
-  //   couplings  lists of nodes that are coupled beside those of each element
-  explicit SaddleAssembly(const TetModel& model, std::span<const std::vector<std::int32_t>> couplings = {},
-                          const std::stop_token& stop = {});
+  explicit SaddleAssembly(const TetModel& model, const std::stop_token& stop = {});
 
   // Assembles at positions x. Exact tangents.
   void Assemble(const IncrementalPotential& potential, const NodalVector& x, const PressuresAndTouches& at,
@@ -78,7 +76,7 @@ class SaddleAssembly {
 
  private:
   template <class Element>
-  void FindPattern(std::span<const std::vector<std::int32_t>> couplings, const std::stop_token& stop);
+  void FindPattern(const std::stop_token& stop);
   void FindSmoothedPattern();
   template <class Element>
   void AssembleVolumes(const NodalVector& x, ThreadTeam& team);

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "core/geometry/bounds.h"
 
 namespace fascicle {
 namespace {
@@ -9,15 +12,6 @@ namespace {
 // Aims at less than the allowed error, so that few steps are repeated [Hairer, Norsett & Wanner 1993, II.4].
 constexpr double kCaution = 0.8;
 constexpr double kMostShrinking = 0.2, kMostGrowth = 2;
-
-double DiagonalOf(const TetModel& model, const TetBody& body) {
-  Vec3 low = model.rest_positions()[body.node_begin], high = low;
-  for (std::size_t n = body.node_begin; n < body.node_end; ++n) {
-    low = low.cwiseMin(model.rest_positions()[n]);
-    high = high.cwiseMax(model.rest_positions()[n]);
-  }
-  return (high - low).norm();
-}
 
 }  // namespace
 
@@ -31,7 +25,9 @@ double ErrorOfStep(const TetModel& model, const ErrorTerm& term, const TetState&
       squares += model.mass()[n] * change.squaredNorm();
       mass += model.mass()[n];
     }
-    largest = std::max(largest, scale * std::sqrt(squares / mass) / DiagonalOf(model, body));
+    const std::span<const Vec3> X(model.rest_positions());
+    const double diagonal = BoundsOf(X.subspan(body.node_begin, body.node_end - body.node_begin)).extent().norm();
+    largest = std::max(largest, scale * std::sqrt(squares / mass) / diagonal);
   }
   return largest;
 }
