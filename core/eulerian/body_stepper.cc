@@ -279,12 +279,10 @@ StepProblem BodyStepper::Move(const EulerianState& state, const BodyControls& ne
 // forces need no terms of their own [Fan 2013, 4.3].
 void BodyStepper::Travel(const RigidVelocity& rigid, double dt) {
   const Mat3 before = RotationOf(made_.pose);
-  const auto [w, x, y, z] = made_.pose.quaternion;
   const double angle = dt * rigid.spin.norm();
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, angle > 0 ? rigid.spin.normalized() : Vec3::UnitX()));
-  const Eigen::Quaterniond q = (Eigen::Quaterniond(w, x, y, z) * turn).normalized();
   const Vec3 centre = made_.pose.position + before * (rigid.centre + dt * rigid.linear);
-  made_.pose.quaternion = {q.w(), q.x(), q.y(), q.z()};
+  made_.pose = PoseAt(made_.pose.position, (QuaternionOf(made_.pose) * turn).normalized());
   const Mat3 after = RotationOf(made_.pose), turned = after.transpose() * before;
   const Vec3 position = centre - after * rigid.centre;
   team_->For(made_.v.size(), kStepGrain, [&](std::size_t begin, std::size_t end) {

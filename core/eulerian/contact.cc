@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/vector_text.h"
 #include "core/eulerian/surface.h"
 
 namespace fascicle {
@@ -20,7 +21,6 @@ constexpr double kSampleSpacing = 0.5;  // between samples of a surface at rest 
 constexpr double kReach = 1;            // largest gap between points in contact [cells]
 constexpr double kDeepest = 2;          // largest penetration that is found [cells]
 constexpr double kMostOverlap = 0.5;    // of bodies at rest that are accepted [cells]
-constexpr double kBonded = 0.5;         // gap at rest up to which pairs that stay together are joined [cells]
 constexpr double kNear = 0.1;           // predicted gap at which a point no longer counts [cells]
 constexpr double kMostMove = 0.5;       // of two bodies that touch, relative to each other in a step [cells]
 constexpr double kLeastArea = 0.3;      // of a row that is not joined with its neighbour [square cells]
@@ -118,7 +118,7 @@ CollisionCells Joined(const CollisionCells& cells, double least) {
 std::vector<ContactPair> ContactPairsOf(const Scene& scene) {
   std::vector<ContactPair> all;
   for (const TouchingPair& pair : PairsOf(scene.contacts, scene.bodies.size())) {
-    all.push_back({pair.a, pair.b, false, pair.friction, pair.lasting});
+    all.push_back({pair.a, pair.b});
   }
   for (std::size_t a = 0; a < scene.bodies.size(); ++a) {
     for (std::size_t floor = 0; floor < scene.floors.size(); ++floor) all.push_back({a, floor, true});
@@ -133,26 +133,29 @@ void CheckOverlaps(const Scene& scene, Problems& problems) {
     const TriangleMesh &a = scene.bodies[pair.a].surface().mesh, &b = scene.bodies[pair.b].surface().mesh;
     if (a.triangles.empty() || b.triangles.empty()) continue;
     if (DistanceBetween(BoundsOf(a.nodes), BoundsOf(b.nodes)) > 0) continue;
-    const ContactSurface of_a(a), of_b(b);
+    const SurfaceDistance of_a(a), of_b(b);
     double deepest = kMostOverlap * spacing;
     Vec3 place = Vec3::Zero();
-    const auto find = [&](const TriangleMesh& surface, const ContactSurface& other) {
+    const auto find = [&](const TriangleMesh& surface, const TriangleMesh& other, const SurfaceDistance& distance) {
+      const Bounds bounds = BoundsOf(other.nodes);
       for (const SurfaceSample& sample : SamplesOf(surface, kSampleSpacing * spacing)) {
         const Vec3 x = PlaceOfSample(surface, sample);
-        if (!IsWithin(x, other.bounds(), 0)) continue;
-        const std::optional<SurfaceGap> gap = other.GapAt(x, std::numeric_limits<double>::infinity());
-        if (!gap || -gap->gap <= deepest) continue;
-        deepest = -gap->gap;
+        if (!IsWithin(x, bounds, 0)) continue;
+        const double depth = -distance.At(x)->distance;
+        if (depth <= deepest) continue;
+        deepest = depth;
         place = x;
       }
     };
-    find(a, of_b);
-    find(b, of_a);
+    find(a, b, of_b);
+    find(b, a, of_a);
     if (deepest == kMostOverlap * spacing) continue;
-    char text[160];
-    std::snprintf(text, sizeof text, "` by %.3g m at [%.4g, %.4g, %.4g] m", deepest, place[0], place[1], place[2]);
-    problems.Add(IndexPath("bodies", pair.b), "overlaps with the body `" + scene.bodies[pair.a].name + text,
-                 "bodies that touch may overlap by half a cell at most: move them apart, or omit the contact");
+    char depth[32];
+    std::snprintf(depth, sizeof depth, "%.3g m", deepest);
+    problems.Add(
+        IndexPath("bodies", pair.b),
+        "overlaps with the body `" + scene.bodies[pair.a].name + "` by " + depth + " at " + VectorText(place) + " m",
+        "bodies that touch may overlap by half a cell at most: move them apart, or omit the contact");
   }
 }
 
@@ -160,12 +163,6 @@ EulerianContacts::EulerianContacts(const Scene& scene, std::vector<const Euleria
     : pairs_(ContactPairsOf(scene)), floors_(scene.floors), bodies_(std::move(bodies)), team_(&team) {
   for (const EulerianBody* body : bodies_) {
     samples_.push_back(SamplesOf(body->shape.surface(), kSampleSpacing * body->grid.spacing));
-  }
-  rest_gaps_.resize(pairs_.size());
-  for (std::size_t p = 0; p < pairs_.size(); ++p) {
-    for (const bool of_a : {true, false}) {
-      if (pairs_[p].lasting) FindRestGaps(p, of_a);
-    }
   }
 }
 
@@ -175,30 +172,17 @@ double EulerianContacts::CellOf(const ContactPair& pair) const {
   return std::max(bodies_[pair.a]->grid.spacing, bodies_[pair.b]->grid.spacing);
 }
 
-void EulerianContacts::FindRestGaps(std::size_t p, bool of_a) {
-  const ContactPair& pair = pairs_[p];
-  const std::size_t own = of_a ? pair.a : pair.b, other = of_a ? pair.b : pair.a;
-  const TriangleMesh& surface = bodies_[own]->shape.surface();
-  const ContactSurface touched(bodies_[other]->shape.surface());
-  for (const SurfaceSample& sample : samples_[own]) {
-    const Vec3 x = PlaceOfSample(surface, sample);
-    const std::optional<SurfaceGap> gap = touched.GapAt(x, kBonded * CellOf(pair));
-    const bool faces = gap && AreaOfSample(surface, sample).dot(gap->normal) < 0;
-    rest_gaps_[p][of_a ? 0 : 1].push_back(faces ? gap->gap : std::numeric_limits<double>::quiet_NaN());
-  }
-}
-
 void EulerianContacts::Find(const EulerianWorldState& state, const std::vector<BodyStepper>& steppers) {
   const std::size_t count = bodies_.size();
   frames_.clear();
-  vertices_.clear();
-  bounds_.clear();
   surfaces_.clear();
-  surfaces_.resize(count);
+  bounds_.clear();
+  distances_.clear();
+  distances_.resize(count);
   for (std::size_t b = 0; b < count; ++b) {
     frames_.emplace_back(state.bodies[b].pose, bodies_[b]->travels);
-    vertices_.push_back(SurfaceInWorld(*bodies_[b], state.bodies[b]));
-    bounds_.push_back(BoundsOf(vertices_[b]));
+    surfaces_.push_back({SurfaceInWorld(*bodies_[b], state.bodies[b]), bodies_[b]->shape.surface().triangles});
+    bounds_.push_back(BoundsOf(surfaces_[b].nodes));
   }
   points_.assign(pairs_.size(), {});
   depths_.assign(pairs_.size(), 0);
@@ -206,18 +190,14 @@ void EulerianContacts::Find(const EulerianWorldState& state, const std::vector<B
   FindLongestStep(state, steppers);
 }
 
-const ContactSurface& EulerianContacts::SurfaceOf(std::size_t body) {
-  if (!surfaces_[body]) {
-    surfaces_[body] =
-        std::make_unique<ContactSurface>(TriangleMesh{vertices_[body], bodies_[body]->shape.surface().triangles});
-  }
-  return *surfaces_[body];
+const SurfaceDistance& EulerianContacts::DistanceFrom(std::size_t body) {
+  if (!distances_[body]) distances_[body] = std::make_unique<SurfaceDistance>(surfaces_[body]);
+  return *distances_[body];
 }
 
 void EulerianContacts::FindPair(std::size_t p, const std::vector<BodyStepper>& steppers) {
   const ContactPair& pair = pairs_[p];
-  const double reach = (pair.lasting ? kDeepest : kReach) * CellOf(pair);
-  if (DistanceOf(pair) > reach) return;
+  if (DistanceOf(pair) > kReach * CellOf(pair)) return;
   if (pair.floor) {
     FindOnFloor(p, steppers, points_[p]);
   } else {
@@ -230,24 +210,22 @@ void EulerianContacts::FindPair(std::size_t p, const std::vector<BodyStepper>& s
 // The points of the samples of one body of the pair.
 void EulerianContacts::FindSide(std::size_t p, bool of_a, const std::vector<BodyStepper>& steppers, Points& points) {
   const ContactPair& pair = pairs_[p];
-  const double cell = CellOf(pair), reach = (pair.lasting ? kDeepest : kReach) * cell;
-  const std::vector<double>& rest_gaps = rest_gaps_[p][of_a ? 0 : 1];
+  const double cell = CellOf(pair), reach = kReach * cell;
   const std::size_t own = of_a ? pair.a : pair.b, other = of_a ? pair.b : pair.a;
-  const ContactSurface &surface = SurfaceOf(own), &touched = SurfaceOf(other);
+  const TriangleMesh& surface = surfaces_[own];
+  const SurfaceDistance& touched = DistanceFrom(other);
   const std::vector<SurfaceSample>& samples = samples_[own];
   std::vector<std::optional<Point>> found(samples.size());
   team_->For(samples.size(), 32, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      if (pair.lasting && std::isnan(rest_gaps[s])) continue;
-      const Vec3 x = PlaceOfSample(surface.surface(), samples[s]);
-      if (!IsWithin(x, touched.bounds(), reach)) continue;
-      const std::optional<SurfaceGap> gap = touched.GapAt(x, kDeepest * cell);
-      if (!gap || gap->gap > reach) continue;
-      const double area = -AreaOfSample(surface.surface(), samples[s]).dot(gap->normal) / 2;
+      const Vec3 x = PlaceOfSample(surface, samples[s]);
+      if (!IsWithin(x, bounds_[other], reach)) continue;
+      const std::optional<SurfaceDistance::Place> at = touched.At(x, kDeepest * cell);
+      if (!at || at->distance > reach) continue;
+      const double area = -AreaOfSample(surface, samples[s]).dot(at->normal) / 2;
       if (!(area > 0)) continue;
-      const Vec3 place = (x + gap->nearest) / 2;
-      found[s] = {place, of_a ? gap->normal : Vec3(-gap->normal), gap->gap, area, {}, {}};
-      if (pair.lasting) found[s]->gap -= rest_gaps[s];
+      const Vec3 place = (x + at->nearest) / 2;
+      found[s] = {place, of_a ? at->normal : Vec3(-at->normal), at->distance, area, {}, {}};
       found[s]->of_a =
           VelocityWeights(bodies_[pair.a]->grid, steppers[pair.a].roles(), frames_[pair.a].PointInGrid(place));
       found[s]->of_b =
@@ -262,7 +240,7 @@ void EulerianContacts::FindSide(std::size_t p, bool of_a, const std::vector<Body
 void EulerianContacts::FindOnFloor(std::size_t p, const std::vector<BodyStepper>& steppers, Points& points) const {
   const ContactPair& pair = pairs_[p];
   const Floor& floor = floors_[pair.b];
-  const TriangleMesh surface = {vertices_[pair.a], bodies_[pair.a]->shape.surface().triangles};
+  const TriangleMesh& surface = surfaces_[pair.a];
   const std::vector<SurfaceSample>& samples = samples_[pair.a];
   std::vector<std::optional<Point>> found(samples.size());
   team_->For(samples.size(), 32, [&](std::size_t begin, std::size_t end) {
@@ -285,7 +263,7 @@ double EulerianContacts::DistanceOf(const ContactPair& pair) const {
   if (!pair.floor) return DistanceBetween(bounds_[pair.a], bounds_[pair.b]);
   const Floor& floor = floors_[pair.b];
   double least = std::numeric_limits<double>::infinity();
-  for (const Vec3& x : vertices_[pair.a]) least = std::min(least, (x - floor.point).dot(floor.normal));
+  for (const Vec3& x : surfaces_[pair.a].nodes) least = std::min(least, (x - floor.point).dot(floor.normal));
   return std::max(least, 0.0);
 }
 
@@ -317,7 +295,6 @@ void EulerianContacts::FindLongestStep(const EulerianWorldState& state, const st
 // 1 for points that would penetrate in the step, and less for those that would come near.
 double EulerianContacts::WeightOf(const Point& point, const ContactPair& pair, double dt,
                                   std::span<const std::vector<Vec3>* const> velocities) const {
-  if (pair.lasting) return 1;
   const auto velocity = [&](std::size_t body, const std::vector<NodeWeight>& parts) {
     Vec3 sum = Vec3::Zero();
     for (const NodeWeight& part : parts) sum += part.weight * (*velocities[body])[part.node];
@@ -359,27 +336,21 @@ void EulerianContacts::AddRows(std::size_t p, double dt, double correction,
   }
   for (const auto& [at, members] : Joined(cells, kLeastArea * cell * cell)) {
     ContactRow& row = rows.emplace_back();
-    row.friction = pair.friction;
-    row.lasting = pair.lasting;
+    row.area = members.area;
     if (pair.floor) row.floor = static_cast<std::int32_t>(pair.b);
-    Vec3 mean = Vec3::Zero();
-    for (const auto& [k, weight] : members.points) mean += weight * points[k].normal;
-    const Vec3 tangent = mean.norm() > 0 ? mean.unitOrthogonal() : Vec3::UnitX();
-    const Vec3 other = mean.normalized().cross(tangent);
     for (const auto& [k, weight] : members.points) {
       const Point& point = points[k];
-      Mat3 along;
-      along << point.normal.transpose(), tangent.transpose(), other.transpose();
       const auto add = [&](std::size_t body, const std::vector<NodeWeight>& parts, double sign) {
         for (const NodeWeight& part : parts) {
-          row.parts.push_back({body, part.node, sign * part.weight * weight * frames_[body].RowsInGrid(along)});
+          row.parts.push_back(
+              {body, part.node, sign * part.weight * weight * frames_[body].VectorInGrid(point.normal)});
         }
       };
       add(pair.a, point.of_a, 1);
       if (!pair.floor) add(pair.b, point.of_b, -1);
       const double most = kMostCorrection * cell;
       const double apart = std::clamp(-point.gap, -most, most) / correction;
-      row.least += weight * (point.gap > 0 && !pair.lasting ? -point.gap / dt : apart);
+      row.least += weight * (point.gap > 0 ? -point.gap / dt : apart);
     }
     std::stable_sort(row.parts.begin(), row.parts.end(), [](const ContactPart& a, const ContactPart& b) {
       return std::pair(a.body, a.node) < std::pair(b.body, b.node);

@@ -1,15 +1,15 @@
 #ifndef FASCICLE_CORE_EULERIAN_CONTACT_H_
 #define FASCICLE_CORE_EULERIAN_CONTACT_H_
 
-#include <array>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "core/eulerian/body_stepper.h"
 #include "core/eulerian/contact_row.h"
-#include "core/eulerian/contact_surface.h"
 #include "core/eulerian/surface_samples.h"
+#include "core/geometry/bounds.h"
+#include "core/geometry/surface_distance.h"
 
 namespace fascicle {
 
@@ -17,12 +17,9 @@ namespace fascicle {
 struct ContactPair {
   std::size_t a, b;  // of two bodies a < b; b may be an index of a floor
   bool floor = false;
-  double friction = 0;
-  bool lasting = false;
 };
 
-// The pairs of bodies that a scene's contacts name; where several name a pair, the last one applies. Then all bodies
-// with all floors. Ascending.
+// The pairs of bodies that a scene's contacts name, then all bodies with all floors. Ascending.
 std::vector<ContactPair> ContactPairsOf(const Scene& scene);
 
 // Adds a problem for each pair of bodies that touch by a contact and overlap by more than half a cell at rest. Surfaces
@@ -63,11 +60,10 @@ class EulerianContacts {
   };
   using Points = std::vector<Point>;
 
-  const ContactSurface& SurfaceOf(std::size_t body);
+  const SurfaceDistance& DistanceFrom(std::size_t body);
   void FindPair(std::size_t pair, const std::vector<BodyStepper>& steppers);
   void FindSide(std::size_t pair, bool of_a, const std::vector<BodyStepper>& steppers, Points& points);
   void FindOnFloor(std::size_t pair, const std::vector<BodyStepper>& steppers, Points& points) const;
-  void FindRestGaps(std::size_t pair, bool of_a);
   double CellOf(const ContactPair& pair) const;
   double DistanceOf(const ContactPair& pair) const;
   void FindLongestStep(const EulerianWorldState& state, const std::vector<BodyStepper>& steppers);
@@ -81,13 +77,11 @@ class EulerianContacts {
   const std::vector<const EulerianBody*> bodies_;
   ThreadTeam* const team_;
   std::vector<std::vector<SurfaceSample>> samples_;  // of each body
-  // Of pairs that stay together, for the samples of both: the gap at rest [m]; NaN where they do not touch at rest.
-  std::vector<std::array<std::vector<double>, 2>> rest_gaps_;
-  std::vector<GridFrame> frames_;            // of the state of the last Find, as all that follows
-  std::vector<std::vector<Vec3>> vertices_;  // of each body, in the world
+  std::vector<GridFrame> frames_;                    // of the state of the last Find, as all that follows
+  std::vector<TriangleMesh> surfaces_;               // of each body, in the world
   std::vector<Bounds> bounds_;
-  std::vector<std::unique_ptr<ContactSurface>> surfaces_;  // made when needed
-  std::vector<Points> points_;                             // of each pair
+  std::vector<std::unique_ptr<SurfaceDistance>> distances_;  // made when needed
+  std::vector<Points> points_;                               // of each pair
   std::vector<double> depths_;
   double longest_step_ = 0;
 };

@@ -18,8 +18,6 @@ class GridFrame {
   Vec3 PointInGrid(const Vec3& x) const { return travels_ ? R_.transpose() * (x - p_) : x; }
   Vec3 VectorInWorld(const Vec3& v) const { return travels_ ? R_ * v : v; }
   Vec3 VectorInGrid(const Vec3& v) const { return travels_ ? R_.transpose() * v : v; }
-  // Of rows that are multiplied by vectors.
-  Mat3 RowsInGrid(const Mat3& rows) const { return travels_ ? Mat3(rows * R_) : rows; }
   // Of a tensor whose both legs are in space, such as stress, and of one whose first leg is, such as F.
   Mat3 TensorInWorld(const Mat3& T) const { return travels_ ? R_ * T * R_.transpose() : T; }
   Mat3 GradientInWorld(const Mat3& F) const { return travels_ ? R_ * F : F; }

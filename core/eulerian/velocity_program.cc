@@ -22,10 +22,8 @@ constexpr std::int32_t kGroup = 4;
 // Largest relative change of a cell's volume in a step; the remaining error of the map is corrected later.
 constexpr double kMostGain = 0.1;
 
-// Rows of contact whose normals cancel to this part, squared, say nothing.
+// Rows of contact whose normals cancel to this part of their area, squared, say nothing.
 constexpr double kCancels = 1e-12;
-constexpr int kMostFrictionRounds = 12;
-constexpr double kFrictionTolerance = 1e-4;  // of impulses, relative to the largest one of a row
 
 // How the velocity of a node changes the volume of a block of cells [m^2].
 struct NodeFlux {
@@ -239,120 +237,10 @@ QpStatus VelocityProgram::Solve() {
   SetGroups(problem);
   SetStiffness(problem);
   SetContacts(problem);
-  const QpStatus status = SolveOnce(problem);
-  const bool rubs = std::any_of(contacts_.begin(), contacts_.end(), [](const ContactRow& c) { return c.friction > 0; });
-  return status == QpStatus::kSolved && rubs ? SolveFriction(problem) : status;
-}
-
-QpStatus VelocityProgram::SolveOnce(const QuadraticProgram& problem) {
   const QpReport report = SolveQp(problem, {.tolerance = kTolerance, .team = &team_}, solution_);
-  iterations_ += std::accumulate(report.minres_iterations.begin(), report.minres_iterations.end(), 0);
+  iterations_ = std::accumulate(report.minres_iterations.begin(), report.minres_iterations.end(), 0);
   residual_ = std::max({report.stationarity, report.feasibility, report.complementarity});
-  TakeContactImpulses();
   return report.status;
-}
-
-// Coulomb friction by fixed-point iteration: rows that stick are equalities along both tangents; on rows that slip the
-// largest friction of the last solution acts against the velocity. A row that sticks with more than the largest
-// friction begins to slip, and one that slips along its friction sticks.
-QpStatus VelocityProgram::SolveFriction(const QuadraticProgram& frictionless) {
-  std::vector<Friction> friction(contacts_.size());
-  for (std::size_t k = 0; k < contacts_.size(); ++k) friction[k].sticks = contacts_[k].friction > 0;
-  for (int round = 0; round < kMostFrictionRounds; ++round) {
-    QuadraticProgram problem = frictionless;
-    SetFriction(friction, problem);
-    const QpStatus status = SolveOnce(problem);
-    if (status != QpStatus::kSolved) return status;
-    TakeFriction(friction);
-    if (!UpdateFriction(friction)) break;
-  }
-  return QpStatus::kSolved;
-}
-
-// Adds rows that stick after the problem's own equalities, and the forces on rows that slip.
-void VelocityProgram::SetFriction(const std::vector<Friction>& friction, QuadraticProgram& problem) const {
-  std::vector<Eigen::Triplet<double>> entries;
-  std::vector<double> right;
-  const ConstraintRows own = problem.equalities;
-  for (Eigen::Index i = 0; i < own.count(); ++i) {
-    for (RowMatrix::InnerIterator entry(own.G, i); entry; ++entry) {
-      entries.emplace_back(static_cast<int>(i), static_cast<int>(entry.col()), entry.value());
-    }
-    right.push_back(own.b[i]);
-  }
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    if (contacts_[k].friction == 0) continue;
-    for (int tangent = 1; tangent <= 2 && friction[k].sticks; ++tangent) {
-      const auto row = static_cast<int>(right.size());
-      right.push_back(AddRow(contacts_[k], tangent, row, 0, entries));
-    }
-    if (friction[k].sticks) continue;
-    for (const ContactPart& part : contacts_[k].parts) {
-      const Block& block = *blocks_[part.body];
-      const int node = block.of_node[part.node];
-      if (node >= 0)
-        problem.p.segment<3>(3 * (block.first_node + node)) += part.weight.transpose() * friction[k].impulse;
-    }
-  }
-  SetRows(entries, right, problem.equalities);
-}
-
-// The impulses of rows that stick, and those of all rows in contact_impulses_.
-void VelocityProgram::TakeFriction(std::vector<Friction>& friction) {
-  auto equality = static_cast<Eigen::Index>(
-      std::count_if(contacts_.begin(), contacts_.end(), [](const ContactRow& c) { return c.lasting; }));
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    if (contacts_[k].friction == 0) continue;
-    if (friction[k].sticks) {
-      friction[k].impulse = Vec3(0, solution_.equalities[equality], solution_.equalities[equality + 1]);
-      equality += 2;
-    }
-    contact_impulses_[k] += friction[k].impulse;
-  }
-}
-
-// Returns whether anything has changed.
-bool VelocityProgram::UpdateFriction(std::vector<Friction>& friction) const {
-  double largest = 0;
-  for (const Vec3& impulse : contact_impulses_) largest = std::max(largest, impulse[0]);
-  bool changed = false;
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    if (contacts_[k].friction == 0) continue;
-    Friction& own = friction[k];
-    const double most = contacts_[k].friction * std::max(contact_impulses_[k][0], 0.0);
-    const Vec3 before = own.impulse;
-    if (own.sticks) {
-      if (own.impulse.norm() <= most + kFrictionTolerance * largest) continue;
-      own.sticks = false;
-      own.impulse *= most / own.impulse.norm();
-      changed = true;
-      continue;
-    }
-    Vec3 slip = VelocityAcross(contacts_[k]);
-    slip[0] = 0;
-    if (slip.dot(own.impulse) > 0) {
-      own.sticks = changed = true;
-      continue;
-    }
-    if (slip.norm() > 0) own.impulse = -most * slip.normalized();
-    changed |= (own.impulse - before).norm() > kFrictionTolerance * largest;
-  }
-  return changed;
-}
-
-// w of a row for the solution.
-Vec3 VelocityProgram::VelocityAcross(const ContactRow& row) const {
-  Vec3 sum = row.given;
-  for (const ContactPart& part : row.parts) {
-    const Block& block = *blocks_[part.body];
-    const int node = block.of_node[part.node];
-    if (node >= 0) {
-      sum += part.weight * solution_.v.segment<3>(3 * (block.first_node + node));
-    } else if (block.part.roles->IsPrescribed(part.node)) {
-      sum += part.weight * (*block.part.velocity)[part.node];
-    }
-  }
-  return sum;
 }
 
 int VelocityProgram::iterations() const { return iterations_; }
@@ -427,66 +315,52 @@ void VelocityProgram::SetStiffness(QuadraticProgram& problem) {
 }
 
 void VelocityProgram::AddContact(ContactRow row) {
-  double normal = 0, all = 0;
+  double squares = 0;
   for (const ContactPart& part : row.parts) {
-    if (blocks_[part.body]->of_node[part.node] < 0) continue;
-    normal += part.weight.row(0).squaredNorm();
-    all += part.weight.squaredNorm();
+    if (blocks_[part.body]->of_node[part.node] >= 0) squares += part.weight.squaredNorm();
   }
-  if (normal > kCancels * all) contacts_.push_back(std::move(row));
+  if (squares > kCancels * row.area * row.area) contacts_.push_back(std::move(row));
 }
 
-// Adds one of the three rows of a contact: w[kind] = right or >= right. Prescribed velocities go to the right-hand
-// side, which is returned.
-double VelocityProgram::AddRow(const ContactRow& row, int kind, int number, double right,
-                               std::vector<Eigen::Triplet<double>>& entries) const {
-  right -= row.given[kind];
+// Adds a row of a contact and returns its right-hand side, which includes prescribed velocities.
+double VelocityProgram::AddRow(const ContactRow& row, int number, std::vector<Eigen::Triplet<double>>& entries) const {
+  double right = row.least;
   for (const ContactPart& part : row.parts) {
     const Block& block = *blocks_[part.body];
     const int node = block.of_node[part.node];
     if (node < 0) {
-      if (block.part.roles->IsPrescribed(part.node)) {
-        right -= part.weight.row(kind).dot((*block.part.velocity)[part.node]);
-      }
+      if (block.part.roles->IsPrescribed(part.node)) right -= part.weight.dot((*block.part.velocity)[part.node]);
       continue;
     }
-    for (int d = 0; d < 3; ++d) {
-      entries.emplace_back(number, 3 * (block.first_node + node) + d, part.weight(kind, d));
-    }
+    for (int d = 0; d < 3; ++d) entries.emplace_back(number, 3 * (block.first_node + node) + d, part.weight[d]);
   }
   return right;
 }
 
-void VelocityProgram::SetRows(const std::vector<Eigen::Triplet<double>>& entries, const std::vector<double>& right,
-                              ConstraintRows& rows) const {
-  if (right.empty()) return;
-  rows.G.resize(static_cast<Eigen::Index>(right.size()), 3 * nodes_);
-  rows.G.setFromTriplets(entries.begin(), entries.end());
-  rows.b = Eigen::Map<const Eigen::VectorXd>(right.data(), static_cast<Eigen::Index>(right.size()));
-}
-
-// An inequality starts as active if the velocities v* violate it.
+// A row starts as active if the velocities v* violate it.
 void VelocityProgram::SetContacts(QuadraticProgram& problem) {
-  std::vector<Eigen::Triplet<double>> entries[2];
-  std::vector<double> right[2];
-  for (const ContactRow& row : contacts_) {
-    const int kind = row.lasting ? 1 : 0;
-    right[kind].push_back(AddRow(row, 0, static_cast<int>(right[kind].size()), row.least, entries[kind]));
+  const auto count = static_cast<Eigen::Index>(contacts_.size());
+  if (count == 0) return;
+  std::vector<Eigen::Triplet<double>> entries;
+  ConstraintRows& rows = problem.inequalities;
+  rows.b.resize(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    rows.b[k] = AddRow(contacts_[static_cast<std::size_t>(k)], static_cast<int>(k), entries);
   }
-  SetRows(entries[0], right[0], problem.inequalities);
-  SetRows(entries[1], right[1], problem.equalities);
-  if (right[0].empty()) return;
+  rows.G.resize(count, 3 * nodes_);
+  rows.G.setFromTriplets(entries.begin(), entries.end());
   const Eigen::VectorXd velocity = problem.p.cwiseQuotient(Eigen::VectorXd(problem.M.diagonal()));
-  const Eigen::VectorXd excess = problem.inequalities.G * velocity - problem.inequalities.b;
+  const Eigen::VectorXd excess = rows.G * velocity - rows.b;
   for (const double value : excess) solution_.active.push_back(value < 0);
 }
 
 // Calls each(node, impulse) for each share of a body's nodes in the contacts.
 template <class Each>
 void VelocityProgram::ForContacts(std::size_t body, const Each& each) const {
-  for (std::size_t k = 0; k < contact_impulses_.size(); ++k) {
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const double impulse = solution_.contact[static_cast<Eigen::Index>(k)];
     for (const ContactPart& part : contacts_[k].parts) {
-      if (part.body == body) each(part.node, Vec3(part.weight.transpose() * contact_impulses_[k]));
+      if (part.body == body) each(part.node, Vec3(impulse * part.weight));
     }
   }
 }
@@ -518,15 +392,6 @@ void VelocityProgram::TakeBody(std::size_t body, std::vector<Vec3>& velocity, st
   for (std::size_t n = 0; n < impulses.size(); ++n) impulses[n] -= pushed[n];
 }
 
-void VelocityProgram::TakeContactImpulses() {
-  contact_impulses_.clear();
-  Eigen::Index inequality = 0, equality = 0;
-  for (const ContactRow& row : contacts_) {
-    const double normal = row.lasting ? solution_.equalities[equality++] : solution_.contact[inequality++];
-    contact_impulses_.push_back(Vec3(normal, 0, 0));
-  }
-}
-
 Resultant VelocityProgram::ContactImpulse(std::size_t body) const {
   const EulerianGrid& grid = blocks_[body]->part.body->grid;
   Resultant sum;
@@ -538,12 +403,13 @@ Resultant VelocityProgram::ContactImpulse(std::size_t body) const {
 }
 
 void VelocityProgram::AddFloorImpulses(std::vector<Vec3>& impulses) const {
-  for (std::size_t k = 0; k < contact_impulses_.size(); ++k) {
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
     if (contacts_[k].floor < 0) continue;
+    const double impulse = solution_.contact[static_cast<Eigen::Index>(k)];
     for (const ContactPart& part : contacts_[k].parts) {
       const Block& block = *blocks_[part.body];
       const GridFrame frame(block.part.state->pose, block.part.body->travels);
-      impulses[contacts_[k].floor] += frame.VectorInWorld(part.weight.transpose() * contact_impulses_[k]);
+      impulses[contacts_[k].floor] += frame.VectorInWorld(impulse * part.weight);
     }
   }
 }

@@ -14,7 +14,7 @@ namespace fascicle {
 //
 //   v = argmin 1/2 (v - v*) . M (v - v*)     with M + dt^2 K in place of the first M if elasticity is implicit
 //   where  sum over nodes of V grad N . v + eps L p = V (1 - J)/(dt J), or 0      for each block of cells
-//          w_n >= least, or w_n = least                                           for each row of contact
+//          w >= least                                                             for each row of contact
 //
 // with prescribed velocities of supported nodes. Blocks of cells (cell_blocks.h) share a pressure p. Each body has its
 // own columns, three for each free node, and its own rows of volumes; only rows of contact (contact_row.h) couple
@@ -39,8 +39,7 @@ class VelocityProgram {
 
   // Bodies are numbered from 0 in the order of the calls.
   void AddBody(const Part& part);
-  // Bodies of the row as numbered here. A row without free nodes, or whose normals
-  // cancel, is ignored.
+  // Bodies of the row as numbered here. A row without free nodes, or whose normals cancel, is ignored.
   void AddContact(ContactRow row);
   // Call once, after all bodies and contacts. iterations() counts those of MINRES.
   QpStatus Solve();
@@ -67,23 +66,8 @@ class VelocityProgram {
   void SetStabilization(QuadraticProgram& problem) const;
   void SetGroups(QuadraticProgram& problem) const;
   void SetStiffness(QuadraticProgram& problem);
-  // Of a row: along its tangents; the normal component is 0.
-  struct Friction {
-    bool sticks = false;
-    Vec3 impulse = Vec3::Zero();
-  };
-  double AddRow(const ContactRow& row, int kind, int number, double right,
-                std::vector<Eigen::Triplet<double>>& entries) const;
-  void SetRows(const std::vector<Eigen::Triplet<double>>& entries, const std::vector<double>& right,
-               ConstraintRows& rows) const;
+  double AddRow(const ContactRow& row, int number, std::vector<Eigen::Triplet<double>>& entries) const;
   void SetContacts(QuadraticProgram& problem);
-  QpStatus SolveOnce(const QuadraticProgram& problem);
-  QpStatus SolveFriction(const QuadraticProgram& frictionless);
-  void SetFriction(const std::vector<Friction>& friction, QuadraticProgram& problem) const;
-  void TakeFriction(std::vector<Friction>& friction);
-  bool UpdateFriction(std::vector<Friction>& friction) const;
-  Vec3 VelocityAcross(const ContactRow& row) const;
-  void TakeContactImpulses();
   template <class Each>
   void ForContacts(std::size_t body, const Each& each) const;
 
@@ -91,8 +75,7 @@ class VelocityProgram {
   ThreadTeam& team_;
   std::vector<std::unique_ptr<Block>> blocks_;
   std::vector<ContactRow> contacts_;
-  std::vector<Vec3> contact_impulses_;  // of each, along its normal and its tangents [N s/m^2]
-  int nodes_ = 0, rows_ = 0;            // of all bodies: free nodes, rows of volumes
+  int nodes_ = 0, rows_ = 0;  // of all bodies: free nodes, rows of volumes
   QpSolution solution_;
   int iterations_ = 0;
   double residual_ = 0;

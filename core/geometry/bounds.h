@@ -1,7 +1,7 @@
 #ifndef FASCICLE_CORE_GEOMETRY_BOUNDS_H_
 #define FASCICLE_CORE_GEOMETRY_BOUNDS_H_
 
-#include <vector>
+#include <span>
 
 #include "core/base/types.h"
 
@@ -15,7 +15,7 @@ struct Bounds {
 };
 
 // The bounding box of the points; at the origin if there are none.
-inline Bounds BoundsOf(const std::vector<Vec3>& points) {
+inline Bounds BoundsOf(std::span<const Vec3> points) {
   if (points.empty()) return {};
   Bounds bounds = {points.front(), points.front()};
   for (const Vec3& x : points) {

@@ -1,15 +1,10 @@
 #include "core/geometry/obstacle.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <utility>
 
 #include "core/geometry/shapes.h"
-#include "core/geometry/triangle_tree.h"
 #include "core/geometry/unused_nodes.h"
 
 namespace fascicle {
@@ -101,75 +96,15 @@ TriangleMesh BoundaryOfMesh(const TetMesh& mesh) {
 
 }  // namespace
 
-// A closed surface of triangles, with the normals of its faces, edges and nodes.
-struct ObstacleDistance::Surface {
-  explicit Surface(const TriangleMesh& m) : mesh(m), tree(m), of_node(m.nodes.size(), Vec3::Zero()) {
-    for (const Triangle& t : m.triangles) {
-      const Vec3 normal = (m.nodes[t[1]] - m.nodes[t[0]]).cross(m.nodes[t[2]] - m.nodes[t[0]]).normalized();
-      of_face.push_back(normal);
-      for (int c = 0; c < 3; ++c) {
-        const std::int32_t a = t[c], b = t[(c + 1) % 3];
-        of_edge.try_emplace(std::minmax(a, b), Vec3::Zero()).first->second += normal;
-        const Vec3 forth = (m.nodes[b] - m.nodes[a]).normalized(),
-                   back = (m.nodes[t[(c + 2) % 3]] - m.nodes[a]).normalized();
-        of_node[a] += std::acos(std::clamp(forth.dot(back), -1.0, 1.0)) * normal;
-      }
-    }
-  }
-
-  Place At(const Vec3& X) const {
-    constexpr double kOnEdge = 1e-9;  // of the height of a triangle
-    const TriangleTree::Nearest nearest = tree.FindNearest(X);
-    const Triangle& t = mesh.triangles[nearest.triangle];
-    const Vec3 &a = mesh.nodes[t[0]], &b = mesh.nodes[t[1]], &c = mesh.nodes[t[2]];
-    const Vec3 area = (b - a).cross(c - a);
-    const double weights[3] = {(c - b).cross(nearest.point - b).dot(area) / area.squaredNorm(),
-                               (a - c).cross(nearest.point - c).dot(area) / area.squaredNorm(),
-                               (b - a).cross(nearest.point - a).dot(area) / area.squaredNorm()};
-    int inside = 0, last = 0, missing = 0;
-    for (int k = 0; k < 3; ++k) {
-      if (weights[k] > kOnEdge) {
-        ++inside;
-        last = k;
-      } else {
-        missing = k;
-      }
-    }
-    Vec3 side = of_face[nearest.triangle];
-    if (inside == 1) side = of_node[t[last]];
-    if (inside == 2) side = of_edge.at(std::minmax(t[(missing + 1) % 3], t[(missing + 2) % 3]));
-    const Vec3 away = X - nearest.point;
-    const double length = std::sqrt(nearest.squared_distance);
-    const double sign = away.dot(side) < 0 ? -1 : 1;
-    Place place;
-    place.distance = sign * length;
-    if (inside == 3 || !(length > kOnEdge * std::sqrt(area.norm()))) {
-      place.normal = side.normalized();
-      return place;
-    }
-    place.normal = sign * away / length;
-    place.curvature = (Mat3::Identity() - Projector(place.normal)) / place.distance;
-    if (inside == 2) {
-      const Vec3 edge = (mesh.nodes[t[(missing + 2) % 3]] - mesh.nodes[t[(missing + 1) % 3]]).normalized();
-      place.curvature -= Projector(edge) / place.distance;
-    }
-    return place;
-  }
-
-  const TriangleMesh& mesh;
-  TriangleTree tree;
-  std::vector<Vec3> of_face, of_node;  // unit; weighted with angles
-  std::map<std::pair<std::int32_t, std::int32_t>, Vec3> of_edge;
-};
-
 ObstacleDistance::ObstacleDistance(const ObstacleShape& shape) : shape_(shape) {
-  if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) surface_ = std::make_unique<Surface>(*mesh);
+  if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) surface_ = std::make_unique<SurfaceDistance>(*mesh);
 }
-ObstacleDistance::~ObstacleDistance() = default;
-ObstacleDistance::ObstacleDistance(ObstacleDistance&&) noexcept = default;
 
 Place ObstacleDistance::At(const Vec3& point) const {
-  if (surface_ != nullptr) return surface_->At(point);
+  if (surface_ != nullptr) {
+    const std::optional<SurfaceDistance::Place> at = surface_->At(point);
+    return {at->distance, at->normal, at->curvature};
+  }
   return std::visit(
       [&]<class Shape>(const Shape& shape) {
         if constexpr (std::is_same_v<Shape, TriangleMesh>) {

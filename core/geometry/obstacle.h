@@ -4,7 +4,7 @@
 #include <memory>
 #include <variant>
 
-#include "core/geometry/triangle_mesh.h"
+#include "core/geometry/surface_distance.h"
 
 namespace fascicle {
 
@@ -34,18 +34,14 @@ class ObstacleDistance {
 
   // `shape` must outlive the object unchanged.
   explicit ObstacleDistance(const ObstacleShape& shape);
-  ~ObstacleDistance();
-  ObstacleDistance(ObstacleDistance&&) noexcept;
 
   // At a point of the shape's frame. Where several points of the surface are nearest, it is that of one of them, always
-  // the same. The sign at a surface of triangles is that of the nearest face's, edge's or node's angle-weighted normal
-  // [Baerentzen & Aanaes 2005, Signed distance computation using the angle weighted pseudonormal, IEEE TVCG 11].
+  // the same.
   Place At(const Vec3& point) const;
 
  private:
-  struct Surface;
   const ObstacleShape& shape_;
-  std::unique_ptr<Surface> surface_;  // of a TriangleMesh
+  std::unique_ptr<SurfaceDistance> surface_;  // of a TriangleMesh
 };
 
 // The boundary as triangles, for pictures; of a half-space, a square in its plane with this side [m].

@@ -56,28 +56,6 @@ std::string BitsOf(const EulerianWorldState& state) {
   return archive.Finish();
 }
 
-TEST(ContactSurface, KnowsItsInsideAtFacesEdgesAndCorners) {
-  const ContactSurface cube(CubeSurface(2, 3));
-  struct Case {
-    Vec3 point;
-    double gap;
-    Vec3 normal;
-  };
-  const double d = std::sqrt(0.5), c = std::sqrt(1 / 3.0);
-  for (const Case& known : {Case{{0.1, 0.2, 1.3}, 0.3, {0, 0, 1}},
-                            {{0.1, 0.2, 0.9}, -0.1, {0, 0, 1}},
-                            {{0.1, 1.2, 1.2}, 0.2 / d, {0, d, d}},
-                            {{-1.1, -1.1, -1.1}, 0.1 / c, {-c, -c, -c}},
-                            {{0.99, 0.2, -0.3}, -0.01, {1, 0, 0}}}) {
-    const std::optional<SurfaceGap> found = cube.GapAt(known.point, 0.5);
-    ASSERT_TRUE(found);
-    EXPECT_NEAR(found->gap, known.gap, 1e-12);
-    EXPECT_LT((found->normal - known.normal).norm(), 1e-9);
-    EXPECT_LT((known.point - found->gap * found->normal - found->nearest).norm(), 1e-9);
-  }
-  EXPECT_FALSE(cube.GapAt(Vec3::Zero(), 0.5));
-}
-
 TEST(SurfaceSamples, HaveTheSurfacesAreaAndCentre) {
   const TriangleMesh cube = CubeSurface(2, 1);
   double area = 0;
