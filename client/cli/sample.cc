@@ -26,6 +26,7 @@
 #include "client/export/read_series.h"
 #include "client/export/sample.h"
 #include "client/lib/replace_file.h"
+#include "core/base/vector_text.h"
 
 namespace fascicle::client {
 namespace {
@@ -245,10 +246,7 @@ std::string BoundsText(const Snapshot& snapshot, bool deformed) {
       high = high.cwiseMax(x);
     }
   }
-  char text[160];
-  std::snprintf(text, sizeof text, "[%.4g, %.4g, %.4g] to [%.4g, %.4g, %.4g] m", low[0], low[1], low[2], high[0],
-                high[1], high[2]);
-  return text;
+  return VectorText(low) + " to " + VectorText(high) + " m";
 }
 
 void CheckInside(const SampleOptions& options, const Snapshot& snapshot, const std::vector<SampledColumn>& sampled) {

@@ -315,8 +315,6 @@ class Importer {
 
 }  // namespace
 
-namespace {}  // namespace
-
 std::optional<ImportedScene> ImportFebio(std::string_view bytes, const FebioOptions& options, Problems& problems) {
   Problems own;
   std::optional<ImportedScene> result;

@@ -99,21 +99,16 @@ class OsimImporter {
     const double length = table->times.back() - table->times.front();
     if (length > 0) scene.set_duration(std::min(length, 1000.0));
     const double fastest = 0.5 * static_cast<double>(table->times.size() - 1) / std::max(length, 1e-9);
-    if (options_.low_pass > 0 && options_.low_pass < fastest && HasEqualIntervals(table->times)) {
+    const bool can_filter = options_.low_pass < fastest && table->HasEqualIntervals();
+    if (options_.low_pass > 0 && !can_filter) {
+      Note("the motion is not filtered: that needs rows at equal intervals, more than two in a period");
+    } else if (options_.low_pass > 0) {
       wire.set_low_pass(options_.low_pass);
       Note("what is faster than " + std::to_string(options_.low_pass).substr(0, 4) +
            " Hz is removed from the motion: `skeleton.motion.low_pass`");
     }
     if (!model_.skeleton.muscles.empty()) scene.mutable_skeleton()->mutable_drive()->mutable_distribution();
     result_.files.push_back({name, motion.bytes});
-  }
-
-  static bool HasEqualIntervals(const std::vector<double>& times) {
-    const double interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
-    for (std::size_t k = 0; k < times.size(); ++k) {
-      if (std::abs(times[k] - times[0] - interval * static_cast<double>(k)) > 1e-3 * interval) return false;
-    }
-    return times.size() > 1;
   }
 
   // Numbers that a scene does not allow.

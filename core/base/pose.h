@@ -1,6 +1,7 @@
 #ifndef FASCICLE_CORE_BASE_POSE_H_
 #define FASCICLE_CORE_BASE_POSE_H_
 
+#include <Eigen/Geometry>
 #include <array>
 
 #include "core/base/types.h"
@@ -23,6 +24,15 @@ inline Mat3 RotationOf(const Pose& pose) {
       2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),   //
       2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
   return R;
+}
+
+inline Eigen::Quaterniond QuaternionOf(const Pose& pose) {
+  const auto [w, x, y, z] = pose.quaternion;
+  return {w, x, y, z};
+}
+// The pose with a unit quaternion.
+inline Pose PoseAt(const Vec3& position, const Eigen::Quaterniond& q) {
+  return {position, {q.w(), q.x(), q.y(), q.z()}};
 }
 
 }  // namespace fascicle

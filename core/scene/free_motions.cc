@@ -8,9 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <optional>
+
+#include "core/base/vector_text.h"
 
 namespace fascicle {
 namespace {
@@ -105,9 +106,7 @@ Eigen::MatrixXd BasisOf(const Eigen::MatrixXd& columns) {
 
 std::string TextOf(Vec3 v) {
   for (double& x : v) x = std::abs(x) < 1e-12 ? 0 : x;
-  char text[96];
-  std::snprintf(text, sizeof text, "[%.4g, %.4g, %.4g]", v[0], v[1], v[2]);
-  return text;
+  return VectorText(v);
 }
 
 // The axes of a span of directions, such as "x and y"; the directions themselves if it is not aligned with axes.

@@ -14,9 +14,8 @@ RigidMotion RigidMotionAt(const RigidBody& rigid, double time) {
 }
 
 Pose PoseAfter(const Pose& pose, const RigidMotion& motion) {
-  const auto [w, x, y, z] = pose.quaternion;
-  const Eigen::Quaterniond q = (Eigen::Quaterniond(motion.rotation) * Eigen::Quaterniond(w, x, y, z)).normalized();
-  return {motion.PositionOf(pose.position), {q.w(), q.x(), q.y(), q.z()}};
+  return PoseAt(motion.PositionOf(pose.position),
+                (Eigen::Quaterniond(motion.rotation) * QuaternionOf(pose)).normalized());
 }
 
 }  // namespace fascicle

@@ -41,7 +41,7 @@ std::vector<SeriesInfo> EulerianSeriesOf(const Scene& scene) {
       {"solver/iterations", "1", "iterations of MINRES since the previous frame"},
   };
   for (const Floor& floor : scene.floors) {
-    for (const char* axis : {"x", "y", "z"}) {
+    for (const char* axis : kAxisNames) {
       series.push_back(
           {"floor/" + floor.name + "/" + axis, "N", "force of the floor on all bodies along " + std::string(axis)});
     }

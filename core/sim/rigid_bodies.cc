@@ -1,7 +1,5 @@
 #include "core/sim/rigid_bodies.h"
 
-#include <Eigen/Geometry>
-
 #include "core/geometry/bounds.h"
 
 namespace fascicle {
@@ -18,8 +16,8 @@ Bounds BoundsOfBodies(const Scene& scene) {
 
 // The pose of a plane whose z axis is the normal and whose origin is below the middle.
 Pose PoseOfPlane(const Vec3& point, const Vec3& normal, const Vec3& middle) {
-  const Eigen::Quaterniond q = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal);
-  return {middle - (middle - point).dot(normal) * normal, {q.w(), q.x(), q.y(), q.z()}};
+  return PoseAt(middle - (middle - point).dot(normal) * normal,
+                Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal));
 }
 
 }  // namespace

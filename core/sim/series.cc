@@ -8,8 +8,6 @@
 namespace fascicle {
 namespace {
 
-constexpr const char* kAxes[] = {"x", "y", "z"};
-
 // Several constraints may act on one region (along different axes); their reactions are one series. In the order of
 // first use.
 struct RegionReaction {
@@ -34,7 +32,7 @@ std::vector<RegionReaction> RegionReactions(const Body& body) {
 void AddBodySeries(const Body& body, std::vector<SeriesInfo>& series) {
   for (const RegionReaction& reaction : RegionReactions(body)) {
     const std::string& region = body.regions[reaction.region].name;
-    for (const char* axis : kAxes) {
+    for (const char* axis : kAxisNames) {
       series.push_back({body.name + "/reaction/" + region + "/" + axis, "N",
                         "force of the support of `" + region + "` on the body along " + axis});
     }
@@ -63,7 +61,7 @@ void AddProbeSeries(const Scene& scene, std::vector<SeriesInfo>& series) {
   for (const Probe& probe : scene.output.probes) {
     const std::string place = probe.inside ? "nearest_node/" : "";
     const std::string of = probe.inside ? "displacement of the nearest node along " : "displacement along ";
-    for (const char* axis : kAxes) series.push_back({"probe/" + probe.name + "/" + place + axis, "m", of + axis});
+    for (const char* axis : kAxisNames) series.push_back({"probe/" + probe.name + "/" + place + axis, "m", of + axis});
   }
 }
 
@@ -73,7 +71,7 @@ void AddMomentSeries(const Scene& scene, std::vector<SeriesInfo>& series) {
     for (const RegionReaction& reaction : RegionReactions(body)) {
       const std::string& region = body.regions[reaction.region].name;
       const std::string name = body.name + "/moment/" + region + "/";
-      for (const char* axis : kAxes) {
+      for (const char* axis : kAxisNames) {
         series.push_back({name + axis, "N m",
                           "moment of the support of `" + region + "` on the body about its point, along " + axis});
       }
@@ -104,7 +102,7 @@ void AddMomentValues(const Scene& scene, std::span<const Reaction> reactions, st
 void AddInnerProbeSeries(const Scene& scene, std::vector<SeriesInfo>& series) {
   for (const Probe& probe : scene.output.probes) {
     const std::string name = "probe/" + probe.name + "/";
-    for (const char* axis : kAxes) {
+    for (const char* axis : kAxisNames) {
       if (probe.inside) series.push_back({name + axis, "m", std::string("displacement along ") + axis});
     }
     for (const OutputField field : scene.output.fields) {

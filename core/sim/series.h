@@ -12,6 +12,8 @@
 // Series common to all methods: those of supports, loads and probes, in two parts.
 namespace fascicle {
 
+inline constexpr const char* kAxisNames[] = {"x", "y", "z"};
+
 // First part. For a body: the reaction at each region, x, y and z, then the force of each muscle (SternPull).
 void AddBodySeries(const Body& body, std::vector<SeriesInfo>& series);
 // Their values with the body's controls.

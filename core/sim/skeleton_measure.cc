@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <string>
 
+#include "core/sim/series.h"
 #include "core/skeleton/joint_tree.h"
 #include "core/skeleton/motion_activations.h"
 
 namespace fascicle {
 namespace {
-
-constexpr const char* kDirections[] = {"x", "y", "z"};
 
 const char* ValueName(const Coordinate& coordinate) { return coordinate.is_angle ? "angle" : "distance"; }
 // Of a generalized force.
@@ -97,13 +96,13 @@ void SkeletonMeasure::AddCoordinateSeries(std::vector<SeriesInfo>& series) const
 void SkeletonMeasure::AddBoneSeries(std::vector<SeriesInfo>& series) const {
   for (const int bone : bones_) {
     const std::string& name = driven_->skeleton.bones[static_cast<std::size_t>(bone)].name;
-    for (const char* direction : kDirections) {
-      series.push_back({PathOf(name) + "pull/" + direction, "N",
-                        std::string("force of all attached bodies on the bone along ") + direction});
+    for (const char* axis : kAxisNames) {
+      series.push_back(
+          {PathOf(name) + "pull/" + axis, "N", std::string("force of all attached bodies on the bone along ") + axis});
     }
-    for (const char* direction : kDirections) {
-      series.push_back({PathOf(name) + "moment/" + direction, "N m",
-                        std::string("moment of all attached bodies on the bone about its origin, along ") + direction});
+    for (const char* axis : kAxisNames) {
+      series.push_back({PathOf(name) + "moment/" + axis, "N m",
+                        std::string("moment of all attached bodies on the bone about its origin, along ") + axis});
     }
   }
 }

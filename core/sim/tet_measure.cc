@@ -8,32 +8,24 @@
 namespace fascicle {
 namespace {
 
-constexpr const char* kAxisNames[] = {"x", "y", "z"};
-
 bool IsQuasiStatic(const TetModel& model) { return model.scene().tet.stepping == Stepping::kQuasiStatic; }
 
 std::size_t NodeOf(const TetModel& model, const Probe& probe) {
   return model.bodies()[probe.body].node_begin + static_cast<std::size_t>(probe.node);
 }
 
-// Of what touches: the force of bodies on each rigid body, or of one body on another, its moment, and depths.
+// Of each rigid body: the force of bodies on it, its moment, and depths.
 void AddContactSeries(const TetModel& model, std::vector<SeriesInfo>& series) {
-  const auto add = [&](const std::string& of, const std::string& force, const std::string& origin) {
-    const std::string name = "contact/" + of + "/";
+  for (const RigidBody& rigid : model.scene().rigid_bodies) {
+    const std::string name = "contact/" + rigid.name + "/", force = "force of all bodies on `" + rigid.name + "`";
     for (const char* axis : kAxisNames) series.push_back({name + "force/" + axis, "N", force + " along " + axis});
     for (const char* axis : kAxisNames) {
-      series.push_back({name + "moment/" + axis, "N m", "moment of that force about " + origin + ", along " + axis});
+      series.push_back({name + "moment/" + axis, "N m",
+                        "moment of that force about the origin of its frame, along " + std::string(axis)});
     }
     series.push_back({name + "depth", "m", "deepest penetration"});
     series.push_back({name + "relative_depth", "1",
                       "largest penetration relative to the allowed one, a tenth of an element's edge"});
-  };
-  for (const RigidBody& rigid : model.scene().rigid_bodies) {
-    add(rigid.name, "force of all bodies on `" + rigid.name + "`", "the origin of its frame");
-  }
-  for (const TouchingPair& pair : PairsOf(model.scene().contacts, model.scene().bodies.size())) {
-    const std::string &a = model.scene().bodies[pair.a].name, &b = model.scene().bodies[pair.b].name;
-    add(a + "/" + b, "force of `" + a + "` on `" + b + "`", "the origin");
   }
 }
 
@@ -41,10 +33,7 @@ void AddContactValues(const TetModel& model, const TetState& state, const Contro
                       std::vector<double>& values) {
   if (model.contact().empty()) return;
   const std::vector<Touch> touches = TouchesOf(model, state, now, team);
-  std::vector<ContactSum> sums = SumsOfRigidBodies(PlacementsOf(model, now), touches);
-  const std::vector<ContactSum> of_contacts = SumsOfContacts(model, state.positions, touches);
-  sums.insert(sums.end(), of_contacts.begin(), of_contacts.end());
-  for (const ContactSum& sum : sums) {
+  for (const ContactSum& sum : SumsOfRigidBodies(PlacementsOf(model, now), touches)) {
     values.insert(values.end(), sum.force.begin(), sum.force.end());
     values.insert(values.end(), sum.moment.begin(), sum.moment.end());
     values.insert(values.end(), {sum.depth, sum.excess});

@@ -109,6 +109,15 @@ class TableReader {
 
 }  // namespace
 
+bool MotionTable::HasEqualIntervals() const {
+  if (times.size() < 2) return false;
+  const double interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (std::abs(times[k] - times[0] - interval * static_cast<double>(k)) > 1e-3 * interval) return false;
+  }
+  return true;
+}
+
 const std::vector<double>* MotionTable::Find(std::string_view column) const {
   const auto found = std::find(columns.begin(), columns.end(), column);
   return found == columns.end() ? nullptr : &values[static_cast<std::size_t>(found - columns.begin())];

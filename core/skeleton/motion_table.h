@@ -20,6 +20,8 @@ struct MotionTable {
 
   // The values of a column; null if there is none.
   const std::vector<double>* Find(std::string_view column) const;
+  // Whether it has several rows at equal intervals, to a thousandth, as a filter needs.
+  bool HasEqualIntervals() const;
 };
 
 // Reads such a table, of at most 100,000 rows. All problems are added at once, with lines. The number of rows that the

@@ -1,25 +1,12 @@
 #include "core/skeleton/placement.h"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 
 namespace fascicle {
-namespace {
-
-using Quaternion = Eigen::Quaterniond;
-
-Quaternion QuaternionOf(const Pose& pose) {
-  return {pose.quaternion[0], pose.quaternion[1], pose.quaternion[2], pose.quaternion[3]};
-}
-
-Pose PoseOf(const Vec3& position, const Quaternion& q) { return {position, {q.w(), q.x(), q.y(), q.z()}}; }
-
-}  // namespace
 
 Pose PoseByAngles(const Vec3& position, const Vec3& angles) {
-  return PoseOf(position, Eigen::AngleAxisd(angles.x(), Vec3::UnitX()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
+  return PoseAt(position, Eigen::AngleAxisd(angles.x(), Vec3::UnitX()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
                               Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()));
 }
 
@@ -32,7 +19,7 @@ Vec3 AnglesOf(const Pose& pose) {
 }
 
 Pose operator*(const Pose& outer, const Pose& inner) {
-  return PoseOf(outer.position + RotationOf(outer) * inner.position, QuaternionOf(outer) * QuaternionOf(inner));
+  return PoseAt(outer.position + RotationOf(outer) * inner.position, QuaternionOf(outer) * QuaternionOf(inner));
 }
 
 }  // namespace fascicle

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "core/base/stop.h"
+#include "core/base/vector_text.h"
 #include "core/scene/nodal_forces.h"
 #include "core/voxel/free_motions.h"
 #include "core/voxel/prescribed.h"
@@ -176,11 +176,9 @@ void CheckVoxelSupports(const Scene& scene, Problems& problems, const std::stop_
     const PrescribedComponents held(body.model().mesh(), body.supports());
     for (const FreeMotion& motion : FindFreeMotions(body.model().grid(), body.model().mesh(), held.of_nodes(), stop)) {
       const Vec3 place = body.model().grid().CornerAt(motion.first_voxel);
-      char where[96];
-      std::snprintf(where, sizeof where, "[%.4g, %.4g, %.4g] m", place[0], place[1], place[2]);
       problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
-                   "no support holds a part of " + std::to_string(motion.voxels) + " voxels near " + where + ": it " +
-                       motion.motions + " of the image",
+                   "no support holds a part of " + std::to_string(motion.voxels) + " voxels near " + VectorText(place) +
+                       " m: it " + motion.motions + " of the image",
                    "add a support, keep only the largest part of the image, or use dynamic stepping");
     }
   }

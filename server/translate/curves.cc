@@ -44,6 +44,10 @@ void CheckValues(const v1::Curve& curve, const CurveUse& use, const std::string&
 
 }  // namespace
 
+Curve::Interpolation InterpolationOf(v1::Interpolation interpolation) {
+  return interpolation == v1::INTERPOLATION_SMOOTH ? Curve::Interpolation::kSmooth : Curve::Interpolation::kLinear;
+}
+
 Curve TranslateCurve(const v1::Curve& curve, const CurveUse& use, const std::string& path, Problems& problems) {
   Problems own;
   CheckTimes(curve, path, own);
@@ -53,7 +57,7 @@ Curve TranslateCurve(const v1::Curve& curve, const CurveUse& use, const std::str
   Curve result;
   result.times.assign(curve.times().begin(), curve.times().end());
   result.values.assign(curve.values().begin(), curve.values().end());
-  if (curve.interpolation() == v1::INTERPOLATION_SMOOTH) result.interpolation = Curve::Interpolation::kSmooth;
+  result.interpolation = InterpolationOf(curve.interpolation());
   return result;
 }
 

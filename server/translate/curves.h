@@ -21,6 +21,8 @@ inline constexpr CurveUse kTranslationCurve = {"m", -10, 10, 0};
 inline constexpr CurveUse kJointAngleCurve = {"rad", 0, 3.14159, 0};
 inline constexpr CurveUse kAngleCurve = {"rad", -1000, 1000, 0};
 
+Curve::Interpolation InterpolationOf(v1::Interpolation interpolation);
+
 // Problems: more than 10,000 points, different numbers of values and times, times that don't increase, values out of
 // range.
 Curve TranslateCurve(const v1::Curve& curve, const CurveUse& use, const std::string& path, Problems& problems);

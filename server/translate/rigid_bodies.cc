@@ -27,10 +27,14 @@ class RigidBodyReader {
     RigidBody rigid;
     rigid.name = wire.name();
     const double metres = MetresIn(wire.unit());
-    rigid.pose = PoseOf(ToVec3(wire.position()) * metres, Turn(ToVec3(wire.rotation())));
+    rigid.pose = PoseAt(ToVec3(wire.position()) * metres, Turn(ToVec3(wire.rotation())));
     ReadShape(wire, metres, path, rigid);
     if (wire.has_motion()) {
-      rigid.motion = TranslateMotion(wire.motion(), {true, true, true}, metres, JoinPath(path, "motion"), problems_);
+      const std::string at = JoinPath(path, "motion");
+      rigid.motion = TranslateMotion(wire.motion(), {true, true, true}, metres, at, problems_);
+      if (!wire.motion().bone().empty()) {
+        problems_.Add(JoinPath(at, "bone"), "is not supported yet for rigid bodies", "give translation and rotation");
+      }
     }
     if (wire.has_free()) rigid.free = FreeOf(wire.free());
     rigid.bone = wire.bone();
@@ -45,10 +49,6 @@ class RigidBodyReader {
   }
 
  private:
-  static Pose PoseOf(const Vec3& position, const Eigen::Quaterniond& q) {
-    return {position, {q.w(), q.x(), q.y(), q.z()}};
-  }
-
   static Eigen::Quaterniond Turn(const Vec3& rotation) {
     const double angle = rotation.norm();
     if (!(angle > 0)) return Eigen::Quaterniond::Identity();
@@ -57,9 +57,8 @@ class RigidBodyReader {
 
   // Turns the frame so that its z axis has a direction, which the message gives in the frame before.
   void PointAlong(const Vec3& direction, RigidBody& rigid) {
-    const auto [w, x, y, z] = rigid.pose.quaternion;
     const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), direction);
-    rigid.pose = PoseOf(rigid.pose.position, Eigen::Quaterniond(w, x, y, z) * turn);
+    rigid.pose = PoseAt(rigid.pose.position, QuaternionOf(rigid.pose) * turn);
   }
 
   void ReadShape(const v1::RigidBody& wire, double metres, const std::string& path, RigidBody& rigid) {

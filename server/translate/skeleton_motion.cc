@@ -75,19 +75,11 @@ class MotionReader {
   }
 
  private:
-  // Whether the rows of a file are at equal intervals, as a filter needs.
-  bool HasEqualIntervals(const std::vector<double>& times) const {
-    const double interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
-    for (std::size_t k = 0; k < times.size(); ++k) {
-      if (std::abs(times[k] - times[0] - interval * static_cast<double>(k)) > 1e-3 * interval) return false;
-    }
-    return true;
-  }
-
-  bool CheckFilter(const std::vector<double>& times) {
+  bool CheckFilter(const MotionTable& table) {
     if (!wire_.has_low_pass()) return true;
     const std::string path = JoinPath(kMotion, "low_pass");
-    if (times.size() < 2 || !HasEqualIntervals(times)) {
+    const std::vector<double>& times = table.times;
+    if (!table.HasEqualIntervals()) {
       problems_.Add(path, "needs times at equal intervals", "omit it, or resample the file");
       return false;
     }
@@ -100,7 +92,7 @@ class MotionReader {
   }
 
   void ReadColumns(const MotionTable& table, const std::string& path) {
-    if (!CheckFilter(table.times)) return;
+    if (!CheckFilter(table)) return;
     const double start = wire_.has_file_start() ? wire_.file_start() : table.times.front();
     std::vector<double> times = table.times;
     for (double& time : times) time -= start;
@@ -207,10 +199,6 @@ class MotionReader {
   Problems& problems_;
   SkeletonMotion motion_;
 };
-
-Curve::Interpolation InterpolationOf(v1::Interpolation interpolation) {
-  return interpolation == v1::INTERPOLATION_SMOOTH ? Curve::Interpolation::kSmooth : Curve::Interpolation::kLinear;
-}
 
 // Times of the key poses; empty after a problem.
 std::vector<double> KeyTimes(const v1::Scene& scene, std::size_t muscles, Problems& problems) {
