@@ -1,4 +1,5 @@
 #include <set>
+#include <utility>
 
 #include "core/scene/checks.h"
 
@@ -28,8 +29,12 @@ const char* Lacking(Method method, const Shape& shape) {
 
 void CheckBodies(const Scene& scene, Problems& problems) {
   if (scene.bodies.empty() && !scene.skeleton) problems.Add("bodies", "the scene has no body", "add at least one");
-  if (scene.bodies.empty() && !scene.floors.empty()) {
-    problems.Add("floors", "no body can touch them", "remove them, or add a body");
+  if (scene.bodies.empty()) {
+    for (const auto& [is_empty, path] : {std::pair(scene.floors.empty(), "floors"),
+                                         {scene.rigid_bodies.empty(), "rigid_bodies"},
+                                         {scene.contacts.empty(), "contacts"}}) {
+      if (!is_empty) problems.Add(path, "no body can touch them", "remove them, or add a body");
+    }
   }
   std::set<std::string> names;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -39,7 +44,7 @@ void CheckBodies(const Scene& scene, Problems& problems) {
     if (!(body.density > 0))
       problems.Add(JoinPath(path, "density"), "a body needs mass", "give a density above 0 kg/m^3");
     if (!names.insert(body.name).second) {
-      problems.Add(JoinPath(path, "name"), "another body is called `" + body.name + " `",
+      problems.Add(JoinPath(path, "name"), "another body is called `" + body.name + "`",
                    "series and files are named after bodies: give each a unique name");
     }
   }

@@ -9,7 +9,6 @@ namespace {
 constexpr std::size_t kMostContacts = 100;
 
 void CheckContact(const Scene& scene, const Contact& contact, const std::string& path, Problems& problems) {
-  // The eulerian method has code for both, whose results are not verified yet.
   if (contact.friction != 0) {
     problems.Add(JoinPath(path, "friction"), "friction between bodies is not supported yet", "omit it");
   }
@@ -34,7 +33,7 @@ void CheckContact(const Scene& scene, const Contact& contact, const std::string&
 }  // namespace
 
 void CheckContacts(const Scene& scene, Problems& problems) {
-  if (!scene.contacts.empty() && scene.method != Method::kEulerian) {
+  if (!scene.contacts.empty() && !scene.bodies.empty() && scene.method != Method::kEulerian) {
     problems.Add("contacts", "only the eulerian method supports contacts between bodies",
                  "omit them, or use the eulerian method");
     return;

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "core/base/vector_text.h"
 #include "core/scene/checks.h"
 
 namespace fascicle::scene_checks {
@@ -11,18 +12,6 @@ namespace {
 
 // A body may begin this deep inside of another one, relative to its mean element: contact pushes it out.
 constexpr double kDeepestStart = 0.1;
-
-std::string Text(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-std::string PlaceText(const Vec3& place) {
-  char text[128];
-  std::snprintf(text, sizeof text, "[%.4g, %.4g, %.4g] m", place[0], place[1], place[2]);
-  return text;
-}
 
 bool IsPositive(double value) { return value > 0 && std::isfinite(value); }
 
@@ -46,7 +35,7 @@ void CheckMotions(const RigidBody& rigid, const std::string& path, Problems& pro
     problems.Add(path, "has more than one of motion, free and bone", "give at most one");
   }
   if (!rigid.bone.empty()) {
-    problems.Add(JoinPath(path, "bone"), "the scene has no skeleton", "use motion for a prescribed motion");
+    problems.Add(JoinPath(path, "bone"), "is not supported yet", "use motion for a prescribed motion");
   }
   if (rigid.free && (rigid.free->mass.has_value() == rigid.free->density.has_value())) {
     problems.Add(JoinPath(path, "free"), "needs either a mass or a density");
@@ -104,8 +93,9 @@ void CheckStart(const RigidBody& rigid, const Body& body, const std::string& pat
     return free[n] ? -distance.At(R.transpose() * (x - rigid.pose.position)).distance : 0;
   });
   if (!(deepest > kDeepestStart * MeanElementSize(*shape))) return;
-  problems.Add(path,
-               "the body `" + body.name + "` starts " + Text("%.3g m inside of it, at ", deepest) + PlaceText(place),
+  char depth[32];
+  std::snprintf(depth, sizeof depth, "%.3g m", deepest);
+  problems.Add(path, "the body `" + body.name + "` starts " + depth + " inside of it, at " + VectorText(place) + " m",
                "move one of them, hold that part of the body by a constraint, or list in `bodies` what it touches");
 }
 

@@ -12,11 +12,12 @@ namespace {
 void CheckBoneNames(const Scene& scene, Problems& problems) {
   std::set<std::string> names;
   for (const Floor& floor : scene.floors) names.insert(floor.name);
+  for (const RigidBody& rigid : scene.rigid_bodies) names.insert(rigid.name);
   const std::vector<Bone>& bones = scene.skeleton->skeleton.bones;
   for (std::size_t b = 0; b < bones.size(); ++b) {
     if (names.insert(bones[b].name).second) continue;
     problems.Add(JoinPath("skeleton", JoinPath(IndexPath("bones", b), "name")),
-                 "another bone or a floor is called `" + bones[b].name + "`", "give each a unique name");
+                 "another bone, a rigid body or a floor is called `" + bones[b].name + "`", "give each a unique name");
   }
 }
 

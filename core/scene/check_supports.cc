@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/vector_text.h"
 #include "core/scene/checks.h"
 #include "core/scene/free_motions.h"
 #include "core/scene/nodal_forces.h"
@@ -73,10 +73,8 @@ bool Pushes(const Scene& scene, const Body& body, const std::vector<Vec3>& resul
 bool HasContact(const Scene& scene, std::size_t body) {
   return std::any_of(scene.rigid_bodies.begin(), scene.rigid_bodies.end(),
                      [&](const RigidBody& rigid) { return Touches(rigid, body); }) ||
-         std::any_of(scene.contacts.begin(), scene.contacts.end(), [&](const Contact& contact) {
-           return contact.bodies.empty() || std::find(contact.bodies.begin(), contact.bodies.end(),
-                                                      static_cast<std::int32_t>(body)) != contact.bodies.end();
-         });
+         std::any_of(scene.contacts.begin(), scene.contacts.end(),
+                     [&](const Contact& contact) { return Touches(contact, body); });
 }
 
 // Whether something that the body cannot enter acts along an axis: a body that falls on it comes to rest, or bounces.
@@ -93,9 +91,7 @@ void CheckFreeParts(const Scene& scene, std::size_t i, Problems& problems) {
   for (const FreePart& part : FindFreeParts(scene.bodies[i])) {
     std::string who = "the body";
     if (part.parts > 1) {
-      char place[128];
-      std::snprintf(place, sizeof place, " at [%.4g, %.4g, %.4g] m", part.place[0], part.place[1], part.place[2]);
-      who = "the part of " + std::to_string(part.tetrahedra) + " tetrahedra" + place;
+      who = "the part of " + std::to_string(part.tetrahedra) + " tetrahedra at " + VectorText(part.place) + " m";
     }
     problems.Add(JoinPath(IndexPath("bodies", i), "constraints"),
                  "the supports leave " + who + " free: it " + part.motions,

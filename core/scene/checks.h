@@ -32,8 +32,8 @@ void CheckFloors(const Scene& scene, Problems& problems);
 void CheckRigidBodies(const Scene& scene, Problems& problems);
 // Contacts are between different bodies that exist, which do not rub or stick yet; only the eulerian method has them.
 void CheckContacts(const Scene& scene, Problems& problems);
-// A skeleton: as many shapes, motions and activations as bones, coordinates and muscles; names apart from the floors';
-// constant gravity.
+// A skeleton: as many shapes, motions and activations as bones, coordinates and muscles; names apart from those of
+// rigid bodies and floors; constant gravity.
 void CheckSkeleton(const Scene& scene, Problems& problems);
 // Probes refer to existing nodes; number of frames; duration.
 void CheckOutput(const Scene& scene, Problems& problems);

@@ -12,21 +12,21 @@ namespace fascicle {
 // Bodies that may touch each other.
 struct Contact {
   std::vector<std::int32_t> bodies;  // indices into Scene::bodies; empty: all
-  double friction = 0;               // Coulomb's coefficient [1]
-  bool lasting = false;              // whether they stay together where they touch at rest
+  double friction = 0;               // Coulomb's coefficient [1]; only 0 is supported yet
+  bool lasting = false;              // whether they stay together where they touch at rest; not supported yet
 };
 template <>
 inline constexpr auto kFieldNames<Contact> = FieldNames("bodies", "friction", "lasting");
 
+// Whether a body is one of the contact's.
+bool Touches(const Contact& contact, std::size_t body);
+
 // Two bodies that may touch each other, a < b.
 struct TouchingPair {
   std::size_t a = 0, b = 0;  // indices into Scene::bodies
-  double friction = 0;
-  bool lasting = false;
 };
 
-// The pairs that contacts name in a scene of so many bodies, ascending; where several name a pair, the last one
-// applies.
+// The pairs that contacts name in a scene of so many bodies, ascending.
 std::vector<TouchingPair> PairsOf(const std::vector<Contact>& contacts, std::size_t bodies);
 
 }  // namespace fascicle
