@@ -18,10 +18,11 @@ namespace fascicle::client {
 namespace {
 
 constexpr const char* kActivationsExamples =
-    R"(  fascicle activations arm/scene.json                         a table: times, joint torques, activations, forces
-  fascicle activations arm/scene.json --csv arm.csv --out arm.png
-  fascicle activations arm/scene.json --set 'skeleton.drive.distribution.at_rest=true' --csv rest.csv
-  fascicle activations arm/scene.json --json                  one object per series: name, unit, times, values
+    R"(  fascicle examples write upper_arm                      a scene to try the lines below with
+  fascicle activations upper_arm.json                    a table: times, joint torques, activations, forces
+  fascicle activations upper_arm.json --csv arm.csv --out arm.png
+  fascicle activations upper_arm.json --set 'skeleton.drive.distribution.at_rest=true' --csv rest.csv
+  fascicle activations upper_arm.json --json             one object per series: name, unit, times, values
 
 The scene's skeleton moves as the scene says, without its bodies; rows are the scene's frames. `torque` is what
 a joint needs, `muscle_torque` what the muscles exert with their activations.

@@ -27,7 +27,7 @@ constexpr const char* kExportExamples =
   fascicle export out --out results                   the job of the run that wrote the folder out
   fascicle export 3f2a --database 3f2a.fascicle       the whole job as one SQLite file, for `fascicle import-job`
   fascicle export 3f2a --out results --from 10 --to 20 --every 2
-  fascicle export 3f2a --out results --fields von_mises_stress --encoding quantized16 --compress   over a slow network
+  fascicle export 3f2a --out results --fields cauchy_stress --encoding quantized16 --compress   over a slow network
 )";
 
 struct ExportOptions {

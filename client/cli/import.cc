@@ -30,14 +30,15 @@ constexpr const char* kImportExamples =
   fascicle import arm26.osim --motion flexion.mot --out arm    an OpenSim model: bones, joints, muscles, their motion
   fascicle activations arm/scene.json --out arm.png            activations that exert the motion's torques
 
-Supported of FEBio: tetrahedra, neo-Hookean, isotropic elastic and Mooney-Rivlin solids, their mixtures with the fibres of muscle
-and tendon material, fixed and prescribed displacements, rigid bodies whose six motions are given, nodal forces,
-tractions, pressures, gravity, fibres, load curves and formulas of the first step. Whatever else changes the answer
-stops the import, with its line and what to do; --accept-loss imports the rest. What changes nothing is noted.
+What a scene takes of FEBio: tetrahedra; neo-Hookean, isotropic elastic and Mooney-Rivlin solids, and their mixtures
+with the fibres of muscle and tendon material; fixed and prescribed displacements; rigid bodies whose six motions are
+given; nodal forces, tractions, pressures and gravity; fibres; load curves and formulas of the first step. Whatever else
+changes the answer stops the import, with its line and what to do; --accept-loss imports the rest. What changes nothing
+is noted.
 
-Supported of OpenSim (versions 3 and 4): bodies with mass and surfaces, joints with their functions, coordinates,
-muscles with their points and the cylinders, spheres and ellipsoids around which they wrap. Surfaces (.vtp, .stl, .obj)
-are taken from the model's folder or Geometry in it. Without bodies, the scene runs as it is.
+What a scene takes of OpenSim (versions 3 and 4): bodies with mass and surfaces, joints with their functions,
+coordinates, muscles with their points and the cylinders, spheres and ellipsoids around which they wrap. Surfaces (.vtp,
+.stl, .obj) are taken from the model's folder or Geometry in it. Without bodies, the scene runs as it is.
 )";
 
 struct ImportOptions {
@@ -45,7 +46,7 @@ struct ImportOptions {
   std::string out;
   FebioOptions febio;
   std::string motion;  // a file
-  double low_pass = 6;
+  std::optional<double> low_pass;
 };
 
 std::string ReadModel(const std::string& path) {
@@ -124,6 +125,7 @@ std::optional<ImportedScene> ImportModel(const ImportOptions& options, Problems&
   const std::string name = fs::path(options.path).filename().string();
   if (!IsOsim(options)) {
     if (!options.motion.empty()) problems.Add("--motion", "belongs to OpenSim models", "give a .osim file");
+    if (options.low_pass) problems.Add("--low-pass", "belongs to motions of OpenSim models", "omit it");
     FebioOptions febio = options.febio;
     febio.name = name;
     return ImportFebio(ReadModel(options.path), febio, problems);
@@ -131,8 +133,11 @@ std::optional<ImportedScene> ImportModel(const ImportOptions& options, Problems&
   OsimOptions osim;
   osim.name = name;
   osim.accept_loss = options.febio.accept_loss;
-  osim.low_pass = options.low_pass;
+  osim.low_pass = options.low_pass.value_or(osim.low_pass);
   osim.surface = [&](const std::string& file) { return ReadSurfaceFile(options.path, file); };
+  if (options.low_pass && options.motion.empty()) {
+    problems.Add("--low-pass", "applies to a motion", "give --motion, or omit it");
+  }
   if (!options.motion.empty()) {
     osim.motion = ImportedFile{fs::path(options.motion).filename().string(), ReadModel(options.motion)};
   }

@@ -19,10 +19,11 @@ namespace fascicle::client {
 namespace {
 
 constexpr const char* kMomentArmsExamples =
-    R"(  fascicle moment-arms arm/scene.json                              a table over the range of each coordinate
-  fascicle moment-arms arm/scene.json --coordinate r_elbow_flex --points 131 --csv elbow.csv --out elbow.png
-  fascicle moment-arms arm/scene.json --set 'skeleton.coordinates[0].value=0.5'    in another pose of the others
-  fascicle moment-arms arm/scene.json --json                       one object per coordinate and muscle
+    R"(  fascicle examples write upper_arm                  a scene to try the lines below with
+  fascicle moment-arms upper_arm.json                a table over the range of each coordinate
+  fascicle moment-arms upper_arm.json --coordinate elbow --points 131 --csv elbow.csv --out elbow.png
+  fascicle moment-arms upper_arm.json --set 'skeleton.coordinates[0].value=0.5'   in another pose of the others
+  fascicle moment-arms upper_arm.json --json         one object per coordinate and muscle
 
 Each coordinate that has a `range` goes through it while the others keep their `value`. A moment arm is -dL/dq, positive
 where the muscle's tension increases the coordinate; muscles that do not cross the joint are left out.

@@ -188,6 +188,11 @@ class CommandsTest : public ::testing::Test {
       for (const std::string& name : {job, other}) MustRun("fascicle watch " + name, prepared_->files);
     }
     if (line.starts_with("fascicle cancel ")) job = Submit("endless.json");
+    // Cancelled with its document, and then no job to `log` or `watch`.
+    if (line.starts_with("fascicle restart ")) {
+      job = Submit("quick.json");
+      MustRun("fascicle watch " + job, prepared_->files);
+    }
     if (Steers(line)) job = prepared_->steered = Submit("steered.json");
     for (const Placeholder& placeholder : kPlaceholders) line = Replaced(line, placeholder.written, placeholder.meant);
     const auto id = [](const std::string& name) { return name.substr(name.find('/') + 1); };
