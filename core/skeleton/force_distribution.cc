@@ -61,6 +61,18 @@ QuadraticProgram ProgramOf(const Eigen::VectorXd& weights, ConstraintRows equali
   return program;
 }
 
+// The solver's bounds hold to rounding; these hold exactly, so that an idle muscle has no activation at all.
+Eigen::VectorXd WithinBounds(const QpSolution& solution, Index muscles) {
+  if (solution.v.size() < muscles) return Eigen::VectorXd::Zero(muscles);
+  Eigen::VectorXd activations = solution.v.head(muscles).cwiseMax(0).cwiseMin(1);
+  if (static_cast<Index>(solution.active.size()) < 2 * muscles) return activations;
+  for (Index m = 0; m < muscles; ++m) {
+    if (solution.active[m]) activations[m] = 0;
+    if (solution.active[muscles + m]) activations[m] = 1;
+  }
+  return activations;
+}
+
 }  // namespace
 
 Distribution ForceDistributor::Solve(const Eigen::MatrixXd& capacity, const Eigen::VectorXd& demand) {
@@ -84,9 +96,7 @@ Distribution ForceDistributor::Solve(const Eigen::MatrixXd& capacity, const Eige
     SolveQp(program, settings, solution);
   }
   active_ = solution.active;
-  // Bounds hold to rounding.
-  result.activations = solution.v.size() >= muscles ? Eigen::VectorXd(solution.v.head(muscles).cwiseMax(0).cwiseMin(1))
-                                                    : Eigen::VectorXd::Zero(muscles);
+  result.activations = WithinBounds(solution, muscles);
   result.lack = demand - capacity * result.activations;
   return result;
 }

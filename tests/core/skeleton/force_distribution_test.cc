@@ -114,6 +114,21 @@ TEST(ForceDistributionTest, ThousandProblemsMeetTheConditionsAndAnotherSolver) {
   EXPECT_GT(compared, 900);
 }
 
+// A muscle whose pull would not help is idle, not almost idle; one that must do all it can is fully active.
+TEST(ForceDistributionTest, BoundsHoldExactly) {
+  MatrixXd capacity(1, 3);
+  capacity << 10, 30, -20;
+  const Distribution light = ForceDistributor().Solve(capacity, VectorXd::Constant(1, 4));
+  ASSERT_TRUE(light.feasible);
+  EXPECT_NEAR(light.activations[1], 4 * 30 / 1000.0, 1e-12);
+  EXPECT_EQ(light.activations[2], 0);
+  const Distribution heavy = ForceDistributor().Solve(capacity, VectorXd::Constant(1, 36));
+  ASSERT_TRUE(heavy.feasible);
+  EXPECT_NEAR(heavy.activations[0], 0.6, 1e-12);
+  EXPECT_EQ(heavy.activations[1], 1);
+  EXPECT_EQ(heavy.activations[2], 0);
+}
+
 // Beyond strength: said, and no activations within bounds lack less.
 TEST(ForceDistributionTest, WhatCannotBeDoneIsSaidWithTheLeastLack) {
   RandomProblems random(11);
