@@ -340,7 +340,7 @@ void EulerianContacts::AddRows(std::size_t p, double dt, double correction,
     if (pair.floor) row.floor = static_cast<std::int32_t>(pair.b);
     for (const auto& [k, weight] : members.points) {
       const Point& point = points[k];
-      const auto add = [&](std::size_t body, const std::vector<NodeWeight>& parts, double sign) {
+      const auto add = [&, weight = weight](std::size_t body, const std::vector<NodeWeight>& parts, double sign) {
         for (const NodeWeight& part : parts) {
           row.parts.push_back(
               {body, part.node, sign * part.weight * weight * frames_[body].VectorInGrid(point.normal)});

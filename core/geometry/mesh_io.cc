@@ -120,7 +120,8 @@ std::string CountSolids(const std::vector<RawSolid>& solids) {
   for (const auto& [shape, name] :
        {std::pair(SolidShape::kHexahedron, "hexahedra"), std::pair(SolidShape::kWedge, "wedges"),
         std::pair(SolidShape::kPyramid, "pyramids")}) {
-    const auto count = std::count_if(solids.begin(), solids.end(), [&](const RawSolid& s) { return s.shape == shape; });
+    const auto count =
+        std::count_if(solids.begin(), solids.end(), [&, shape = shape](const RawSolid& s) { return s.shape == shape; });
     if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name;
   }
   return text;

@@ -38,8 +38,9 @@ struct SymmetricEigen {
   }
 
   static auto AnyCoupled(const Matrix3<T>& a) {
-    const auto first = Coupled(a, 0, 1);
-    const decltype(first) any = first | Coupled(a, 1, 2) | Coupled(a, 2, 0);
+    auto any = Coupled(a, 0, 1);
+    any |= Coupled(a, 1, 2);
+    any |= Coupled(a, 2, 0);
     return any;
   }
 

@@ -16,7 +16,7 @@ class Fingerprint {
  public:
   template <HasFields Struct>
   void Put(const Struct& s) {
-    VisitFields(s, [this](const char*, const auto& member) { Put(member); });
+    VisitFields(s, [this](const char*, const auto& member) { this->Put(member); });
   }
 
   template <class Value>
@@ -57,7 +57,7 @@ class Fingerprint {
   template <class... Kinds>
   void Put(const std::variant<Kinds...>& value) {
     PutBytes(value.index());
-    std::visit([this](const auto& kind) { Put(kind); }, value);
+    std::visit([this](const auto& kind) { this->Put(kind); }, value);
   }
 
   // A law holds nothing but numbers, which follow from its parameters, or refers to some.
