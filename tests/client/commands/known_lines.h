@@ -46,6 +46,9 @@ inline constexpr std::array kSlowLines = {
     "fascicle run anconeus_loads.json --out out",
     "fascicle run scene.json --check",
     "fascicle run fusiform_isometric.json --out out",
+    "fascicle run upper_arm.json --out out",
+    "fascicle render out --frames all --colour activation --out lift.gif",
+    "fascicle render out --frames all --smooth --out run.gif",
     "fascicle render 3f2a --out release.gif --frames all --fps 12",
     "fascicle render 3f2a --out round.gif --turntable 48 --smooth",
     "fascicle segment thigh.nii.gz --filter bias-field --filter wavelet --classes 4 --class 3 --opening 2 --picture "
