@@ -154,9 +154,9 @@ bool ControlDatabase::HasJob(std::string_view id) {
   return ReadWith([&](JobReader& reader) { return reader.Has(id); });
 }
 
-std::unordered_set<std::string> ControlDatabase::IdsWithFrames() {
+std::unordered_set<std::string> ControlDatabase::Ids() {
   return ReadWith([](JobReader& reader) {
-    const std::vector<std::string> ids = reader.IdsWithFrames();
+    const std::vector<std::string> ids = reader.Ids();
     return std::unordered_set<std::string>(ids.begin(), ids.end());
   });
 }

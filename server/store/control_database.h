@@ -39,8 +39,7 @@ class ControlDatabase final : public JobStore {
   std::int64_t Revision() override { return revision_; }
 
   bool HasJob(std::string_view id);
-  // All jobs but those whose frames were removed.
-  std::unordered_set<std::string> IdsWithFrames();
+  std::unordered_set<std::string> Ids();
 
  private:
   // Calls read(reader) for control.db or, if that is damaged, for the copy.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <stdexcept>
 #include <system_error>
@@ -159,19 +160,36 @@ FrameDatabase::~FrameDatabase() {
 
 void FrameDatabase::Remove(const std::string& path) {
   std::error_code ignored;  // the file is removed when the store is opened the next time
-  for (const char* suffix : {"-wal", "-shm", ""}) std::filesystem::remove(path + suffix, ignored);
+  for (const char* suffix : {"-wal", "-shm", "", kInputsSuffix}) std::filesystem::remove(path + suffix, ignored);
 }
 
-void FrameDatabase::RemoveAllButInputs(const std::string& path) {
-  // Closed, a database is without a write-ahead log, which would not fit the new file.
-  const std::vector<SteeringRecord> inputs =
-      FrameDatabase(path, nullptr).ListSteering(0, std::numeric_limits<int>::max());
-  if (inputs.empty()) return Remove(path);
-  const std::string kept = path + ".new";
-  Remove(kept);
-  for (FrameDatabase database(kept, nullptr); const SteeringRecord& input : inputs) database.PutSteering(input);
-  SyncFile(kept);
-  std::filesystem::rename(kept, path);
+void FrameDatabase::CopyInputs(const std::string& path) {
+  constexpr int kAll = std::numeric_limits<int>::max();
+  const std::string copy = path + kInputsSuffix;
+  Remove(copy);
+  // Closed, a database is without a write-ahead log, which would not fit the copy.
+  const std::vector<SteeringRecord> inputs = FrameDatabase(path, nullptr).ListSteering(0, kAll);
+  if (inputs.empty()) {
+    std::ofstream(copy).flush();
+  } else {
+    for (FrameDatabase database(copy, nullptr); const SteeringRecord& input : inputs) database.PutSteering(input);
+    // On a full disk, rows may have stayed in the write-ahead log.
+    if (std::filesystem::exists(copy + "-wal")) throw NoSpaceError(copy + ": the inputs could not be copied");
+  }
+  SyncFile(copy);
+  SyncParent(copy);
+}
+
+void FrameDatabase::KeepCopiedInputs(const std::string& path) {
+  const std::string copy = path + kInputsSuffix;
+  for (const char* suffix : {"-wal", "-shm"}) std::filesystem::remove(path + suffix);
+  if (std::filesystem::file_size(copy) > 0) {
+    std::filesystem::rename(copy, path);
+  } else {
+    std::filesystem::remove(path);
+    SyncParent(path);
+    std::filesystem::remove(copy);
+  }
   SyncParent(path);
 }
 
@@ -252,6 +270,7 @@ bool FrameDatabase::PutFrame(const FrameRecord& frame, std::string_view bytes, s
   if (!checkpoint.empty()) InsertCheckpoint(frame.index, checkpoint);
   const std::int64_t log_end = InsertLog(lines);
   transaction.Commit();
+  if (stored == Stored::kDifferent) ++replacements_;
   log_end_ = log_end;
   if (stored == Stored::kNot) {
     stored_bytes_ += static_cast<std::int64_t>(bytes.size());

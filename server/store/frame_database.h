@@ -31,6 +31,7 @@ class FrameDatabase final : public FrameStore {
   void DropCheckpoints() override;
   std::optional<CheckpointRecord> GetCheckpoint(std::int64_t frame) override;
   std::vector<FrameRecord> ListFrames(std::int64_t start, int limit) override;
+  std::int64_t replacements() override { return replacements_; }
   std::int64_t frame_count() override { return frame_count_; }
   std::int64_t stored_bytes() override { return stored_bytes_; }
   std::optional<std::string> ReadChunk(std::int64_t index, std::int64_t chunk) override;
@@ -43,11 +44,16 @@ class FrameDatabase final : public FrameStore {
   // Whether the file is removed with this object: its job has been deleted, or is not there yet.
   void RemoveWhenClosed(bool remove = true) { remove_ = remove; }
 
-  // Removes the file of a job and SQLite's files beside it.
+  // Removes the file of a job, SQLite's files beside it, and the copy of its inputs.
   static void Remove(const std::string& path);
-  // Replaces the file of a job, which nobody has open, by one that has its inputs only, or by none if there are none.
-  // After a power cut, the one or the other is there.
-  static void RemoveAllButInputs(const std::string& path);
+
+  // Frames are removed in two steps, so that a power cut between them loses no input. Nobody may have the file open.
+  // Writes a copy with the inputs only, path + kInputsSuffix, which is an empty file if there are none. Throws if an
+  // input can't be read or copied.
+  static void CopyInputs(const std::string& path);
+  // Replaces the file by that copy, or removes it if the copy is empty.
+  static void KeepCopiedInputs(const std::string& path);
+  static constexpr const char* kInputsSuffix = ".inputs";
 
  private:
   struct Reader;
@@ -71,6 +77,7 @@ class FrameDatabase final : public FrameStore {
   const std::string path_;
   std::mutex write_mutex_;
   std::unique_ptr<Connections> connections_;
+  std::atomic<std::int64_t> replacements_ = 0;
   std::atomic<std::int64_t> frame_count_ = 0;
   std::atomic<std::int64_t> stored_bytes_ = 0;
   std::atomic<std::int64_t> log_end_ = 0;

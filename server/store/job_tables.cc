@@ -374,8 +374,6 @@ JobReader::JobReader(const std::string& path)
                               " FROM jobs WHERE (?1 = '' OR id < ?1) AND (?2 >> state) & 1 ORDER BY id DESC LIMIT ?3")),
       has_(database_.Prepare("SELECT 1 FROM jobs WHERE id = ?")),
       ids_(database_.Prepare("SELECT id FROM jobs NOT INDEXED")),
-      with_frames_(
-          database_.Prepare("SELECT id FROM jobs NOT INDEXED WHERE first_frame = 0 OR first_frame < frame_count")),
       stored_bytes_(database_.Prepare("SELECT ifnull(sum(stored_bytes), 0) FROM jobs INDEXED BY jobs_by_owner")),
       stored_bytes_of_(
           database_.Prepare("SELECT ifnull(sum(stored_bytes), 0) FROM jobs INDEXED BY jobs_by_owner WHERE owner = ?")),
@@ -467,7 +465,5 @@ JobChanges JobReader::ReadChanges(const ChangeRange& range) {
 bool JobReader::Has(std::string_view id) { return has_.Query(id).Next(); }
 
 std::vector<std::string> JobReader::Ids() { return TextsOf(ids_.Query()); }
-
-std::vector<std::string> JobReader::IdsWithFrames() { return TextsOf(with_frames_.Query()); }
 
 }  // namespace fascicle::server

@@ -67,13 +67,12 @@ class JobReader {
   JobChanges Changes(const ChangeRange& range);
   bool Has(std::string_view id);
   std::vector<std::string> Ids();
-  std::vector<std::string> IdsWithFrames();
 
  private:
   JobChanges ReadChanges(const ChangeRange& range);
 
   Database database_;
-  Statement get_, find_request_, list_, has_, ids_, with_frames_, stored_bytes_, stored_bytes_of_, changed_, deleted_;
+  Statement get_, find_request_, list_, has_, ids_, stored_bytes_, stored_bytes_of_, changed_, deleted_;
 };
 
 }  // namespace fascicle::server

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
+#include <vector>
 
 #include "server/store/asset_directory.h"
 #include "server/store/control_database.h"
@@ -98,9 +99,10 @@ class SqliteStore final : public Store {
     const std::lock_guard lock(mutex_);
     const auto open = open_frames_.find(job.id);
     if (open != open_frames_.end() && !open->second.expired()) return false;
-    // As above: a record without its file would be inconsistent.
+    // The record is written in between: RemoveOrphans then knows whether to finish what was interrupted.
+    WithReserve([&] { FrameDatabase::CopyInputs(FramesPath(job.id)); });
     WithReserve([&] { jobs_.UpdateJob(job); });
-    FrameDatabase::RemoveAllButInputs(FramesPath(job.id));
+    FrameDatabase::KeepCopiedInputs(FramesPath(job.id));
     return true;
   }
 
@@ -174,17 +176,27 @@ class SqliteStore final : public Store {
 
   std::string FramesPath(std::string_view id) const { return directory_ + "/jobs/" + std::string(id) + ".db"; }
 
-  // Removes files of jobs that are not in the control database, or whose frames were removed, left by interruptions.
+  // Removes files of jobs that are not in the control database, and finishes removals of frames, left by interruptions.
   // Keeps all of them if the control database was ever damaged: its list may be incomplete.
   void RemoveOrphans() {
     if (fs::exists(directory_ + "/control.db.damaged-1")) return;
-    const std::unordered_set<std::string> ids = jobs_.IdsWithFrames();
+    const std::unordered_set<std::string> ids = jobs_.Ids();
+    std::vector<std::string> with_copies;
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(directory_ + "/jobs", error)) {
-      const std::string name = entry.path().filename().string();
-      if (!ids.contains(name.substr(0, name.find('.')))) fs::remove(entry.path(), error);
+      const std::string id = entry.path().stem().stem().string();
+      if (!ids.contains(id)) fs::remove(entry.path(), error);
+      if (ids.contains(id) && entry.path().extension() == FrameDatabase::kInputsSuffix) with_copies.push_back(id);
     }
     if (error) throw StoreError(directory_ + "/jobs: " + error.message());
+    for (const std::string& id : with_copies) FinishRemoval(id);
+  }
+
+  void FinishRemoval(const std::string& id) {
+    const std::optional<JobRecord> job = jobs_.GetJob(id);
+    const bool is_removed = job && job->first_frame > 0 && job->first_frame == job->frame_count;
+    if (is_removed) return FrameDatabase::KeepCopiedInputs(FramesPath(id));
+    FrameDatabase::Remove(FramesPath(id) + FrameDatabase::kInputsSuffix);
   }
 
   // Removes the files of interrupted exports and imports.

@@ -53,6 +53,18 @@ TEST_F(DamageTest, ADamagedFrameIsToldAndWrittenAnew) {
   EXPECT_EQ(frames->stored_bytes(), 3 * 1'200'000 + 8);
 }
 
+// Without its inputs, a restart would compute other frames and not say so.
+TEST_F(DamageTest, FramesAreKeptWhileAnInputCannotBeRead) {
+  const std::unique_ptr<Store> store = Fill();
+  store->OpenFrames(SampleJob(1).id)->PutSteering({.sequence = 1, .step = 7, .input = "an input"});
+  Change(FramesPath(), "UPDATE steering SET input = x'00'");
+  JobRecord job = SampleJob(1);
+  job.first_frame = job.frame_count = 3;
+  EXPECT_THROW(store->RemoveFrames(job), DamageError);
+  EXPECT_EQ(store->GetJob(job.id)->first_frame, 0);
+  EXPECT_EQ(store->OpenFrames(job.id)->frame_count(), 3);
+}
+
 TEST_F(DamageTest, AChunkInThePlaceOfAnotherIsTold) {
   const std::unique_ptr<Store> store = Fill();
   Change(FramesPath(), "DELETE FROM chunks WHERE frame = 2 AND chunk = 0");

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "server/store/database.h"
+#include "server/store/frame_database.h"
 #include "server/store/group_commit.h"
 #include "server/store/job_tables.h"
 #include "server/store/store.h"
@@ -46,6 +47,31 @@ class SqliteStoreTest : public ::testing::Test {
   testing::TemporaryFolder directory_;
   JobRecord existing_;
 };
+
+// Frames are removed in three steps; the server may be killed between any two.
+TEST_F(SqliteStoreTest, AnInterruptedRemovalOfFramesIsFinishedIfItWasRecorded) {
+  for (const bool has_inputs : {true, false}) {
+    SCOPED_TRACE(has_inputs);
+    const int number = has_inputs ? 1 : 2;
+    JobRecord job = SampleJob(number);
+    {
+      const std::unique_ptr<Store> store = Open();
+      Fill(*store, number, 3, 100'000);
+      if (has_inputs) store->OpenFrames(job.id)->PutSteering({.sequence = 1, .step = 7, .input = "an input"});
+    }
+    FrameDatabase::CopyInputs(FramesPath(number));
+    EXPECT_EQ(Open()->OpenFrames(job.id)->frame_count(), 3);
+    EXPECT_FALSE(fs::exists(FramesPath(number) + FrameDatabase::kInputsSuffix));
+
+    job.first_frame = job.frame_count = 3;
+    Open()->UpdateJob(job);
+    FrameDatabase::CopyInputs(FramesPath(number));
+    const std::unique_ptr<Store> store = Open();
+    EXPECT_EQ(AreFilesOf(number), has_inputs);
+    EXPECT_EQ(store->OpenFrames(job.id)->frame_count(), 0);
+    EXPECT_EQ(store->OpenFrames(job.id)->ListSteering(0, 10).size(), has_inputs ? 1u : 0u);
+  }
+}
 
 TEST_F(SqliteStoreTest, EverythingIsThereAfterReopening) {
   {

@@ -257,6 +257,11 @@ TEST_P(StoreContract, FramesCanBeRemovedWhenNobodyReadsThem) {
   ASSERT_EQ(inputs.size(), 1u);
   EXPECT_EQ(inputs[0].step, 7);
   EXPECT_EQ(inputs[0].input, "an input");
+  if (GetParam() == Kind::kMemory) return;
+  store_.reset();
+  store_ = Make();
+  EXPECT_EQ(store_->OpenFrames(job.id)->frame_count(), 0);
+  EXPECT_EQ(store_->OpenFrames(job.id)->ListSteering(0, 10).size(), 1u);
 }
 
 TEST_P(StoreContract, KnowsNoJobThatWasNotCreated) {
