@@ -187,8 +187,10 @@ bool JobSteering::TryClose() {
 }
 
 void JobSteering::Close() {
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   is_closed_ = true;
+  // What is being stored is told as not reached.
+  changed_.wait(lock, [this] { return !reserved_; });
 }
 
 std::vector<std::int64_t> JobSteering::Unreached() {

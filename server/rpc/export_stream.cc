@@ -65,12 +65,14 @@ bool ExportStream::Open() {
     return false;
   }
   auto file = std::make_unique<TransferFile>(context_.store.NewTransferPath());
+  // Counted before the inputs are listed: no frame is exported without the inputs that it shows.
+  const std::int64_t frame_count = frames->frame_count();
   v1::Job job = ToMessageWithScene(*view);
   const auto steering = context_.jobs.ListSteering(*id, 1, std::numeric_limits<int>::max());
   for (const SteeringRecord& input : steering ? steering->inputs : std::vector<SteeringRecord>()) {
     *job.add_inputs() = InputForSpec(input);
   }
-  WriteJobFile(file->path(), job.SerializeAsString(), *frames, [this] { return HasRoom(); });
+  WriteJobFile(file->path(), job.SerializeAsString(), *frames, frame_count, [this] { return HasRoom(); });
   size_ = static_cast<std::int64_t>(std::filesystem::file_size(file->path()));
   in_.open(file->path(), std::ios::binary);
   file_ = std::move(file);

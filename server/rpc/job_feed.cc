@@ -115,7 +115,6 @@ std::shared_ptr<const JobFeed::State> JobFeed::Read() {
     throw DamageError("of the " + std::to_string(record.frame_count) + " frames of " + JobName(job_id_) + " only " +
                       std::to_string(state->frame_count) + " are there");
   }
-  if (state_ && state_->view.record.generation != record.generation) records_.clear();
   state->progress = ProgressOf(*view);
   state->beat = state_ ? state_->beat : 0;
   // A frame that comes a little earlier takes the beat along.
@@ -133,6 +132,10 @@ std::shared_ptr<const JobFeed::State> JobFeed::Read() {
 FrameRecord JobFeed::Record(std::int64_t index, int ahead) {
   constexpr std::size_t kMostRecords = 4096;
   const std::lock_guard lock(state_mutex_);
+  if (const std::int64_t now = frames_->replacements(); now != replacements_) {
+    records_.clear();
+    replacements_ = now;
+  }
   auto found = records_.find(index);
   if (found == records_.end()) {
     if (records_.size() >= kMostRecords) records_.clear();

@@ -72,6 +72,7 @@ class JobFeed : public std::enable_shared_from_this<JobFeed> {
   std::string told_;  // what the last beat told
   Clock::time_point last_beat_;
   std::map<std::int64_t, FrameRecord> records_;
+  std::int64_t replacements_ = 0;  // of frames, when records_ were read
 
   std::mutex streams_mutex_;  // guards the members below
   int joined_ = 0;

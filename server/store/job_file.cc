@@ -55,9 +55,8 @@ class JobFileWriter {
  public:
   explicit JobFileWriter(const std::string& path) : database_(MakeTables(path)) {}
 
-  void Write(std::string_view job, FrameStore& frames, const std::function<bool()>& go_on) {
+  void Write(std::string_view job, FrameStore& frames, std::int64_t count, const std::function<bool()>& go_on) {
     Transaction transaction(database_);
-    const std::int64_t count = frames.frame_count();
     const std::int64_t parts = PutJob(job);
     const std::int64_t geometry = PutGeometry(frames);
     for (std::int64_t index = 0; index < count; ++index) {
@@ -168,9 +167,9 @@ Database Open(const std::string& path) {
 
 }  // namespace
 
-void WriteJobFile(const std::string& path, std::string_view job, FrameStore& frames,
+void WriteJobFile(const std::string& path, std::string_view job, FrameStore& frames, std::int64_t count,
                   const std::function<bool()>& go_on) {
-  JobFileWriter(path).Write(job, frames, go_on);
+  JobFileWriter(path).Write(job, frames, count, go_on);
 }
 
 struct JobFileReader::Impl {

@@ -20,9 +20,9 @@ namespace fascicle::server {
 //   chunks    of the frames, all in one sequence
 // Every row has the checksum of its other columns (row_checksum.h).
 
-// Writes the frames that `frames` has now, and its geometry, to a new file. `go_on` is asked before each frame; Stopped
-// is thrown if it says no. Throws StoreError.
-void WriteJobFile(const std::string& path, std::string_view job, FrameStore& frames,
+// Writes the first `count` frames and the geometry to a new file. `go_on` is asked before each frame; Stopped is thrown
+// if it says no. Throws StoreError.
+void WriteJobFile(const std::string& path, std::string_view job, FrameStore& frames, std::int64_t count,
                   const std::function<bool()>& go_on);
 
 // The file is not one of this kind, or is damaged; `what` is for users.

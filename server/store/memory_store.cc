@@ -56,7 +56,14 @@ class MemoryFrameStore final : public FrameStore {
       while (checkpoints_.size() > 2) checkpoints_.erase(checkpoints_.begin());
     }
     AddLines(log);
-    return is_there && !is_same;
+    const bool is_replaced = is_there && !is_same;
+    if (is_replaced) ++replacements_;
+    return is_replaced;
+  }
+
+  std::int64_t replacements() override {
+    const std::shared_lock lock(mutex_);
+    return replacements_;
   }
 
   void DropCheckpoints() override {
@@ -170,6 +177,7 @@ class MemoryFrameStore final : public FrameStore {
   std::optional<std::string> geometry_;
   std::vector<StoredFrame> frames_;
   std::map<std::int64_t, std::string> checkpoints_;
+  std::int64_t replacements_ = 0;
   std::int64_t stored_bytes_ = 0;
 };
 

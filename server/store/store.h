@@ -189,6 +189,8 @@ class FrameStore {
   virtual std::optional<CheckpointRecord> GetCheckpoint(std::int64_t frame) = 0;
   // Frames with index >= start, at most `limit`, in order.
   virtual std::vector<FrameRecord> ListFrames(std::int64_t start, int limit) = 0;
+  // How often frames have been replaced by others since this store was opened.
+  virtual std::int64_t replacements() = 0;
   // Frames 0 .. count - 1 are stored.
   virtual std::int64_t frame_count() = 0;
   virtual std::int64_t stored_bytes() = 0;

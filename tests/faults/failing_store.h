@@ -149,6 +149,7 @@ class FailingStore final : public Store {
       faults_->reads.Call();
       return behind_->ListFrames(start, limit);
     }
+    std::int64_t replacements() override { return behind_->replacements(); }
     std::int64_t frame_count() override { return behind_->frame_count(); }
     std::int64_t stored_bytes() override { return behind_->stored_bytes(); }
     std::optional<std::string> ReadChunk(std::int64_t index, std::int64_t chunk) override {

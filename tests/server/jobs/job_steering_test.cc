@@ -126,6 +126,7 @@ class SlowFrames final : public FrameStore {
   void DropCheckpoints() override {}
   std::optional<CheckpointRecord> GetCheckpoint(std::int64_t) override { return {}; }
   std::vector<FrameRecord> ListFrames(std::int64_t, int) override { return {}; }
+  std::int64_t replacements() override { return 0; }
   std::int64_t frame_count() override { return 0; }
   std::int64_t stored_bytes() override { return 0; }
   std::optional<std::string> ReadChunk(std::int64_t, std::int64_t) override { return {}; }
@@ -171,6 +172,26 @@ TEST_F(JobSteeringTest, AStepWaitsForAnInputThatIsBeingStored) {
     EXPECT_THAT(SequencesOf(inputs), ElementsAre(1)) << "the one that is stored";
     EXPECT_EQ(frames_->ListSteering(1, 10).size(), 1u);
   }
+}
+
+// The run has ended, but the input that is being stored will be acknowledged: it is told as not reached.
+TEST_F(JobSteeringTest, TheEndWaitsForAnInputThatIsBeingStored) {
+  const auto slow = std::make_shared<SlowFrames>(frames_);
+  frames_ = slow;
+  JobSteering steering;
+  Begin(steering, 10);
+  std::thread client([&] { EXPECT_TRUE(steering.Apply(Asap(1), false).record.has_value()); });
+  slow->entered.acquire();
+  std::vector<std::int64_t> unreached;
+  std::thread run([&] {
+    steering.Close();
+    unreached = steering.Unreached();
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  slow->go_on.release();
+  client.join();
+  run.join();
+  EXPECT_THAT(unreached, ElementsAre(1));
 }
 
 // A real job: replayed with other step boundaries it would differ.

@@ -43,7 +43,7 @@ void WriteSample(const std::string& path) {
   const std::shared_ptr<FrameStore> frames = store->OpenFrames(SampleJob(1).id);
   frames->PutGeometry(kGeometryBytes);
   for (std::int64_t i = 0; i < kFramesInFile; ++i) frames->PutFrame(FrameOf(i).record, FrameOf(i).bytes, "");
-  WriteJobFile(path, kJobBytes, *frames, [] { return true; });
+  WriteJobFile(path, kJobBytes, *frames, frames->frame_count(), [] { return true; });
 }
 
 // Whether the file has what was written; throws JobFileError.
@@ -85,7 +85,7 @@ TEST_F(JobFileTest, WritingStopsOnRequest) {
   store->CreateJob(SampleJob(1), &existing);
   const std::shared_ptr<FrameStore> frames = store->OpenFrames(SampleJob(1).id);
   frames->PutFrame(FrameOf(0).record, FrameOf(0).bytes, "");
-  EXPECT_THROW(WriteJobFile(folder_ / "other", kJobBytes, *frames, [] { return false; }), Stopped);
+  EXPECT_THROW(WriteJobFile(folder_ / "other", kJobBytes, *frames, 1, [] { return false; }), Stopped);
 }
 
 // 300 single flips, or FASCICLE_BIT_FLIPS.
