@@ -126,8 +126,8 @@ struct JobManager::Impl {
     QueuePlace(Impl& impl, const std::string& owner) : impl_(impl), owner_(owner) {
       const std::lock_guard lock(impl_.mutex);
       const int most = impl_.options.max_queued_per_owner;
-      const auto coming = impl_.coming.find(owner_);
-      const int count = impl_.queue.CountOf(owner_) + (coming == impl_.coming.end() ? 0 : coming->second);
+      const auto entry = impl_.coming.find(owner_);
+      const int count = impl_.queue.CountOf(owner_) + (entry == impl_.coming.end() ? 0 : entry->second);
       if (most > 0 && count >= most) {
         throw OwnerLimitError("an owner may have " + std::to_string(most) +
                               " jobs in the queue: wait until some have started, or cancel some");
@@ -141,8 +141,8 @@ struct JobManager::Impl {
     // When the job is in the queue itself; needs mutex.
     void GiveUp() {
       if (std::exchange(is_given_up_, true)) return;
-      const auto coming = impl_.coming.find(owner_);
-      if (--coming->second == 0) impl_.coming.erase(coming);
+      const auto entry = impl_.coming.find(owner_);
+      if (--entry->second == 0) impl_.coming.erase(entry);
     }
     QueuePlace(const QueuePlace&) = delete;
     QueuePlace& operator=(const QueuePlace&) = delete;
@@ -477,7 +477,8 @@ JobView JobManager::Submit(JobRecord record, bool* repeated, std::shared_ptr<con
   return impl_->View(impl_->FindActive(existing->id), *std::move(existing));
 }
 
-JobManager::Staged JobManager::Stage(const std::string& wanted) {
+JobManager::Staged JobManager::Stage(const std::string& wanted, const std::string& owner) {
+  impl_->CheckStored(owner);
   const std::int64_t now_ms = UnixTimeUs() / 1000;
   // A later id would come before all that this server will make.
   std::string id = IsPastJobId(wanted, now_ms) ? wanted : impl_->ids.Next(now_ms);

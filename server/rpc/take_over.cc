@@ -35,7 +35,12 @@ v1::Job ReadJobMessage(JobFileReader& file) {
   Problems problems;
   CheckSettings(job, problems);
   CheckInputs(job, "job.inputs", problems);
-  if (!problems.empty()) throw JobFileError("the file describes a job that is not possible:\n" + problems.ToString());
+  // There may be hundreds, and the text is sent as metadata.
+  if (!problems.empty()) {
+    const Problem& first = problems.kept().front();
+    throw JobFileError("the file describes a job that is not possible: " + first.path + ": " + first.message +
+                       (problems.count() > 1 ? ", and " + std::to_string(problems.count() - 1) + " more" : ""));
+  }
   return job;
 }
 
@@ -115,7 +120,7 @@ grpc::Status TakeOver(RpcContext& context, JobFileReader& file, const v1::Import
   const v1::Job job = ReadJobMessage(file);
   JobRecord record = RecordOf(job, request);
   const std::string original = request.new_name() ? "" : ParseJobName(job.name()).value_or("");
-  const JobManager::Staged staged = context.jobs.Stage(original);
+  const JobManager::Staged staged = context.jobs.Stage(original, record.owner);
   record.id = staged.id;
   record.request_digest = Hex(Sha256Of(record.spec + Copy(file, *staged.frames, go_on)));
   record.frame_count = staged.frames->frame_count();

@@ -124,6 +124,16 @@ TEST(SkeletonTranslation, WeakMusclesAreTold) {
   EXPECT_THAT(translated->skeleton->notes[0], HasSubstr("N m about `elbow`"));
 }
 
+TEST(SkeletonTranslation, FieldsWithoutEffectAreTold) {
+  const std::string fibres =
+      "skeleton { muscles { name: 'x' max_isometric_force: 1 optimal_fibre_length: 0.1 "
+      "points {} points { bone: 'forearm' } } }";
+  const auto scene = Merged(fibres + " tet { time_step: 1e-3 }");
+  ASSERT_TRUE(scene);
+  EXPECT_THAT(scene->skeleton->notes,
+              ::testing::UnorderedElementsAre(HasSubstr("skeleton.muscles: fibres"), HasSubstr("tet: has no effect")));
+}
+
 TEST(SkeletonProblems, JointsAndNames) {
   EXPECT_THAT(At(WithSkeleton("bones { name: 'hand' }"), "skeleton.bones[2]"), HasSubstr("no joints connect `hand`"));
   EXPECT_THAT(At(WithSkeleton("bones { name: 'ground' }"), "skeleton.bones[2].name"), HasSubstr("does not move"));
@@ -173,6 +183,14 @@ TEST(SkeletonProblems, MusclesAndFunctions) {
   EXPECT_THAT(At(problems, "skeleton.muscles[2].points[1].moved[0].function.x[1]"), HasSubstr("increase"));
   EXPECT_THAT(At(problems, "skeleton.muscles[2].wraps[0].surface"), HasSubstr("no wrap surface"));
   EXPECT_THAT(At(problems, "skeleton.muscles[0].optimal_fibre_length"), HasSubstr("missing"));
+  EXPECT_THAT(
+      At(WithSkeleton("muscles { name: 'x' max_isometric_force: 1 points { condition: 'elbow' range: [1, 0] } }"),
+         "skeleton.muscles[2].points[0].range"),
+      HasSubstr("descends"));
+  EXPECT_THAT(At(WithSkeleton("bones { name: 'x' shapes { capsule { to: [0, 1, 0] radius: 1 } scale: [1, 1, 2] } } "
+                              "joints { name: 'x' child: 'x' }"),
+                 "skeleton.bones[2].shapes[0].scale"),
+              HasSubstr("belongs to a file"));
 }
 
 TEST(SkeletonProblems, Motions) {
@@ -211,6 +229,9 @@ TEST(SkeletonProblems, DrivesAndBodies) {
   both.mutable_bodies(0)->mutable_activation()->add_times(0);
   both.mutable_bodies(0)->mutable_activation()->add_values(0);
   EXPECT_THAT(At(ProblemsOf(both), "bodies[0].activation_muscle"), HasSubstr("beside an activation"));
+  both.mutable_bodies(0)->clear_activation();
+  both.mutable_bodies(0)->set_name("flexor");
+  EXPECT_THAT(At(ProblemsOf(both), "skeleton.muscles[0].name"), HasSubstr("a body is called `flexor`"));
 }
 
 TEST(SkeletonProblems, ManyEntriesAreRefusedAtOnce) {

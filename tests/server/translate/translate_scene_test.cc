@@ -657,6 +657,33 @@ TEST(TranslateScene, RigidBodies) {
   v1::Scene wire = BoxScene();
   google::protobuf::TextFormat::MergeFromString(
       R"(rigid_bodies { name: "wall" plane { normal: [2, 0, 0] } position: [-1, 0, 0] }
+         rigid_bodies { name: "rod" unit: LENGTH_UNIT_MM cylinder { radius: 5 length: 80 axis: [1, 0, 0] }
+           position: [0, 0, -200] rotation: [0, 0, 1.5707963267948966] bodies: "box"
+           motion { rotation { point: [0, 10, 0] axis: [0, 0, 3] angle { times: [0, 1] values: [0, 1] } } } }
+         rigid_bodies { name: "block" unit: LENGTH_UNIT_CM box { size: [1, 2, 3] } position: [0, 0, 20] })",
+      &wire);
+  const auto scene = Translate(wire);
+  ASSERT_NE(scene, nullptr);
+  const std::vector<RigidBody>& rigid = scene->rigid_bodies;
+  ASSERT_EQ(rigid.size(), 3u);
+  EXPECT_TRUE(std::holds_alternative<HalfSpace>(rigid[0].shape));
+  EXPECT_EQ(rigid[0].pose.position, Vec3(-1, 0, 0)) << "in m";
+  EXPECT_LT((RotationOf(rigid[0].pose) * Vec3::UnitZ() - Vec3::UnitX()).norm(), 1e-15);
+  EXPECT_TRUE(rigid[0].bodies.empty());
+  EXPECT_EQ(std::get<Cylinder>(rigid[1].shape).radius, 0.005);
+  EXPECT_EQ(std::get<Cylinder>(rigid[1].shape).length, 0.08);
+  EXPECT_EQ(rigid[1].pose.position, Vec3(0, 0, -0.2));
+  EXPECT_LT((RotationOf(rigid[1].pose) * Vec3::UnitZ() - Vec3::UnitY()).norm(), 1e-15) << "its axis is turned, too";
+  EXPECT_EQ(rigid[1].motion->rotation->point, Vec3(0, 0.01, 0));
+  EXPECT_EQ(rigid[1].motion->rotation->axis, Vec3::UnitZ());
+  EXPECT_EQ(rigid[1].bodies, std::vector<std::int32_t>{0});
+  EXPECT_LT((std::get<Cuboid>(rigid[2].shape).size - Vec3(0.01, 0.02, 0.03)).norm(), 1e-17);
+}
+
+TEST(TranslateScene, RigidBodiesWithMistakes) {
+  v1::Scene wire = BoxScene();
+  google::protobuf::TextFormat::MergeFromString(
+      R"(rigid_bodies { name: "wall" plane { normal: [2, 0, 0] } position: [-1, 0, 0] }
          rigid_bodies { name: "bone" unit: LENGTH_UNIT_MM cylinder { radius: 5 length: 80 axis: [1, 0, 0] }
            position: [0, 0, -200] rotation: [0, 0, 1.5707963267948966] bodies: "box"
            motion { rotation { point: [0, 10, 0] axis: [0, 0, 3] angle { times: [0, 1] values: [0, 1] } } } }
