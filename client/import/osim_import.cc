@@ -16,7 +16,9 @@ namespace fascicle::client {
 namespace {
 
 constexpr std::size_t kMaxModelBytes = std::size_t{64} << 20, kMaxMotionBytes = std::size_t{256} << 20;
-constexpr double kFrames = 50;  // of a motion
+constexpr const char* kLettersOfNames = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
+constexpr double kFrames = 50;          // of a motion
+constexpr double kMostDuration = 1000;  // of a scene [s]
 
 // The last part of a path, in the style of any system.
 std::string FileName(const std::string& path) { return path.substr(path.find_last_of("/\\") + 1); }
@@ -37,6 +39,7 @@ class OsimImporter {
     std::vector<std::string> renamed;
     *scene.mutable_skeleton() = EncodeSkeleton(model_.skeleton, renamed);
     for (const std::string& name : renamed) Note(name);
+    NoteStrength();
     const Vec3& g = model_.skeleton.gravity;
     if (!g.isZero(0)) scene.mutable_gravity()->mutable_acceleration()->Assign(g.begin(), g.end());
     scene.set_duration(1);
@@ -97,7 +100,9 @@ class OsimImporter {
     const std::string name = FileName(motion.name);
     wire.mutable_file()->set_path(name);
     const double length = table->times.back() - table->times.front();
-    if (length > 0) scene.set_duration(std::min(length, 1000.0));
+    if (length > 0) scene.set_duration(std::min(length, kMostDuration));
+    if (length > kMostDuration) Note("the motion is cut after 1000 s, the longest that a scene may last");
+    CheckColumns(*table);
     const double fastest = 0.5 * static_cast<double>(table->times.size() - 1) / std::max(length, 1e-9);
     const bool can_filter = options_.low_pass < fastest && table->HasEqualIntervals();
     if (options_.low_pass > 0 && !can_filter) {
@@ -109,6 +114,28 @@ class OsimImporter {
     }
     if (!model_.skeleton.muscles.empty()) scene.mutable_skeleton()->mutable_drive()->mutable_distribution();
     result_.files.push_back({name, motion.bytes});
+  }
+
+  // The motion's file is taken as it is, so its columns must have the names that the scene gives to coordinates.
+  void CheckColumns(const MotionTable& table) {
+    for (const Coordinate& coordinate : model_.skeleton.coordinates) {
+      if (coordinate.name.find_first_not_of(kLettersOfNames) == std::string::npos || !table.Find(coordinate.name)) {
+        continue;
+      }
+      problems_.Add(options_.motion->name, "has the coordinate `" + coordinate.name + "`, not a name in a scene",
+                    "use letters, digits, `_`, `-` and `.`, both in the model and in the motion");
+    }
+  }
+
+  void NoteStrength() {
+    const std::vector<LineMuscle>& muscles = model_.skeleton.muscles;
+    const bool has_fibres = std::any_of(muscles.begin(), muscles.end(),
+                                        [](const LineMuscle& muscle) { return muscle.optimal_fibre_length > 0; });
+    if (has_fibres) {
+      Note(
+          "muscles have their largest isometric force at every length; with `skeleton.strength` = force_length it "
+          "depends on the length of their fibres");
+    }
   }
 
   // Numbers that a scene does not allow.

@@ -21,6 +21,19 @@ void CheckBoneNames(const Scene& scene, Problems& problems) {
   }
 }
 
+// Bodies and line muscles have a series called NAME/activation each.
+void CheckMuscleNames(const Scene& scene, Problems& problems) {
+  std::set<std::string> bodies;
+  for (const Body& body : scene.bodies) bodies.insert(body.name);
+  const std::vector<LineMuscle>& muscles = scene.skeleton->skeleton.muscles;
+  for (std::size_t m = 0; m < muscles.size(); ++m) {
+    if (!bodies.contains(muscles[m].name)) continue;
+    problems.Add(JoinPath("skeleton", JoinPath(IndexPath("muscles", m), "name")),
+                 "a body is called `" + muscles[m].name + "`, and their series would have the same names",
+                 "call the muscle `" + muscles[m].name + "_line`, say");
+  }
+}
+
 void CheckMotion(const DrivenSkeleton& driven, Problems& problems) {
   if (driven.motion.coordinates.size() != driven.skeleton.coordinates.size()) {
     problems.Add("skeleton.motion", "there is not one motion for each coordinate");
@@ -45,6 +58,7 @@ void CheckSkeleton(const Scene& scene, Problems& problems) {
   }
   const DrivenSkeleton& driven = *scene.skeleton;
   CheckBoneNames(scene, problems);
+  CheckMuscleNames(scene, problems);
   CheckMotion(driven, problems);
   if (driven.shapes.size() != driven.skeleton.bones.size()) {
     problems.Add("skeleton.bones", "there is not one shape for each bone");

@@ -45,6 +45,8 @@ void TranslateCondition(const v1::PathPoint& wire, const std::string& path, cons
   point.condition = names.Coordinate(wire.condition(), JoinPath(path, "condition"), problems);
   if (wire.range_size() != 2) {
     problems.Add(JoinPath(path, "range"), "is missing", "the lowest and the highest value of the coordinate");
+  } else if (wire.range(0) > wire.range(1)) {
+    problems.Add(JoinPath(path, "range"), "descends", "the lowest value comes first");
   } else {
     point.range = {wire.range(0), wire.range(1)};
   }

@@ -125,7 +125,6 @@ inline Scene FullScene(Method method, Shape shape) {
       {"ball", Ball{0.1}, {}, {}, {}, "", 0, {0}},
       {"box", Cuboid{Vec3::Ones()}, {}, {}, {}, "", 0, {0}},
       {"surface", TriangleMesh{{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()}, {{0, 1, 2}}}, {}, {}, {}, "", 0, {0}}};
-  scene.contacts = {{{0, 1}, 0.1, false}};
   scene.method = method;
   scene.tet.time_step = scene.voxel.time_step = scene.eulerian.time_step = 1e-3;
   scene.eulerian.room = Bounds{-Vec3::Ones(), Vec3::Ones()};

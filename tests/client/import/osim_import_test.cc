@@ -119,10 +119,33 @@ INSTANTIATE_TEST_SUITE_P(
         OsimMistake{"MissingCoordinate", "<coordinates>elbow</coordinates><axis>1",
                     "<coordinates>knee</coordinates><axis>1", "no coordinate \"knee\""},
         OsimMistake{"MissingSurface", "<wrap_object>elbow", "<wrap_object>knee", "no wrap object \"knee\""},
-        OsimMistake{"TwoBodiesOfOneName", "<Body name=\"forearm\">", "<Body name=\"upper arm\"> ", "given twice"},
-        OsimMistake{"UnknownJoint", "<PinJoint name=\"shoulder\">", "<ScrewJoint name=\"shoulder\">", "",
-                    "</PinJoint>"}),
+        OsimMistake{"TwoBodiesOfOneName", "<Body name=\"forearm\">", "<Body name=\"upper arm\"> ", "given twice"}),
     [](const auto& test) { return test.param.name; });
+
+TEST(OsimImport, JointsOfOtherKindsAreReportedWithTheirLine) {
+  const std::string text =
+      Replaced(Replaced(kSmallOsim, "<PinJoint name", "<ScrewJoint name"), "</PinJoint>", "</ScrewJoint>");
+  Problems problems;
+  EXPECT_FALSE(ImportOsim(text, WithMotion(), problems));
+  ASSERT_FALSE(problems.empty());
+  const std::string line = "arm.osim:" + std::to_string(LineOf(text, "<ScrewJoint"));
+  EXPECT_TRUE(problems.kept()[0].path.starts_with(line)) << problems.ToString();
+  EXPECT_THAT(problems.kept()[0].message, HasSubstr("of this kind"));
+}
+
+// Columns of a motion are found by the names of the scene.
+TEST(OsimImport, ACoordinateThatMustBeRenamedIsRefusedWithAMotionOfIt) {
+  std::string text = kSmallOsim;
+  text = Replaced(text, "<Coordinate name=\"shoulder\">", "<Coordinate name=\"shoulder(r)\">");
+  OsimOptions options = WithMotion();
+  EXPECT_TRUE(ImportOsim(text, options, *std::make_unique<Problems>()));
+  options.motion->bytes = Replaced(kSmallMotion, "elbow", "shoulder(r)");
+  Problems problems;
+  EXPECT_FALSE(ImportOsim(text, options, problems));
+  ASSERT_EQ(problems.kept().size(), 1u) << problems.ToString();
+  EXPECT_EQ(problems.kept()[0].path, "flexion.mot");
+  EXPECT_THAT(problems.kept()[0].message, HasSubstr("`shoulder(r)`"));
+}
 
 // Entities are never expanded: a bomb is no larger than its text.
 TEST(OsimImport, EntityBombsAreHarmless) {
