@@ -22,7 +22,7 @@ constexpr const char* kActivationsExamples =
   fascicle activations upper_arm.json                    a table: times, joint torques, activations, forces
   fascicle activations upper_arm.json --csv arm.csv --out arm.png
   fascicle activations upper_arm.json --set 'skeleton.drive.distribution.at_rest=true' --csv rest.csv
-  fascicle activations upper_arm.json --json             one object per series: name, unit, times, values
+  fascicle activations upper_arm.json --json             one object per series: series, unit, time, values
 
 The scene's skeleton moves as the scene says, without its bodies; rows are the scene's frames. `torque` is what
 a joint needs, `muscle_torque` what the muscles exert with their activations.

@@ -19,6 +19,8 @@ ScenePackage SkeletonOf(const ScenePackage& package) {
   v1::Scene& scene = alone.scene;
   scene.clear_bodies();
   scene.clear_floors();
+  scene.clear_rigid_bodies();
+  scene.clear_contacts();
   scene.clear_squeezes();
   scene.clear_start();
   scene.clear_refinements();

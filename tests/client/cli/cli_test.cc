@@ -476,6 +476,19 @@ TEST_F(CliTest, CtrlCCancelsARun) {
   EXPECT_TRUE(fs::is_empty(Temporary()));
 }
 
+// Line muscles are computed alone, whatever else the scene has.
+TEST_F(CliTest, ActivationsAndMomentArmsOfASceneWithObstacles) {
+  ASSERT_EQ(Fascicle({"examples", "write", "upper_arm", "--out", folder_ / "arm"}).exit_code, 0);
+  const std::string scene = folder_ / "arm/upper_arm.json", table = folder_ / "table.csv";
+  const std::string ball =
+      R"(rigid_bodies=[{"name": "ball", "unit": "mm", "sphere": {"radius": 5}, "position": [500, 0, 0], "bodies": ["biceps"]}])";
+  for (const char* command : {"activations", "moment-arms"}) {
+    const Finished done = Fascicle({command, scene, "--set", ball, "--csv", table});
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_THAT(ReadFile(table), HasSubstr("biceps_line"));
+  }
+}
+
 TEST_F(CliTest, EveryExampleCanBeWrittenAndIsValid) {
   const Finished written = Fascicle({"examples", "write", "--all", "--out", folder_ / "examples"});
   EXPECT_EQ(written.exit_code, 0) << written.err;
