@@ -17,7 +17,7 @@ template <class T>
 struct SymmetricEigen {
   explicit SymmetricEigen(Matrix3<T> a) : vectors(Diagonal(T(1.0))) {
     constexpr int kMaxSweeps = 15;  // four are usual
-    for (int i = 0; i < kMaxSweeps && AnyOf(AnyCoupled(a)); ++i) {
+    for (int i = 0; i < kMaxSweeps && AnyCoupled(a); ++i) {
       Rotate(a, 0, 1, 2);
       Rotate(a, 1, 2, 0);
       Rotate(a, 2, 0, 1);
@@ -37,11 +37,8 @@ struct SymmetricEigen {
     return a(p, q) * a(p, q) > kNegligible * a(p, p) * a(q, q);
   }
 
-  static auto AnyCoupled(const Matrix3<T>& a) {
-    auto any = Coupled(a, 0, 1);
-    any |= Coupled(a, 1, 2);
-    any |= Coupled(a, 2, 0);
-    return any;
+  static bool AnyCoupled(const Matrix3<T>& a) {
+    return AnyOf(Coupled(a, 0, 1)) || AnyOf(Coupled(a, 1, 2)) || AnyOf(Coupled(a, 2, 0));
   }
 
   // Makes the entry (p, q) zero; r is the third index. The upper and the lower triangle are kept equal.
