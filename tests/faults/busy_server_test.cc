@@ -134,7 +134,7 @@ class ReadersTest : public BusyServerTest {
     EXPECT_EQ(fast.failures(), 0);
     EXPECT_LE(most, 8);
     EXPECT_GE(MedianOf(bytes), 0.8 / Allowance());
-    EXPECT_LE(MedianOf(steps), 1.05 * Allowance());
+    EXPECT_LE(MedianOf(steps), IsRelease() ? 1.05 : 2) << "processor time: other programs hardly change it";
   }
 };
 
