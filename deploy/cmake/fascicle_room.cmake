@@ -75,8 +75,7 @@ endfunction()
 #                 [THREADED TetrahedralizeTest.*])
 #
 # THREADED names the tests in which threads meet; the thread sanitizer runs only these. The default is all. Programs with
-# the label slow are built by the target slow_tests and run whole; under the thread sanitizer these are also the programs
-# of rooms that determinism_test runs, too.
+# the label slow are built by the target slow_tests and run whole.
 # Tests find the project's root and anatomical data by tests/support/paths.h.
 function(fascicle_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS;LABELS;THREADED" ${ARGN})
@@ -88,9 +87,6 @@ function(fascicle_test name)
     target_precompile_headers(${name} REUSE_FROM fascicle_precompiled_wire_test)
   else()
     target_precompile_headers(${name} REUSE_FROM fascicle_precompiled_core_test)
-  endif()
-  if(FASCICLE_SANITIZE STREQUAL "thread" AND NOT name MATCHES "^(base|determinism|store|jobs)_test$")
-    list(APPEND ARG_LABELS slow)
   endif()
   if(slow IN_LIST ARG_LABELS)
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)

@@ -11,52 +11,13 @@
 #include <set>
 #include <sstream>
 
+#include "example_fixture.h"
 #include "tests/support/child_process.h"
 #include "tests/support/files.h"
 #include "tests/support/paths.h"
 
 namespace fascicle::testing {
 namespace {
-
-using nlohmann::json;
-
-class ExampleTest : public ::testing::Test {
- protected:
-  // The summary of `fascicle run` of an example.
-  json RunExample(const std::string& name, const std::vector<std::string>& more = {}) {
-    const Finished written =
-        RunProgram({Program("fascicle"), "examples", "write", name, "--out", folder_.path().string()});
-    EXPECT_EQ(written.exit_code, 0) << written.err;
-    return Run(folder_ / (name + ".json"), more);
-  }
-  // The same with different fibres in the first body.
-  json RunWithFibres(const std::string& name, const std::function<void(json&)>& change) {
-    json scene = json::parse(RunProgram({Program("fascicle"), "examples", "show", name}).out, nullptr, true, true);
-    change(scene["bodies"][0]["fibres"]);
-    WriteFile(folder_ / "changed.json", scene.dump());
-    return Run(folder_ / "changed.json", {});
-  }
-  static json Run(const std::string& scene, const std::vector<std::string>& more) {
-    std::vector<std::string> command = {Program("fascicle"), "run", scene, "--json", "--threads", "2"};
-    command.insert(command.end(), more.begin(), more.end());
-    const Finished finished = RunProgram(command);
-    EXPECT_EQ(finished.exit_code, 0) << finished.out << finished.err;
-    json summary = json::parse(finished.out);
-    EXPECT_EQ(summary["state"], "succeeded");
-    return summary;
-  }
-  static double Final(const json& summary, const std::string& series) { return summary["series"].at(series)["final"]; }
-
-  // Nominal stress [Pa] of a law at a stretch, from `fascicle materials curve`.
-  static double NominalStress(const std::string& law, const std::vector<std::string>& settings, double stretch) {
-    std::vector<std::string> command = {Program("fascicle"), "materials", "curve",     law, "--json",
-                                        "--points",          "2",         "--stretch", "1", std::to_string(stretch)};
-    for (const std::string& setting : settings) command.insert(command.end(), {"--set", setting});
-    return json::parse(RunProgram(command).out)["nominal_stress"][1];
-  }
-
-  TemporaryFolder folder_;
-};
 
 // bar_tension: BarTension.
 std::string TestOf(const std::string& example) {
@@ -83,32 +44,11 @@ TEST_F(ExampleTest, NoneIsForgotten) {
   EXPECT_THAT(without, ::testing::UnorderedElementsAre(
                            // PartsOfBodies
                            "bar_of_two_materials", "graded_bar", "let_go", "partial_recruitment", "two_compartments",
+                           // examples_slow_test
+                           "crushed_cube", "plastic_block",
                            // tests/verification/muscles_test.cc: a minute, or real anatomy
                            "fusiform_isometric", "biceps_isometric", "biceps_femoris_isometric", "biceps_tendon",
                            "triceps_tendon", "biceps_voxels"));
-}
-
-// All values of a series, frame by frame.
-std::vector<double> SeriesOf(const std::filesystem::path& csv, const std::string& name) {
-  std::ifstream in(csv);
-  std::string line;
-  std::size_t column = 0;
-  bool found = false;
-  std::getline(in, line);
-  std::istringstream header(line);
-  for (std::string cell; std::getline(header, cell, ',') && !found;) {
-    found = cell.find(name) != std::string::npos;
-    if (!found) ++column;
-  }
-  EXPECT_TRUE(found) << name << " in " << line;
-  std::vector<double> values;
-  while (std::getline(in, line)) {
-    std::istringstream row(line);
-    std::string cell;
-    for (std::size_t c = 0; c <= column; ++c) std::getline(row, cell, ',');
-    values.push_back(std::stod(cell));
-  }
-  return values;
 }
 
 // The README shows it.
@@ -171,29 +111,6 @@ TEST_F(ExampleTest, BallSwings) {
   EXPECT_NEAR(Final(summary, "ball/reaction/top/z"), 1000 * 2.59e-4 * 9.81, 0.1);
   EXPECT_GT(summary["series"]["ball/volume_ratio"]["min"], 0.997);
   EXPECT_LT(summary["series"]["ball/volume_ratio"]["max"], 1.003);
-}
-
-TEST_F(ExampleTest, PlasticBlock) {
-  const json summary = RunExample("plastic_block");
-  EXPECT_NEAR(Final(summary, "probe/side/x"), -0.011, 0.002);
-  EXPECT_GT(summary["series"]["block/volume_ratio"]["min"], 0.998);
-  EXPECT_LT(summary["series"]["block/volume_ratio"]["max"], 1.002);
-}
-
-// With larger cells, because the original takes a minute.
-TEST_F(ExampleTest, CrushedCube) {
-  const std::string out = folder_ / "out";
-  const json summary =
-      RunExample("crushed_cube", {"--out", out, "--set", "eulerian.cell_size=0.0125", "--set", "eulerian.margin=1.2",
-                                  "--set", "bodies[0].mesh.box.divisions=[12, 12, 12]", "--set",
-                                  "bodies[0].regions[0].box={\"min\": [-1.3, -1.3, -1.3], \"max\": [1.3, 1.3, 1.3]}"});
-  EXPECT_GT(summary["series"]["cube/volume_ratio"]["min"], 0.99);
-  EXPECT_LT(summary["series"]["cube/volume_ratio"]["max"], 1.01);
-  for (const char* axis : {"x", "y", "z"}) EXPECT_NEAR(Final(summary, std::string("probe/corner/") + axis), 0, 0.0125);
-  // Crushed, then back in its original shape.
-  const std::vector<double> energy = SeriesOf(folder_ / "out/series.csv", "energy/elastic");
-  EXPECT_GT(*std::max_element(energy.begin(), energy.end()), 0.1);
-  EXPECT_LT(energy.back(), 0.02 * *std::max_element(energy.begin(), energy.end()));
 }
 
 TEST_F(ExampleTest, AnconeusLoads) {
