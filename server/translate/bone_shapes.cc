@@ -29,7 +29,7 @@ std::optional<TriangleMesh> ReadShape(const v1::FileRef& file, const std::string
 std::optional<TriangleMesh> ShapeOf(const v1::BoneShape& wire, const std::string& path, const AssetReader& assets,
                                     const TranslateTools& tools, std::vector<std::string>& notes, Problems& problems) {
   if (wire.has_capsule()) {
-    if (wire.scale_size() > 0) problems.Add(JoinPath(path, "scale"), "belongs to a file", "omit it");
+    if (ToVec3(wire.scale()) != Vec3::Ones()) problems.Add(JoinPath(path, "scale"), "belongs to a file", "omit it");
     const v1::Capsule& capsule = wire.capsule();
     return CapsuleSurface(ToVec3(capsule.from()), capsule.radius(), ToVec3(capsule.to()),
                           capsule.has_end_radius() ? capsule.end_radius() : capsule.radius());

@@ -1,6 +1,5 @@
 #include "server/translate/skeleton.h"
 
-#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -44,20 +43,6 @@ std::unique_ptr<SkeletonMechanics> MechanicsOf(const Skeleton& skeleton, Problem
   }
 }
 
-// Says which given fields change nothing.
-void AddUnusedNotes(const v1::Scene& scene, std::vector<std::string>& notes) {
-  const v1::Skeleton& wire = scene.skeleton();
-  const bool has_fibres = std::any_of(wire.muscles().begin(), wire.muscles().end(), [](const v1::LineMuscle& muscle) {
-    return muscle.has_optimal_fibre_length() || muscle.has_tendon_slack_length() || muscle.has_pennation() ||
-           muscle.has_active_width() || muscle.has_passive_strain() || muscle.has_passive_shape();
-  });
-  if (has_fibres && wire.strength() != v1::MUSCLE_STRENGTH_FORCE_LENGTH) {
-    notes.push_back(JoinPath(kSkeleton, "muscles") +
-                    ": fibres and tendons have no effect without `skeleton.strength` = force_length");
-  }
-  if (scene.bodies().empty() && scene.tet().ByteSizeLong() > 0) notes.push_back("tet: has no effect without bodies");
-}
-
 void Complete(const v1::Scene& scene, const SkeletonNames& names, const AssetReader& assets,
               const TranslateTools& tools, DrivenSkeleton& driven, Problems& problems) {
   const v1::Skeleton& wire = scene.skeleton();
@@ -67,7 +52,6 @@ void Complete(const v1::Scene& scene, const SkeletonNames& names, const AssetRea
   TranslateLineMuscles(wire, names, driven.skeleton, problems);
   driven.strength =
       wire.strength() == v1::MUSCLE_STRENGTH_FORCE_LENGTH ? MuscleStrength::kForceLength : MuscleStrength::kConstant;
-  AddUnusedNotes(scene, driven.notes);
   driven.motion = TranslateSkeletonMotion(wire, driven.skeleton, names, assets, driven.notes, problems);
   if (!problems.empty()) return;
   const auto mechanics = MechanicsOf(driven.skeleton, problems);

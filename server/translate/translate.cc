@@ -144,6 +144,7 @@ std::shared_ptr<const Scene> TranslateScene(const v1::Scene& scene, const AssetR
   result->output = TranslateOutput(filled, result->method, result->tet.element, result->bodies, names,
                                    limits.max_frame_bytes, found);
   AddUnusedFieldNotes(scene, result->bodies);
+  if (result->skeleton) AddUnusedSkeletonNotes(scene, result->skeleton->notes);
 
   if (result->method == Method::kEulerian && result->eulerian.cell_size > 0) {
     const StageTimer timer(tools.profile, "surfaces");

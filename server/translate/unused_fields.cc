@@ -74,6 +74,24 @@ void AddNotesOnMethod(const v1::Scene& scene, std::vector<std::string>& notes) {
 
 }  // namespace
 
+void AddUnusedSkeletonNotes(const v1::Scene& scene, std::vector<std::string>& notes) {
+  const v1::Skeleton& skeleton = scene.skeleton();
+  std::vector<std::string> of_muscles;
+  if (skeleton.strength() != v1::MUSCLE_STRENGTH_FORCE_LENGTH) {
+    for (int m = 0; m < skeleton.muscles_size() && of_muscles.empty(); ++m) {  // the others are like the first
+      AddNotes(skeleton.muscles(m), JoinPath("skeleton", IndexPath("muscles", static_cast<std::size_t>(m))),
+               {"optimal_fibre_length", "tendon_slack_length", "pennation", "active_width", "passive_strain",
+                "passive_shape"},
+               "while `skeleton.strength` is constant", of_muscles);
+    }
+  }
+  notes.insert(notes.end(), of_muscles.begin(), of_muscles.end());
+  if (!scene.bodies().empty()) return;
+  std::vector<const FieldDescriptor*> given;
+  scene.tet().GetReflection()->ListFields(scene.tet(), &given);
+  for (const FieldDescriptor* field : given) notes.push_back("tet." + field->name() + ": has no effect without bodies");
+}
+
 void AddUnusedFieldNotes(const v1::Scene& scene, std::vector<Body>& bodies) {
   if (bodies.empty()) return;
   AddNotesOnMethod(scene, bodies.front().notes);

@@ -56,7 +56,7 @@ TEST_F(DamageTest, ADamagedFrameIsToldAndWrittenAnew) {
 // Without its inputs, a restart would compute other frames and not say so.
 TEST_F(DamageTest, FramesAreKeptWhileAnInputCannotBeRead) {
   const std::unique_ptr<Store> store = Fill();
-  store->OpenFrames(SampleJob(1).id)->PutSteering({.sequence = 1, .step = 7, .input = "an input"});
+  store->OpenFrames(SampleJob(1).id)->PutSteering({1, 7, {}, 0, "an input"});
   Change(FramesPath(), "UPDATE steering SET input = x'00'");
   JobRecord job = SampleJob(1);
   job.first_frame = job.frame_count = 3;

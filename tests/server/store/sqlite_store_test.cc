@@ -57,7 +57,7 @@ TEST_F(SqliteStoreTest, AnInterruptedRemovalOfFramesIsFinishedIfItWasRecorded) {
     {
       const std::unique_ptr<Store> store = Open();
       Fill(*store, number, 3, 100'000);
-      if (has_inputs) store->OpenFrames(job.id)->PutSteering({.sequence = 1, .step = 7, .input = "an input"});
+      if (has_inputs) store->OpenFrames(job.id)->PutSteering({1, 7, {}, 0, "an input"});
     }
     FrameDatabase::CopyInputs(FramesPath(number));
     EXPECT_EQ(Open()->OpenFrames(job.id)->frame_count(), 3);

@@ -131,7 +131,8 @@ TEST(SkeletonTranslation, FieldsWithoutEffectAreTold) {
   const auto scene = Merged(fibres + " tet { time_step: 1e-3 }");
   ASSERT_TRUE(scene);
   EXPECT_THAT(scene->skeleton->notes,
-              ::testing::UnorderedElementsAre(HasSubstr("skeleton.muscles: fibres"), HasSubstr("tet: has no effect")));
+              ::testing::UnorderedElementsAre(HasSubstr("skeleton.muscles[2].optimal_fibre_length: has no effect"),
+                                              HasSubstr("tet.time_step: has no effect")));
 }
 
 TEST(SkeletonProblems, JointsAndNames) {
