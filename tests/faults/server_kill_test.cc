@@ -71,8 +71,7 @@ class Ledger {
 };
 
 // Submits the requests [0, end) that are not acknowledged yet, until the server is gone.
-void SubmitUntilGone(const std::string& address, int end, Ledger& ledger) {
-  Stubs stubs(address);
+void SubmitUntilGone(Stubs& stubs, int end, Ledger& ledger) {
   for (int request = 0; request < end; ++request) {
     if (ledger.IsAcknowledged(request)) continue;
     v1::CreateJobRequest message;
@@ -85,8 +84,7 @@ void SubmitUntilGone(const std::string& address, int end, Ledger& ledger) {
 }
 
 // Lists the frames of the newest jobs again and again, until the server is gone.
-void WatchUntilGone(const std::string& address, Ledger& ledger, const std::atomic<bool>& gone) {
-  Stubs stubs(address);
+void WatchUntilGone(Stubs& stubs, Ledger& ledger, const std::atomic<bool>& gone) {
   while (!gone) {
     const std::map<int, std::string> jobs = ledger.jobs();
     int left = 4;
@@ -124,8 +122,9 @@ TEST(ServerKillTest, NothingAcknowledgedIsLostOrDoubled) {
     slowest_start =
         std::max(slowest_start, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     std::atomic<bool> gone = false;
-    std::thread submitter([&] { SubmitUntilGone(address, (round + 1) * kJobsPerRound, ledger); });
-    std::thread watcher([&] { WatchUntilGone(address, ledger, gone); });
+    Stubs submitting(address), watching(address);  // connected before the kill
+    std::thread submitter([&] { SubmitUntilGone(submitting, (round + 1) * kJobsPerRound, ledger); });
+    std::thread watcher([&] { WatchUntilGone(watching, ledger, gone); });
     std::this_thread::sleep_for(std::chrono::milliseconds(50 + random() % 400));
     server.Signal(SIGKILL);
     gone = true;
@@ -137,8 +136,8 @@ TEST(ServerKillTest, NothingAcknowledgedIsLostOrDoubled) {
   ServerProcess server({"--listen", "127.0.0.1:0", "--data", data.path()});
   const std::string address = server.AwaitAddress();
   const int requests = Kills() * kJobsPerRound;
-  SubmitUntilGone(address, requests, ledger);  // those whose answer was lost: the same jobs again
   Stubs stubs(address);
+  SubmitUntilGone(stubs, requests, ledger);  // those whose answer was lost: the same jobs again
   std::set<std::string> distinct;
   for (const auto& [request, job] : ledger.jobs()) {
     distinct.insert(job);
