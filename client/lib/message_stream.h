@@ -16,6 +16,9 @@
 
 namespace fascicle::client {
 
+// A live stream of the server has a message at least every ten seconds.
+inline constexpr std::chrono::seconds kLongestSilence(30);
+
 // The messages of one call of a server-streaming method. gRPC's threads receive them, so that the connection responds
 // to the server's keepalive however long the reader takes for a message. A few messages are buffered; then the server
 // waits.

@@ -19,9 +19,6 @@ using Steady = std::chrono::steady_clock;
 using Response = v1::StreamFramesResponse;
 using Outcome = MessageStream<Response>::Outcome;
 
-// A live stream has a message at least every ten seconds.
-constexpr std::chrono::seconds kLongestSilence(30);
-
 const Error kStoppedError = {.kind = Error::Kind::kStopped, .message = "stopped", .reason = "", .problems = {}};
 
 grpc::Status Damaged(const std::string& what) { return grpc::Status(grpc::StatusCode::UNAVAILABLE, what); }

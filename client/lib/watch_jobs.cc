@@ -9,32 +9,29 @@
 namespace fascicle::client {
 namespace {
 
-using Stream = MessageStream<v1::WatchJobsResponse>;
-
-// The server sends something at least every ten seconds.
-constexpr std::chrono::seconds kLongestQuiet(30);
+using JobsStream = MessageStream<v1::WatchJobsResponse>;
 
 // Reads one stream to its end. `request.revision` stays the last one received.
 grpc::Status ReadChanges(Connection& connection, v1::WatchJobsRequest& request, const JobsWatch& watch,
                          Patience& patience, const std::stop_token& stop) {
   const v1::WatchJobsRequest sent = request;
-  Stream stream([&](grpc::ClientContext* call, grpc::ClientReadReactor<v1::WatchJobsResponse>* reactor) {
+  JobsStream stream([&](grpc::ClientContext* call, grpc::ClientReadReactor<v1::WatchJobsResponse>* reactor) {
     PrepareCall(*call);
     connection.jobs().async()->WatchJobs(call, &sent, reactor);
   });
   v1::WatchJobsResponse message;
   while (true) {
-    switch (stream.Next(message, kLongestQuiet, stop)) {
-      case Stream::Outcome::kMessage:
+    switch (stream.Next(message, kLongestSilence, stop)) {
+      case JobsStream::Outcome::kMessage:
         patience.Succeeded();
         if (watch.changes && (message.jobs_size() > 0 || message.removed_size() > 0)) watch.changes(message);
         request.set_revision(message.revision());
         break;
-      case Stream::Outcome::kEnd:
+      case JobsStream::Outcome::kEnd:
         return stream.status();
-      case Stream::Outcome::kSilence:
+      case JobsStream::Outcome::kSilence:
         return grpc::Status(grpc::StatusCode::UNAVAILABLE, "the server does not respond");
-      case Stream::Outcome::kStopped:
+      case JobsStream::Outcome::kStopped:
         return grpc::Status::CANCELLED;
     }
   }

@@ -12,7 +12,6 @@ namespace fascicle::client {
 Result<v1::Job> WatchLog(Connection& connection, const std::string& name, const LogOptions& options,
                          const std::function<void(const v1::LogLine&)>& on_line, const std::stop_token& stop) {
   using Stream = MessageStream<v1::StreamLogResponse>;
-  constexpr std::chrono::seconds kLongestSilence(30);  // a stream has a message at least every ten seconds
   if (grpc::Status status = connection.Connect(); !status.ok()) return ErrorOf(status, connection.address());
   v1::StreamLogRequest request;
   request.set_name(name);
