@@ -10,26 +10,24 @@
 namespace fascicle {
 namespace {
 
-using Place = ObstacleDistance::Place;
-
 // Divisions of round shapes in pictures.
 constexpr int kAround = 48, kAcross = 16;
 
 Mat3 Projector(const Vec3& unit) { return unit * unit.transpose(); }
 
-Place PlaceAt(const HalfSpace&, const Vec3& X) { return {X[2], Vec3::UnitZ(), Mat3::Zero()}; }
+SignedDistance DistanceAt(const HalfSpace&, const Vec3& X) { return {X[2], Vec3::UnitZ(), Mat3::Zero()}; }
 
-Place PlaceAt(const Ball& ball, const Vec3& X) {
+SignedDistance DistanceAt(const Ball& ball, const Vec3& X) {
   const double r = X.norm();
   if (!(r > 0)) return {-ball.radius, Vec3::UnitZ(), Mat3::Zero()};
   const Vec3 n = X / r;
   return {r - ball.radius, n, (Mat3::Identity() - Projector(n)) / r};
 }
 
-Place PlaceAt(const Cuboid& box, const Vec3& X) {
+SignedDistance DistanceAt(const Cuboid& box, const Vec3& X) {
   const Vec3 beyond = X.cwiseAbs() - box.size / 2;
   const auto sign = [&](int c) { return X[c] < 0 ? -1.0 : 1.0; };
-  Place at;
+  SignedDistance at;
   if ((beyond.array() <= 0).all()) {
     int axis = 0;
     at.distance = beyond.maxCoeff(&axis);
@@ -49,7 +47,7 @@ Place PlaceAt(const Cuboid& box, const Vec3& X) {
   return at;
 }
 
-Place PlaceAt(const Cylinder& cylinder, const Vec3& X) {
+SignedDistance DistanceAt(const Cylinder& cylinder, const Vec3& X) {
   const double rho = std::hypot(X[0], X[1]);
   const Vec3 out = rho > 0 ? Vec3(X[0] / rho, X[1] / rho, 0) : Vec3(Vec3::UnitX());
   const Vec3 around(-out[1], out[0], 0);
@@ -100,17 +98,14 @@ ObstacleDistance::ObstacleDistance(const ObstacleShape& shape) : shape_(shape) {
   if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) surface_ = std::make_unique<SurfaceDistance>(*mesh);
 }
 
-Place ObstacleDistance::At(const Vec3& point) const {
-  if (surface_ != nullptr) {
-    const std::optional<SurfaceDistance::Place> at = surface_->At(point);
-    return {at->distance, at->normal, at->curvature};
-  }
+SignedDistance ObstacleDistance::At(const Vec3& point) const {
+  if (surface_ != nullptr) return *surface_->At(point);
   return std::visit(
       [&]<class Shape>(const Shape& shape) {
         if constexpr (std::is_same_v<Shape, TriangleMesh>) {
-          return Place();
+          return SignedDistance();
         } else {
-          return PlaceAt(shape, point);
+          return DistanceAt(shape, point);
         }
       },
       shape_);

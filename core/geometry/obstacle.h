@@ -26,18 +26,12 @@ using ObstacleShape = std::variant<HalfSpace, Ball, Cuboid, Cylinder, TriangleMe
 // The signed distance from a shape, its gradient and its second derivative. Thread-safe.
 class ObstacleDistance {
  public:
-  struct Place {
-    double distance = 0;            // negative inside [m]
-    Vec3 normal = Vec3::UnitZ();    // its gradient: unit, outward
-    Mat3 curvature = Mat3::Zero();  // its second derivative [1/m]
-  };
-
   // `shape` must outlive the object unchanged.
   explicit ObstacleDistance(const ObstacleShape& shape);
 
   // At a point of the shape's frame. Where several points of the surface are nearest, it is that of one of them, always
   // the same.
-  Place At(const Vec3& point) const;
+  SignedDistance At(const Vec3& point) const;
 
  private:
   const ObstacleShape& shape_;

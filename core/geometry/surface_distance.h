@@ -9,16 +9,20 @@
 
 namespace fascicle {
 
+// A signed distance at a point, its gradient and its second derivative.
+struct SignedDistance {
+  double distance = 0;            // negative inside [m]
+  Vec3 normal = Vec3::UnitZ();    // its gradient: unit, outward
+  Mat3 curvature = Mat3::Zero();  // its second derivative [1/m]
+};
+
 // The signed distance from a closed surface of triangles, its gradient and its second derivative. Its sign is that of
 // the angle-weighted normal of the nearest face, edge or node [Baerentzen & Aanaes 2005, Signed distance computation
 // using the angle weighted pseudonormal, IEEE TVCG 11]. Thread-safe.
 class SurfaceDistance {
  public:
-  struct Place {
-    double distance = 0;            // negative inside [m]
-    Vec3 normal = Vec3::UnitZ();    // its gradient: unit, outward
-    Mat3 curvature = Mat3::Zero();  // its second derivative [1/m]
-    Vec3 nearest = Vec3::Zero();    // the nearest point of the surface [m]
+  struct Place : SignedDistance {
+    Vec3 nearest = Vec3::Zero();  // the nearest point of the surface [m]
   };
 
   // `surface` [m] is outward, has at least one triangle, and must outlive the object unchanged.

@@ -102,7 +102,7 @@ Touch ContactSearch::TouchOnRigid(const ContactDrive& drive, const NodalVector& 
   touch.count = point.count;
   touch.allowed_depth = point.allowed_depth;
   touch.place = point.PositionIn(x);
-  const ObstacleDistance::Place at = shape.At(placement.ToBody(touch.place));
+  const SignedDistance at = shape.At(placement.ToBody(touch.place));
   touch.depth = -at.distance;
   touch.normal = placement.rotation * at.normal;
   touch.curvature = placement.rotation * at.curvature * placement.rotation.transpose();

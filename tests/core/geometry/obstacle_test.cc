@@ -46,15 +46,14 @@ TEST(ObstacleTest, NormalAndCurvatureAreDerivatives) {
     for (int i = 0; i < 400; ++i) {
       const double x = uniform(random), y = uniform(random), z = uniform(random);
       const Vec3 X(x, y, z);
-      const ObstacleDistance::Place at = distance.At(X);
+      const SignedDistance at = distance.At(X);
       EXPECT_NEAR(at.normal.norm(), 1, 1e-12);
       constexpr double kH = 1e-6;
       Vec3 slope;
       Mat3 bend;
       bool smooth = std::abs(at.distance) > 0.02;
       for (int c = 0; c < 3; ++c) {
-        const ObstacleDistance::Place ahead = distance.At(X + kH * Vec3::Unit(c)),
-                                      behind = distance.At(X - kH * Vec3::Unit(c));
+        const SignedDistance ahead = distance.At(X + kH * Vec3::Unit(c)), behind = distance.At(X - kH * Vec3::Unit(c));
         slope[c] = (ahead.distance - behind.distance) / (2 * kH);
         bend.col(c) = (ahead.normal - behind.normal) / (2 * kH);
         // Where the nearest place jumps there is no derivative.
