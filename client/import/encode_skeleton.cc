@@ -53,12 +53,7 @@ class Renamer {
   void Rename(std::vector<Named>& list) {
     std::set<std::string> used;
     for (Named& one : list) {
-      std::string name = one.name.substr(0, kMostLetters);
-      for (char& c : name) {
-        const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-        if (!is_letter && c != '_' && c != '-' && c != '.') c = '_';
-      }
-      if (name.empty() || name == "." || name == "..") name = "unnamed";
+      std::string name = SceneName(one.name);
       const std::string stem = name.substr(0, kMostLetters - 6);
       for (int k = 2; used.contains(name); ++k) name = stem + "_" + std::to_string(k);
       if (name != one.name) renamed_.push_back("`" + one.name + "` is called `" + name + "`");
@@ -213,6 +208,15 @@ class Encoder {
 };
 
 }  // namespace
+
+std::string SceneName(const std::string& name) {
+  std::string allowed = name.substr(0, kMostLetters);
+  for (char& c : allowed) {
+    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!is_letter && c != '_' && c != '-' && c != '.') c = '_';
+  }
+  return allowed.empty() || allowed == "." || allowed == ".." ? "unnamed" : allowed;
+}
 
 v1::Skeleton EncodeSkeleton(Skeleton skeleton, std::vector<std::string>& renamed) {
   Renamer renamer(renamed);

@@ -16,7 +16,6 @@ namespace fascicle::client {
 namespace {
 
 constexpr std::size_t kMaxModelBytes = std::size_t{64} << 20, kMaxMotionBytes = std::size_t{256} << 20;
-constexpr const char* kLettersOfNames = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
 constexpr double kFrames = 50;          // of a motion
 constexpr double kMostDuration = 1000;  // of a scene [s]
 
@@ -119,9 +118,7 @@ class OsimImporter {
   // The motion's file is taken as it is, so its columns must have the names that the scene gives to coordinates.
   void CheckColumns(const MotionTable& table) {
     for (const Coordinate& coordinate : model_.skeleton.coordinates) {
-      if (coordinate.name.find_first_not_of(kLettersOfNames) == std::string::npos || !table.Find(coordinate.name)) {
-        continue;
-      }
+      if (SceneName(coordinate.name) == coordinate.name || !table.Find(coordinate.name)) continue;
       problems_.Add(options_.motion->name, "has the coordinate `" + coordinate.name + "`, not a name in a scene",
                     "use letters, digits, `_`, `-` and `.`, both in the model and in the motion");
     }
