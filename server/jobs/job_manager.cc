@@ -477,8 +477,9 @@ JobView JobManager::Submit(JobRecord record, bool* repeated, std::shared_ptr<con
   return impl_->View(impl_->FindActive(existing->id), *std::move(existing));
 }
 
-JobManager::Staged JobManager::Stage(const std::string& wanted, const std::string& owner) {
-  impl_->CheckStored(owner);
+JobManager::Staged JobManager::Stage(const std::string& wanted, const JobRecord& record) {
+  // A repeated request makes no new job.
+  if (record.request_id.empty() || !impl_->store.FindRequest(record.request_id)) impl_->CheckStored(record.owner);
   const std::int64_t now_ms = UnixTimeUs() / 1000;
   // A later id would come before all that this server will make.
   std::string id = IsPastJobId(wanted, now_ms) ? wanted : impl_->ids.Next(now_ms);

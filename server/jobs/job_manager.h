@@ -156,13 +156,13 @@ class JobManager {
   // the worker need not decode it. Scenes are kept for at most as many waiting jobs as there are workers.
   JobView Submit(JobRecord record, bool* repeated, std::shared_ptr<const Scene> scene = nullptr);
   // Takes over a job that another server ran: an id and its empty frame store, which is filled before AddFinished makes
-  // it a job. The id is `wanted` if that could be one of this server's own and is free, otherwise a new one. Throws
-  // OwnerLimitError.
+  // it a job. The id is `wanted` if that could be one of this server's own and is free, otherwise a new one. Of the
+  // record, owner and request id are read. Throws OwnerLimitError.
   struct Staged {
     std::string id;
     std::shared_ptr<FrameStore> frames;
   };
-  Staged Stage(const std::string& wanted, const std::string& owner);
+  Staged Stage(const std::string& wanted, const JobRecord& record);
   // Adds the job of a staged id. `record` is complete and in a final state. Returns it, or the earlier job with the
   // same request id (then `*repeated` is true).
   JobView AddFinished(const JobRecord& record, bool* repeated);

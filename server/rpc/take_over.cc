@@ -120,7 +120,7 @@ grpc::Status TakeOver(RpcContext& context, JobFileReader& file, const v1::Import
   const v1::Job job = ReadJobMessage(file);
   JobRecord record = RecordOf(job, request);
   const std::string original = request.new_name() ? "" : ParseJobName(job.name()).value_or("");
-  const JobManager::Staged staged = context.jobs.Stage(original, record.owner);
+  const JobManager::Staged staged = context.jobs.Stage(original, record);
   record.id = staged.id;
   record.request_digest = Hex(Sha256Of(record.spec + Copy(file, *staged.frames, go_on)));
   record.frame_count = staged.frames->frame_count();

@@ -63,10 +63,11 @@ grpc::Status Import(Stubs& stubs, const std::string& bytes, const ImportWish& wi
 class TransferTest : public ::testing::Test {
  protected:
   struct Place {
-    explicit Place(std::chrono::milliseconds idle = 60s) {
+    explicit Place(std::chrono::milliseconds idle = 60s, std::int64_t max_stored_per_owner = 0) {
       server::ServerOptions options;
       options.data_directory = data.path();
       options.transfer_idle = idle;
+      options.max_stored_per_owner = max_stored_per_owner;
       server = server::EmbeddedServer::Start(options);
       stubs.emplace(server->address());
     }
@@ -201,6 +202,19 @@ TEST_F(TransferTest, ATakenNameIsReplacedAndARequestCountsOnce) {
   EXPECT_EQ(here.JobFiles(), 2u) << "what the repeated request brought is gone";
   ASSERT_TRUE(Import(*here.stubs, bytes, {.request_id = "two", .new_name = true}, other).ok());
   EXPECT_NE(other.name(), first.name());
+}
+
+// A request that is repeated, because its reply was lost, is answered although the job it made has filled the limit.
+TEST_F(TransferTest, TheLimitOfAnOwnerHoldsForImports) {
+  Place here, there(60s, 1);
+  std::string bytes;
+  ASSERT_TRUE(Export(*here.stubs, Finished(here), bytes).ok());
+  v1::Job first, again, other;
+  ASSERT_TRUE(Import(*there.stubs, bytes, {.request_id = "one"}, first).ok());
+  ASSERT_TRUE(Import(*there.stubs, bytes, {.request_id = "one"}, again).ok());
+  EXPECT_EQ(again.name(), first.name());
+  EXPECT_EQ(ReasonOf(Import(*there.stubs, bytes, {.request_id = "two", .new_name = true}, other)), "8 OWNER_LIMIT");
+  EXPECT_EQ(there.JobFiles(), 1u);
 }
 
 TEST_F(TransferTest, AJobThatRunsIsCancelledInTheCopy) {
