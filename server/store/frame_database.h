@@ -47,7 +47,8 @@ class FrameDatabase final : public FrameStore {
   // Removes the file of a job, SQLite's files beside it, and the copy of its inputs.
   static void Remove(const std::string& path);
 
-  // Frames are removed in two steps, so that a power cut between them loses no input. Nobody may have the file open.
+  // The first and the last step of removing frames; between them, the job's record is written. A power cut loses no
+  // input. Nobody may have the file open.
   // Writes a copy with the inputs only, path + kInputsSuffix, which is an empty file if there are none. Throws if an
   // input can't be read or copied.
   static void CopyInputs(const std::string& path);
