@@ -97,8 +97,12 @@ Client Connect(const Context& context) {
 
 void AddSceneArgument(CLI::App& command, SceneArgument& scene) {
   command.add_option("SCENE", scene.path, "The scene file (JSON, see `fascicle schema`)")->required();
+  AddSetOption(command, scene.settings);
+}
+
+void AddSetOption(CLI::App& command, std::vector<std::string>& settings) {
   command
-      .add_option("--set", scene.settings,
+      .add_option("--set", settings,
                   "Change the scene: a field's path, =, and its value; may be repeated. 'bodies[0].density=1000'")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);

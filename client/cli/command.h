@@ -70,6 +70,8 @@ struct SceneArgument {
 
 // Adds SCENE and --set to a sub-command. `scene` must outlive parsing.
 void AddSceneArgument(CLI::App& command, SceneArgument& scene);
+// Adds --set alone. `settings` must outlive parsing.
+void AddSetOption(CLI::App& command, std::vector<std::string>& settings);
 
 // Loads a scene and its files; CommandError with all problems.
 ScenePackage LoadSceneOrFail(const SceneArgument& scene);

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
@@ -10,6 +12,7 @@
 #include "client/cli/job_options.h"
 #include "client/cli/start_frame.h"
 #include "client/cli/summary.h"
+#include "client/cli/sweep.h"
 
 namespace fascicle::client {
 namespace {
@@ -20,30 +23,91 @@ constexpr const char* kSubmitExamples =
   fascicle submit scene.json --set duration=2 --set 'name=twice as long'
   fascicle watch "$(fascicle submit scene.json)"           submit, then follow
   fascicle submit scene.json --priority 5 --label study=knee --ttl 7d
+  fascicle submit scene.json scene.json                    a job for each file
+  fascicle submit scene.json --sweep 'bodies[0].density=[1000, 1060]' --sweep 'duration=[0.1, 0.2]'
 )text";
 
 struct SubmitOptions {
-  SceneArgument scene;
+  std::vector<std::string> paths;
+  SceneArgument scene;  // of each path
+  std::vector<std::string> sweeps;
   int threads = 0;
   JobOptions settings;
   std::string owner = UserName();
   bool pin = false;
 };
 
+// The jobs to submit, with the files of their scenes, each once.
+struct Submission {
+  std::vector<WantedJob> jobs;
+  std::vector<AssetFile> assets;
+};
+
+v1::Job JobWithoutScene(const SubmitOptions& options) {
+  v1::Job job;
+  job.set_threads(options.threads);
+  job.set_owner(options.owner);
+  job.set_pinned(options.pin);
+  SetOptions(options.settings, job);
+  return job;
+}
+
+// The jobs of a sweep are told apart by the values in their scenes' names.
+void AddScene(const Context& context, const SubmitOptions& options, const std::string& path, const SweepPoint& point,
+              Submission& submission) {
+  SceneArgument argument = {path, options.scene.settings, options.scene.start};
+  argument.settings.insert(argument.settings.end(), point.begin(), point.end());
+  ScenePackage package = LoadSceneOrFail(argument);
+  PackStart(context, argument.start, package);
+  for (const std::string& setting : point) package.scene.mutable_name()->append(", " + setting);
+  WantedJob& wanted = submission.jobs.emplace_back(WantedJob{path, JobWithoutScene(options)});
+  wanted.job.mutable_scene()->Swap(&package.scene);
+  for (AssetFile& file : package.assets) {
+    const auto is_same = [&](const AssetFile& other) { return other.sha256_hex == file.sha256_hex; };
+    if (std::none_of(submission.assets.begin(), submission.assets.end(), is_same)) {
+      submission.assets.push_back(std::move(file));
+    }
+  }
+}
+
+// Loads all scenes; CommandError with the problems of all of them.
+Submission Load(const SubmitOptions& options, const Context& context) {
+  const std::vector<SweepPoint> points = PointsOf(options.sweeps);
+  Submission submission;
+  Error invalid{Error::Kind::kInvalid, "some of the scenes are not valid", "INVALID_SCENE", {}};
+  for (const std::string& path : options.paths) {
+    for (const SweepPoint& point : points) {
+      try {
+        AddScene(context, options, path, point, submission);
+      } catch (const CommandError& error) {
+        if (error.error().kind != Error::Kind::kInvalid || options.paths.size() == 1) throw;
+        for (const Problem& problem : error.error().problems.kept()) {
+          const std::string field = problem.path == path ? path : path + ": " + problem.path;
+          invalid.problems.Add(field, problem.message, problem.hint);
+        }
+        break;  // the other points of this scene have the same problems
+      }
+    }
+  }
+  if (!invalid.problems.empty()) throw CommandError(std::move(invalid));
+  return submission;
+}
+
+void PrintSubmitted(const v1::Job& job, bool json) {
+  if (json) return PrintJson(JobJson(job));
+  std::cout << job.name() << '\n';
+}
+
 int Submit(const SubmitOptions& options, const Context& context) {
-  ScenePackage package = LoadSceneOrFail(options.scene);
-  PackStart(context, options.scene.start, package);
-  v1::Job wanted;
-  wanted.set_threads(options.threads);
-  wanted.set_owner(options.owner);
-  wanted.set_pinned(options.pin);
-  SetOptions(options.settings, wanted);
+  Submission submission = Load(options, context);
   Client client = Connect(context);
-  const v1::Job job = Take(client.Submit(package, std::move(wanted)));
-  if (context.json) {
-    PrintJson(JobJson(job));
+  const auto print = [&](const v1::Job& job) { PrintSubmitted(job, context.json); };
+  if (submission.jobs.size() > 1) {
+    Check(client.SubmitAll(submission.assets, submission.jobs, print));
   } else {
-    std::cout << job.name() << '\n';
+    v1::Job& wanted = submission.jobs.front().job;
+    const ScenePackage package = {std::move(*wanted.mutable_scene()), std::move(submission.assets)};
+    print(Take(client.Submit(package, wanted)));
   }
   return kDone;
 }
@@ -51,9 +115,12 @@ int Submit(const SubmitOptions& options, const Context& context) {
 }  // namespace
 
 void AddSubmit(CLI::App& app, Context& context) {
-  CLI::App* command = AddCommand(app, "submit", "Send a scene to a server and return at once", kSubmitExamples);
+  CLI::App* command = AddCommand(app, "submit", "Send scenes to a server and return at once", kSubmitExamples);
   const auto options = std::make_shared<SubmitOptions>();
-  AddSceneArgument(*command, options->scene);
+  command->add_option("SCENE", options->paths, "The scene files (JSON, see `fascicle schema`); a job for each")
+      ->required();
+  AddSetOption(*command, options->scene.settings);
+  AddSweepOption(*command, options->sweeps);
   AddStartOption(*command, options->scene);
   command->add_option("--threads", options->threads, "Number of threads; 0: the server's default")
       ->check(CLI::Range(0, 256));

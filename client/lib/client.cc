@@ -4,10 +4,12 @@
 #include <array>
 #include <cstdio>
 #include <random>
+#include <span>
 #include <utility>
 
 #include "client/lib/connection.h"
 #include "client/lib/status_error.h"
+#include "client/lib/submit_all.h"
 #include "client/lib/transfer.h"
 #include "client/lib/upload.h"
 #include "client/lib/watch.h"
@@ -49,23 +51,42 @@ struct Client::Impl {
     return response;
   }
 
-  // Uploads missing files, then creates the job; repeats both if an asset disappeared in between.
-  Result<v1::Job> Create(const ScenePackage& package, const v1::CreateJobRequest& request,
-                         const std::stop_token& stop) {
+  // Uploads missing files, then creates jobs by `call`; repeats both if an asset disappeared in between.
+  template <class Response, class Call>
+  Result<Response> Create(const std::vector<AssetFile>& assets, const Call& call, const std::stop_token& stop) {
+    constexpr int kAttempts = 3;
+    for (int attempt = 1;; ++attempt) {
+      if (grpc::Status status = UploadMissing(connection, assets, stop); !status.ok()) {
+        return ErrorOf(status, connection.address());
+      }
+      Result<Response> created = Ask<Response>(kCreateTimeout, call, stop);
+      if (!created.ok() && stop.stop_requested()) {
+        return Error{Error::Kind::kStopped, "stopped before the job was created", "", {}};
+      }
+      if (created.ok() || created.error().reason != "MISSING_ASSET" || attempt == kAttempts) return created;
+    }
+  }
+
+  Result<v1::Job> CreateOne(const ScenePackage& package, const v1::CreateJobRequest& request,
+                            const std::stop_token& stop) {
     const auto create = [&](grpc::ClientContext& context, v1::Job& response) {
       return connection.jobs().CreateJob(&context, request, &response);
     };
-    constexpr int kAttempts = 3;
-    for (int attempt = 1;; ++attempt) {
-      if (grpc::Status status = UploadMissing(connection, package.assets, stop); !status.ok()) {
-        return ErrorOf(status, connection.address());
-      }
-      Result<v1::Job> job = Ask<v1::Job>(kCreateTimeout, create, stop);
-      if (!job.ok() && stop.stop_requested()) {
-        return Error{Error::Kind::kStopped, "stopped before the job was created", "", {}};
-      }
-      if (job.ok() || job.error().reason != "MISSING_ASSET" || attempt == kAttempts) return job;
+    return Create<v1::Job>(package.assets, create, stop);
+  }
+
+  Result<v1::BatchCreateJobsResponse> CreateBatch(const std::vector<AssetFile>& assets,
+                                                  std::span<const WantedJob> jobs, const std::stop_token& stop) {
+    v1::BatchCreateJobsRequest request;
+    for (const WantedJob& job : jobs) {
+      v1::CreateJobRequest& one = *request.add_requests();
+      *one.mutable_job() = job.job;
+      one.set_request_id(RandomRequestId());
     }
+    const auto create = [&](grpc::ClientContext& context, v1::BatchCreateJobsResponse& response) {
+      return connection.jobs().BatchCreateJobs(&context, request, &response);
+    };
+    return Create<v1::BatchCreateJobsResponse>(assets, create, stop);
   }
 
   Connection connection;
@@ -94,7 +115,18 @@ Result<v1::Job> Client::Submit(const ScenePackage& package, v1::Job wanted, cons
   *request.mutable_job() = std::move(wanted);
   *request.mutable_job()->mutable_scene() = package.scene;
   request.set_request_id(RandomRequestId());
-  return impl_->Create(package, request, stop);
+  return impl_->CreateOne(package, request, stop);
+}
+
+std::optional<Error> Client::SubmitAll(const std::vector<AssetFile>& assets, const std::vector<WantedJob>& jobs,
+                                       const std::function<void(const v1::Job& job)>& created,
+                                       const std::stop_token& stop) {
+  return SendInBatches(jobs, [&](std::span<const WantedJob> batch) -> std::optional<Error> {
+    const Result<v1::BatchCreateJobsResponse> answer = impl_->CreateBatch(assets, batch, stop);
+    if (!answer.ok()) return ErrorOfBatch(answer.error(), batch);
+    for (const v1::Job& job : answer.value().jobs()) created(job);
+    return std::nullopt;
+  });
 }
 
 std::optional<Error> Client::Validate(const ScenePackage& package, int threads) {
@@ -102,7 +134,7 @@ std::optional<Error> Client::Validate(const ScenePackage& package, int threads) 
   *request.mutable_job()->mutable_scene() = package.scene;
   request.mutable_job()->set_threads(threads);
   request.set_validate_only(true);
-  const Result<v1::Job> job = impl_->Create(package, request, {});
+  const Result<v1::Job> job = impl_->CreateOne(package, request, {});
   if (job.ok()) return std::nullopt;
   return job.error();
 }
@@ -252,7 +284,7 @@ Result<v1::Job> Client::SubmitAgain(const std::string& name) {
   for (v1::SteeringInput& input : *steering.value().mutable_inputs()) {
     *request.mutable_job()->add_inputs() = ReplayedInput(std::move(input));
   }
-  return impl_->Create({}, request, {});
+  return impl_->CreateOne({}, request, {});
 }
 
 Result<v1::Job> Client::WatchLog(const std::string& name, const LogOptions& options,

@@ -58,6 +58,12 @@ struct ScenePackage {
   std::vector<AssetFile> assets;
 };
 
+// One of many jobs to be submitted together.
+struct WantedJob {
+  std::string origin;  // of its scene, for messages: the name of a file
+  v1::Job job;         // with its scene, whose FileRef.asset are all set
+};
+
 struct WatchOptions {
   std::int64_t start_index = 0;
   bool follow = true;
@@ -120,6 +126,11 @@ class Client {
   Result<v1::Job> Submit(const ScenePackage& package, int threads, const std::stop_token& stop = {});
   // The same with threads, owner, labels, priority, ttl and pin of `wanted`.
   Result<v1::Job> Submit(const ScenePackage& package, v1::Job wanted, const std::stop_token& stop = {});
+  // Uploads the files that the server lacks and creates the jobs, some hundreds in one commit. Tells each of them once
+  // it is created, in their order. After an error, those that were not told are not there, unless the server was lost.
+  std::optional<Error> SubmitAll(const std::vector<AssetFile>& assets, const std::vector<WantedJob>& jobs,
+                                 const std::function<void(const v1::Job& job)>& created,
+                                 const std::stop_token& stop = {});
   // Checks a scene without creating a job.
   std::optional<Error> Validate(const ScenePackage& package, int threads);
   Result<v1::Job> GetJob(const std::string& name);

@@ -45,14 +45,6 @@ Error::Kind KindOfStatus(grpc::StatusCode code) {
   }
 }
 
-// The server refers to fields of the request; users know those of their scene.
-std::string ScenePath(std::string_view field) {
-  constexpr std::string_view kScene = "job.scene";
-  if (field == kScene) return "";
-  if (field.starts_with(kScene) && field[kScene.size()] == '.') field.remove_prefix(kScene.size() + 1);
-  return std::string(field);
-}
-
 void AddProblems(const google::rpc::BadRequest& bad, Problems& problems) {
   for (const auto& violation : bad.field_violations()) {
     const std::string& description = violation.description();
@@ -63,6 +55,13 @@ void AddProblems(const google::rpc::BadRequest& bad, Problems& problems) {
 }
 
 }  // namespace
+
+std::string ScenePath(std::string_view field) {
+  constexpr std::string_view kScene = "job.scene";
+  if (field == kScene) return "";
+  if (field.starts_with(kScene) && field[kScene.size()] == '.') field.remove_prefix(kScene.size() + 1);
+  return std::string(field);
+}
 
 Error ErrorOf(const grpc::Status& status, const std::string& address) {
   Error error;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <string>
+#include <string_view>
 
 #include <grpcpp/support/status.h>
 
@@ -13,6 +14,9 @@ namespace fascicle::client {
 // Converts a failed call to an Error, with the google.rpc details sent by the server. `address` is mentioned if no
 // server responded.
 Error ErrorOf(const grpc::Status& status, const std::string& address);
+
+// The field of a scene for a field of a request: the server refers to those, users know their scene.
+std::string ScenePath(std::string_view field);
 
 // Whether the same call may succeed later: the connection was lost, or the server is starting, stopping or overloaded.
 bool IsTransient(const grpc::Status& status);

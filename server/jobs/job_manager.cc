@@ -78,6 +78,12 @@ void TakeUp(Store& store, const JobManagerOptions& options, const JobCodec& code
   store.UpdateJob(record);
 }
 
+std::vector<std::string> OwnersOf(const std::vector<JobRecord>& jobs) {
+  std::vector<std::string> owners;
+  for (const JobRecord& job : jobs) owners.push_back(job.owner);
+  return owners;
+}
+
 // Waits for another thread that has stored something and is about to do the rest.
 void WaitBriefly() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
 
@@ -120,41 +126,49 @@ struct JobManager::Impl {
     }
   }
 
-  // While it exists, an owner has one more job in the queue. Throws OwnerLimitError if that is too many.
-  class QueuePlace {
+  // While it exists, owners have more jobs in the queue. Throws OwnerLimitError if those are too many.
+  class QueuePlaces {
    public:
-    QueuePlace(Impl& impl, const std::string& owner) : impl_(impl), owner_(owner) {
+    QueuePlaces(Impl& impl, const std::vector<std::string>& owners_of_jobs) : impl_(impl) {
+      for (const std::string& owner : owners_of_jobs) ++counts_[owner];
       const std::lock_guard lock(impl_.mutex);
-      const int most = impl_.options.max_queued_per_owner;
-      const auto entry = impl_.coming.find(owner_);
-      const int count = impl_.queue.CountOf(owner_) + (entry == impl_.coming.end() ? 0 : entry->second);
-      if (most > 0 && count >= most) {
-        throw OwnerLimitError("an owner may have " + std::to_string(most) +
-                              " jobs in the queue: wait until some have started, or cancel some");
-      }
-      ++impl_.coming[owner_];
+      for (const auto& [owner, count] : counts_) CheckRoom(owner, count);
+      for (const auto& [owner, count] : counts_) impl_.coming[owner] += count;
     }
-    ~QueuePlace() {
+    ~QueuePlaces() {
       const std::lock_guard lock(impl_.mutex);
-      GiveUp();
+      for (const auto& [owner, count] : counts_) Subtract(impl_.coming, owner, count);
     }
-    // When the job is in the queue itself; needs mutex.
-    void GiveUp() {
-      if (std::exchange(is_given_up_, true)) return;
-      const auto entry = impl_.coming.find(owner_);
-      if (--entry->second == 0) impl_.coming.erase(entry);
+    // When a job of an owner is in the queue itself; needs mutex.
+    void GiveUpOne(const std::string& owner) {
+      Subtract(impl_.coming, owner, 1);
+      Subtract(counts_, owner, 1);
     }
-    QueuePlace(const QueuePlace&) = delete;
-    QueuePlace& operator=(const QueuePlace&) = delete;
+    QueuePlaces(const QueuePlaces&) = delete;
+    QueuePlaces& operator=(const QueuePlaces&) = delete;
 
    private:
+    using Counts = std::map<std::string, int>;
+
+    void CheckRoom(const std::string& owner, int count) const {
+      const int most = impl_.options.max_queued_per_owner;
+      const auto coming = impl_.coming.find(owner);
+      const int others = impl_.queue.CountOf(owner) + (coming == impl_.coming.end() ? 0 : coming->second);
+      if (most <= 0 || others + count <= most) return;
+      throw OwnerLimitError("an owner may have " + std::to_string(most) +
+                            " jobs in the queue: wait until some have started, or cancel some");
+    }
+    static void Subtract(Counts& counts, const std::string& owner, int count) {
+      const auto entry = counts.find(owner);
+      if ((entry->second -= count) == 0) counts.erase(entry);
+    }
+
     Impl& impl_;
-    const std::string owner_;
-    bool is_given_up_ = false;
+    Counts counts_;  // of jobs that are not in the queue yet
   };
 
-  // `place`: of this job; may be null.
-  void Enqueue(JobRecord record, std::shared_ptr<const Scene> scene, QueuePlace* place = nullptr) {
+  // `places`: one of them is for this job; may be null.
+  void Enqueue(JobRecord record, std::shared_ptr<const Scene> scene, QueuePlaces* places = nullptr) {
     const std::string owner = record.owner;
     const int priority = record.priority;
     auto job = std::make_shared<ActiveJob>(store, std::move(record));
@@ -165,7 +179,7 @@ struct JobManager::Impl {
         with_scene.insert(job->id());
       }
       queue.Add(job->id(), owner, priority);
-      if (place != nullptr) place->GiveUp();
+      if (places != nullptr) places->GiveUpOne(owner);
       active[job->id()] = job;
     }
     queue_changed.notify_one();
@@ -337,19 +351,41 @@ struct JobManager::Impl {
     return is_removed;
   }
 
-  // Submit, when the owner's limits allow it.
-  JobView Create(JobRecord record, bool* repeated, std::shared_ptr<const Scene> scene, QueuePlace& place) {
-    record.create_time_us = UnixTimeUs();
-    record.id = ids.Next(record.create_time_us / 1000);
-    record.state = JobState::kQueued;
-    JobRecord existing;
-    const bool is_new = store.CreateJob(record, &existing);
-    if (repeated != nullptr) *repeated = !is_new;
-    if (!is_new) return View(FindActive(existing.id), std::move(existing));
-    options.on_event(record, "accepted");
-    Enqueue(record, std::move(scene), &place);
-    Tell(record.id);
-    return View(FindActive(record.id), std::move(record));
+  // Submit, when the owners' limits allow it.
+  std::vector<SubmittedJob> Create(std::vector<JobRecord> records, std::shared_ptr<const Scene> first_scene,
+                                   QueuePlaces& places) {
+    for (JobRecord& record : records) {
+      record.create_time_us = UnixTimeUs();
+      record.id = ids.Next(record.create_time_us / 1000);
+      record.state = JobState::kQueued;
+    }
+    std::vector<std::optional<JobRecord>> earlier = store.CreateJobs(records);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      if (earlier[i]) continue;
+      options.on_event(records[i], "accepted");
+      Enqueue(records[i], i == 0 ? std::move(first_scene) : nullptr, &places);
+      Tell(records[i].id);
+    }
+    std::vector<SubmittedJob> submitted;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      JobRecord& record = earlier[i] ? *earlier[i] : records[i];
+      const std::shared_ptr<ActiveJob> job = FindActive(record.id);
+      submitted.push_back({View(job, std::move(record)), earlier[i].has_value()});
+    }
+    return submitted;
+  }
+
+  // The jobs that were created earlier for the requests of these; nothing unless all were.
+  std::optional<std::vector<SubmittedJob>> FindRepeated(const std::vector<JobRecord>& wanted) {
+    std::vector<SubmittedJob> jobs;
+    for (const JobRecord& job : wanted) {
+      std::optional<JobRecord> earlier = store.FindRequest(job.request_id);
+      if (!earlier) return std::nullopt;
+      if (earlier->request_digest != job.request_digest) throw RequestReusedError(job.request_id, earlier->id);
+      const std::shared_ptr<ActiveJob> active_job = FindActive(earlier->id);
+      jobs.push_back({View(active_job, *std::move(earlier)), true});
+    }
+    return jobs;
   }
 
   // Throws OwnerLimitError.
@@ -462,19 +498,27 @@ JobManager::JobManager(Store& store, JobCodec codec, JobManagerOptions options)
 
 JobManager::~JobManager() = default;
 
-JobView JobManager::Submit(JobRecord record, bool* repeated, std::shared_ptr<const Scene> scene) {
-  std::optional<JobRecord> existing;
+std::vector<SubmittedJob> JobManager::Submit(std::vector<JobRecord> records, std::shared_ptr<const Scene> first_scene) {
+  std::optional<Impl::QueuePlaces> places;
   try {
-    impl_->CheckStored(record.owner);
-    Impl::QueuePlace place(*impl_, record.owner);
-    return impl_->Create(std::move(record), repeated, std::move(scene), place);
+    const std::vector<std::string> owners = OwnersOf(records);
+    for (const std::string& owner : std::set<std::string>(owners.begin(), owners.end())) impl_->CheckStored(owner);
+    places.emplace(*impl_, owners);
   } catch (const OwnerLimitError&) {
     // A repeated request makes no new job.
-    if (!record.request_id.empty()) existing = impl_->store.FindRequest(record.request_id);
-    if (!existing) throw;
+    std::optional<std::vector<SubmittedJob>> repeated = impl_->FindRepeated(records);
+    if (!repeated) throw;
+    return *std::move(repeated);
   }
-  if (repeated != nullptr) *repeated = true;
-  return impl_->View(impl_->FindActive(existing->id), *std::move(existing));
+  return impl_->Create(std::move(records), std::move(first_scene), *places);
+}
+
+JobView JobManager::Submit(JobRecord record, bool* repeated, std::shared_ptr<const Scene> scene) {
+  std::vector<JobRecord> records;
+  records.push_back(std::move(record));
+  SubmittedJob job = std::move(Submit(std::move(records), std::move(scene)).front());
+  if (repeated != nullptr) *repeated = job.is_repeated;
+  return std::move(job.view);
 }
 
 JobManager::Staged JobManager::Stage(const std::string& wanted, const JobRecord& record) {
@@ -491,10 +535,11 @@ JobManager::Staged JobManager::Stage(const std::string& wanted, const JobRecord&
   return {std::move(id), std::move(frames)};
 }
 
-JobView JobManager::AddFinished(const JobRecord& record, bool* repeated) {
+JobView JobManager::AddFinished(const JobRecord& record) {
   JobRecord existing;
-  *repeated = !impl_->store.CreateJob(record, &existing);
-  if (*repeated) return impl_->View(impl_->FindActive(existing.id), std::move(existing));
+  if (!impl_->store.CreateJob(record, &existing)) {
+    return impl_->View(impl_->FindActive(existing.id), std::move(existing));
+  }
   impl_->options.on_event(record, "imported");
   impl_->Tell(record.id);
   return impl_->View(nullptr, record);
@@ -647,7 +692,7 @@ JobManager::RestartResult JobManager::Restart(std::string_view id, bool from_sta
   const auto restart = [&](std::optional<JobRecord> record) {
     if (!record) result = RestartResult::kNotFound;
     if (!record || !IsFinal(record->state)) return;
-    Impl::QueuePlace place(*impl_, record->owner);
+    Impl::QueuePlaces place(*impl_, {record->owner});
     if (from_start) {
       if (const std::shared_ptr<FrameStore> frames = impl_->store.OpenFrames(id)) frames->DropCheckpoints();
     }

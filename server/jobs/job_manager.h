@@ -94,6 +94,12 @@ struct JobView {
   int threads = 0;  // with which it is run now; 0 if it is not
 };
 
+// A job that a client asked for.
+struct SubmittedJob {
+  JobView view;
+  bool is_repeated = false;  // there was one for the same request already
+};
+
 // As JobChanges.
 struct JobChangeViews {
   std::vector<JobView> changed;
@@ -150,10 +156,13 @@ class JobManager {
   // Drains; the next process continues unfinished jobs.
   ~JobManager();
 
-  // `record` has spec, scene_name, threads, owner, settings, request_id, request_digest and the profile so far set.
-  // Returns the new job, or the earlier one with the same request id (then `*repeated` is true; the caller compares
-  // request_digest). The job is durable on return. Throws OwnerLimitError. `scene` is the scene of the spec, so that
-  // the worker need not decode it. Scenes are kept for at most as many waiting jobs as there are workers.
+  // Creates jobs: all of them, durably, or none. `records` have spec, scene_name, threads, owner, settings, request_id,
+  // request_digest and the profile so far set. Returns the new jobs, or the earlier ones for the same requests, in the
+  // same order. Throws OwnerLimitError, and RequestReusedError as JobStore::CreateJobs. `first_scene` is the scene of
+  // the first spec, so that the worker need not decode it. Scenes are kept for at most as many waiting jobs as there
+  // are workers.
+  std::vector<SubmittedJob> Submit(std::vector<JobRecord> records, std::shared_ptr<const Scene> first_scene = nullptr);
+  // The same for one job. `repeated` may be null.
   JobView Submit(JobRecord record, bool* repeated, std::shared_ptr<const Scene> scene = nullptr);
   // Takes over a job that another server ran: an id and its empty frame store, which is filled before AddFinished makes
   // it a job. The id is `wanted` if that could be one of this server's own and is free, otherwise a new one. Of the
@@ -164,8 +173,8 @@ class JobManager {
   };
   Staged Stage(const std::string& wanted, const JobRecord& record);
   // Adds the job of a staged id. `record` is complete and in a final state. Returns it, or the earlier job with the
-  // same request id (then `*repeated` is true).
-  JobView AddFinished(const JobRecord& record, bool* repeated);
+  // same request id. Throws RequestReusedError.
+  JobView AddFinished(const JobRecord& record);
   std::optional<JobView> Get(std::string_view id);
   // Jobs newest first: ids below `before_id` (empty: from the newest), states in `states` (empty: all).
   std::vector<JobView> List(int limit, std::string_view before_id, const std::vector<JobState>& states);

@@ -10,6 +10,7 @@
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/jobs/job_manager.h"
+#include "server/rpc/names.h"
 #include "server/store/store.h"
 
 namespace fascicle::server {
@@ -195,6 +196,8 @@ grpc::Status Guarded(spdlog::logger& log, const char* what, const std::function<
   } catch (const NoSpaceError& e) {
     log.error("{}: the disk is full: {}", what, e.what());
     return ResourceExhausted("DISK_FULL", "disk", "the server's disk is full; delete jobs or free some space");
+  } catch (const RequestReusedError& e) {
+    return AlreadyExists("REQUEST_ID_REUSED", "job", JobName(e.job_id()), e.what());
   } catch (const OwnerLimitError& e) {
     return ResourceExhausted("OWNER_LIMIT", "owner", e.what());
   } catch (const StoreError& e) {

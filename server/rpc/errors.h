@@ -64,8 +64,9 @@ grpc::Status Internal(const std::string& reason, const std::string& message);
 grpc::Status DataLoss(const std::string& message);
 
 // Runs `body`. An exception is logged under `what` and becomes an error: DATA_LOSS for a DamageError,
-// RESOURCE_EXHAUSTED (DISK_FULL) for a NoSpaceError, the same (OWNER_LIMIT) for an OwnerLimitError, otherwise INTERNAL:
-// STORAGE for a StoreError, OUT_OF_MEMORY, or INTERNAL. Stopped becomes CANCELLED.
+// RESOURCE_EXHAUSTED (DISK_FULL) for a NoSpaceError, the same (OWNER_LIMIT) for an OwnerLimitError, ALREADY_EXISTS for
+// a RequestReusedError, otherwise INTERNAL: STORAGE for a StoreError, OUT_OF_MEMORY, or INTERNAL. Stopped becomes
+// CANCELLED.
 grpc::Status Guarded(spdlog::logger& log, const char* what, const std::function<grpc::Status()>& body) noexcept;
 
 }  // namespace fascicle::server

@@ -5,29 +5,18 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/stop.h"
 #include "server/jobs/active_job.h"
+#include "server/rpc/job_batch.h"
 #include "server/rpc/job_filter.h"
 #include "server/rpc/job_messages.h"
 #include "server/rpc/job_settings.h"
 #include "server/rpc/job_watch_stream.h"
 #include "server/rpc/names.h"
+#include "server/rpc/new_job.h"
 #include "server/rpc/raw_request.h"
-#include "server/rpc/start_state.h"
-#include "server/translate/steering.h"
-#include "server/translate/translate.h"
 
 namespace fascicle::server {
 namespace {
-
-void CheckRequest(const v1::CreateJobRequest& request, Problems& problems) {
-  if (!request.job().has_scene()) problems.Add("job.scene", "is missing");
-  if (request.job().threads() < 0 || request.job().threads() > 256) {
-    problems.Add("job.threads", "must be in [0, 256]", "0 selects the server's default");
-  }
-  CheckSettings(request.job(), problems);
-  if (request.request_id().size() > 64) problems.Add("request_id", "is longer than 64 characters");
-}
 
 // The states of a request as one group of a filter.
 std::vector<JobCondition> AnyState(const v1::ListJobsRequest& request, Problems& problems) {
@@ -65,21 +54,27 @@ grpc::ServerUnaryReactor* JobServiceImpl::CreateJob(grpc::CallbackServerContext*
     reactor->Finish(entry.status);
     return reactor;
   }
-  const auto checked = std::make_shared<CheckedJob>();
+  const auto checked = std::make_shared<NewJob>();
   context_.slow.Post([this, reactor, request, response, checked, place = std::move(entry.place),
                       limit = DetailsLimit(*call), stop = reactor->stop()] {
     const std::chrono::milliseconds longest = context_.settings.limits.longest_check;
     const RunningChecks::Watch watch(context_.running_checks, stop, longest);
-    const grpc::Status status =
-        Guarded(context_.log, "CreateJob", [&] { return CheckJob(*request, *checked, limit, stop.get_token()); });
+    const grpc::Status status = Guarded(context_.log, "CreateJob", [&] {
+      JobFaults faults;
+      *checked = CheckNewJob(context_, *request, stop.get_token(), faults);
+      return StatusOf(faults, limit);
+    });
     if (watch.expired()) return reactor->Finish(TookTooLong(longest));
     if (!status.ok() || request->validate_only()) {
       response->set_scene_name(request->job().scene().name());
       response->set_threads(request->job().threads());
       return reactor->Finish(status);
     }
-    const auto store = [this, reactor, request, response, checked, place] {
-      reactor->Finish(Guarded(context_.log, "CreateJob", [&] { return StoreJob(*request, *checked, *response); }));
+    const auto store = [this, reactor, response, checked, place] {
+      reactor->Finish(Guarded(context_.log, "CreateJob", [&] {
+        *response = ToMessage(context_.jobs.Submit(std::move(checked->record), nullptr, std::move(checked->scene)));
+        return grpc::Status::OK;
+      }));
     };
     // A single client is spared a change of threads. Of many, other threads wait for the disk, and share a commit.
     if (context_.slow.HasNoneWaiting()) return store();
@@ -88,70 +83,13 @@ grpc::ServerUnaryReactor* JobServiceImpl::CreateJob(grpc::CallbackServerContext*
   return reactor;
 }
 
-grpc::Status JobServiceImpl::CheckJob(const v1::CreateJobRequest& request, CheckedJob& checked,
-                                      std::size_t details_limit, const std::stop_token& stop) {
-  ThrowIfStopped(stop);
-  Problems problems;
-  v1::Job job = request.job();
-  if (job.has_scene() && job.scene().has_start()) {
-    Problems found;
-    StoreStartState(context_.store, *job.mutable_scene(), found);
-    problems.Append("job.scene", found);
-    if (!found.empty()) job.mutable_scene()->clear_start();  // the rest is checked all the same
-  }
-  const std::vector<std::string> missing = MissingAssets(job.scene());
-  if (!missing.empty()) {
-    return FailedPrecondition("MISSING_ASSET", missing, "an asset of the scene was not uploaded", details_limit);
-  }
-  CheckRequest(request, problems);
-  CheckInputs(job, "job.inputs", problems);
-  Profile profile;
-  if (job.has_scene()) checked.scene = Translate(job.scene(), profile, stop, problems);
-  if (!problems.empty()) return InvalidArgument(problems, details_limit);
-  JobRecord& record = checked.record;
-  record.scene_name = request.job().scene().name();
-  record.threads = request.job().threads();
-  record.spec = SpecOf(job);
-  record.profile = EncodeProfileOfCheck(profile).SerializeAsString();
-  record.request_id = request.request_id();
-  record.request_digest = DigestOf(request.job());
-  CopySettings(request.job(), record);
-  return grpc::Status::OK;
-}
-
-grpc::Status JobServiceImpl::StoreJob(const v1::CreateJobRequest& request, CheckedJob& checked, v1::Job& response) {
-  const std::string digest = checked.record.request_digest;
-  bool repeated = false;
-  const JobView view = context_.jobs.Submit(std::move(checked.record), &repeated, std::move(checked.scene));
-  if (repeated && view.record.request_digest != digest) {
-    return AlreadyExists("REQUEST_ID_REUSED", "job", JobName(view.record.id),
-                         "request_id " + request.request_id() + " was used for another job");
-  }
-  response = ToMessage(view);
-  return grpc::Status::OK;
-}
-
-std::vector<std::string> JobServiceImpl::MissingAssets(const v1::Scene& scene) {
-  std::vector<std::string> missing;
-  for (const std::string& sha256_hex : AssetsOf(scene)) {
-    if (!context_.store.HasAsset(sha256_hex)) missing.push_back(AssetName(sha256_hex));
-  }
-  return missing;
-}
-
-std::shared_ptr<const Scene> JobServiceImpl::Translate(const v1::Scene& scene, Profile& profile,
-                                                       const std::stop_token& stop, Problems& problems) {
-  const StageTimer timer(&profile, "check");
-  const auto read = [this](const std::string& sha256_hex) { return context_.store.ReadAsset(sha256_hex); };
-  Problems found;
-  TranslateLimits limits;
-  limits.max_memory = context_.settings.job_memory;
-  limits.max_stored_bytes = context_.store.Room();
-  auto translated = TranslateScene(scene, read, found, limits, {&profile, &context_.results, stop});
-  if (translated == nullptr && found.empty()) found.Add("", "cannot be translated");
-  problems.Append("job.scene", found);
-  profile.NoteCpu();
-  return translated;
+grpc::ServerUnaryReactor* JobServiceImpl::BatchCreateJobs(grpc::CallbackServerContext* call,
+                                                          const v1::BatchCreateJobsRequest* request,
+                                                          v1::BatchCreateJobsResponse* response) {
+  return RunStoppable(context_, context_.slow, call, "BatchCreateJobs",
+                      [this, request, response, limit = DetailsLimit(*call)](const std::stop_token& stop) {
+                        return CreateBatch(context_, *request, limit, stop, *response);
+                      });
 }
 
 grpc::ServerUnaryReactor* JobServiceImpl::GetJob(grpc::CallbackServerContext* call, const v1::GetJobRequest* request,
@@ -283,7 +221,7 @@ grpc::ServerUnaryReactor* JobServiceImpl::RestartJob(grpc::CallbackServerContext
     // Of a job that was imported, perhaps.
     v1::Job spec;
     if (const auto view = context_.jobs.Get(*id)) spec.ParseFromString(view->record.spec);
-    if (const std::vector<std::string> missing = MissingAssets(spec.scene()); !missing.empty()) {
+    if (const std::vector<std::string> missing = MissingAssets(context_.store, spec.scene()); !missing.empty()) {
       return FailedPrecondition("MISSING_ASSET", missing, "files of the scene are not on this server: submit it again");
     }
     switch (context_.jobs.Restart(*id, request->from_start())) {

@@ -1,21 +1,10 @@
 #ifndef FASCICLE_SERVER_RPC_JOB_SERVICE_H_
 #define FASCICLE_SERVER_RPC_JOB_SERVICE_H_
 
-#include <memory>
-#include <stop_token>
-#include <string>
-#include <vector>
-
 #include <grpcpp/support/byte_buffer.h>
 
-#include "core/base/problems.h"
-#include "core/base/profile.h"
 #include "fascicle/v1/simulation_service.grpc.pb.h"
 #include "server/rpc/rpc_context.h"
-
-namespace fascicle {
-struct Scene;
-}
 
 namespace fascicle::server {
 
@@ -28,6 +17,9 @@ class JobServiceImpl : public JobServiceBase {
 
   grpc::ServerUnaryReactor* CreateJob(grpc::CallbackServerContext* call, const v1::CreateJobRequest* request,
                                       v1::Job* response) override;
+  grpc::ServerUnaryReactor* BatchCreateJobs(grpc::CallbackServerContext* call,
+                                            const v1::BatchCreateJobsRequest* request,
+                                            v1::BatchCreateJobsResponse* response) override;
   grpc::ServerUnaryReactor* GetJob(grpc::CallbackServerContext* call, const v1::GetJobRequest* request,
                                    v1::Job* response) override;
   grpc::ServerUnaryReactor* ListJobs(grpc::CallbackServerContext* call, const v1::ListJobsRequest* request,
@@ -50,21 +42,8 @@ class JobServiceImpl : public JobServiceBase {
                                       v1::VerifyJobResponse* response) override;
 
  private:
-  // A job that can be stored.
-  struct CheckedJob {
-    JobRecord record;
-    std::shared_ptr<const Scene> scene;
-  };
-  grpc::Status CheckJob(const v1::CreateJobRequest& request, CheckedJob& checked, std::size_t details_limit,
-                        const std::stop_token& stop);
-  grpc::Status StoreJob(const v1::CreateJobRequest& request, CheckedJob& checked, v1::Job& response);
   grpc::Status List(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
   grpc::Status Update(const v1::UpdateJobRequest& request, v1::Job& response);
-  // `assets/{sha256}` of the scene's assets that the store lacks.
-  std::vector<std::string> MissingAssets(const v1::Scene& scene);
-  // The scene to run; null, with problems, if it is invalid.
-  std::shared_ptr<const Scene> Translate(const v1::Scene& scene, Profile& profile, const std::stop_token& stop,
-                                         Problems& problems);
 
   RpcContext& context_;
 };

@@ -125,13 +125,7 @@ grpc::Status TakeOver(RpcContext& context, JobFileReader& file, const v1::Import
   record.request_digest = Hex(Sha256Of(record.spec + Copy(file, *staged.frames, go_on)));
   record.frame_count = staged.frames->frame_count();
   record.stored_bytes = staged.frames->stored_bytes();
-  bool repeated = false;
-  const JobView view = context.jobs.AddFinished(record, &repeated);
-  if (repeated && view.record.request_digest != record.request_digest) {
-    return AlreadyExists("REQUEST_ID_REUSED", "job", JobName(view.record.id),
-                         "request_id " + request.request_id() + " was used for another job");
-  }
-  imported = ToMessage(view);
+  imported = ToMessage(context.jobs.AddFinished(record));
   return grpc::Status::OK;
 }
 

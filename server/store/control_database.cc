@@ -45,11 +45,13 @@ auto ControlDatabase::ReadWith(const Read& read) {
 }
 
 template <class Write>
-void ControlDatabase::Change(const Write& write) {
+void ControlDatabase::Change(const Write& write, std::size_t count) {
   std::int64_t own = 0;
   writes_.Run([&] {
-    own = next_revision_++;
-    write(own);
+    const std::int64_t first = next_revision_;
+    next_revision_ += static_cast<std::int64_t>(count);
+    own = next_revision_ - 1;
+    write(first);
   });
   // Revisions are given in the order of the commits: all below this one are durable, too.
   std::int64_t newest = revision_;
@@ -57,20 +59,38 @@ void ControlDatabase::Change(const Write& write) {
   }
 }
 
-bool ControlDatabase::CreateJob(const JobRecord& job, JobRecord* existing) {
-  std::string taken_by;
-  Change([&](std::int64_t revision) {
-    taken_by.clear();
-    if (!job.request_id.empty()) taken_by = main_.FindRequest(job.request_id);
-    if (!taken_by.empty()) return;
-    main_.Insert(job, revision);
-    copy_.Insert(job, revision);
-  });
-  if (taken_by.empty()) return true;
-  std::optional<JobRecord> found = GetJob(taken_by);
-  if (!found) return CreateJob(job, existing);  // deleted in between, so the request id is free again
-  *existing = *std::move(found);
-  return false;
+std::vector<std::string> ControlDatabase::EarlierIds(std::span<const JobRecord> jobs) {
+  std::vector<std::string> ids;
+  for (const JobRecord& job : jobs) {
+    std::string& id = ids.emplace_back();
+    if (job.request_id.empty()) continue;
+    const std::optional<JobWriter::EarlierRequest> earlier = main_.FindRequest(job.request_id);
+    if (!earlier) continue;
+    if (earlier->digest != job.request_digest) throw RequestReusedError(job.request_id, earlier->id);
+    id = earlier->id;
+  }
+  return ids;
+}
+
+std::vector<std::optional<JobRecord>> ControlDatabase::CreateJobs(std::span<const JobRecord> jobs) {
+  std::vector<std::string> earlier;
+  const auto insert = [&](std::int64_t revision) {
+    earlier = EarlierIds(jobs);
+    for (std::size_t i = 0; i < jobs.size(); ++i, ++revision) {
+      if (!earlier[i].empty()) continue;
+      main_.Insert(jobs[i], revision);
+      copy_.Insert(jobs[i], revision);
+    }
+  };
+  Change(insert, jobs.size());
+  std::vector<std::optional<JobRecord>> found(jobs.size());
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (earlier[i].empty()) continue;
+    found[i] = GetJob(earlier[i]);
+    // Deleted in between, so the request id is free again.
+    if (!found[i]) found[i] = std::move(CreateJobs(jobs.subspan(i, 1)).front());
+  }
+  return found;
 }
 
 std::optional<JobRecord> ControlDatabase::GetJob(std::string_view id) {

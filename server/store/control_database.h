@@ -6,6 +6,7 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_set>
@@ -26,7 +27,7 @@ class ControlDatabase final : public JobStore {
  public:
   explicit ControlDatabase(const ControlFiles& files);
 
-  bool CreateJob(const JobRecord& job, JobRecord* existing) override;
+  std::vector<std::optional<JobRecord>> CreateJobs(std::span<const JobRecord> jobs) override;
   std::optional<JobRecord> GetJob(std::string_view id) override;
   std::optional<JobRecord> FindRequest(std::string_view request_id) override;
   std::vector<JobRecord> ListJobs(int limit, std::string_view before_id, const std::vector<JobState>& states) override;
@@ -45,9 +46,11 @@ class ControlDatabase final : public JobStore {
   // Calls read(reader) for control.db or, if that is damaged, for the copy.
   template <class Read>
   auto ReadWith(const Read& read);
-  // Makes a change durable: write(revision), with the number of this change.
+  // Makes changes of `count` jobs durable: write(revision), with the number of the first of these changes.
   template <class Write>
-  void Change(const Write& write);
+  void Change(const Write& write, std::size_t count = 1);
+  // The ids of the earlier jobs with the request ids of `jobs`; empty for those that are new. Within a commit.
+  std::vector<std::string> EarlierIds(std::span<const JobRecord> jobs);
   // Forgets old ones if there are too many.
   void NoteRemoval(std::int64_t revision);
 

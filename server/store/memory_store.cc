@@ -183,23 +183,14 @@ class MemoryFrameStore final : public FrameStore {
 
 class MemoryStore final : public Store {
  public:
-  bool CreateJob(const JobRecord& job, JobRecord* existing) override {
+  std::vector<std::optional<JobRecord>> CreateJobs(std::span<const JobRecord> jobs) override {
     const std::unique_lock lock(mutex_);
-    if (!job.request_id.empty()) {
-      const auto [taken, is_new] = ids_by_request_.try_emplace(job.request_id, job.id);
-      if (!is_new) {
-        *existing = jobs_.at(taken->second).record;
-        return false;
-      }
+    std::vector<std::optional<JobRecord>> earlier;
+    for (const JobRecord& job : jobs) earlier.push_back(FindEarlier(job));
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      if (!earlier[i]) Create(jobs[i]);
     }
-    StoredJob& stored = jobs_[job.id];
-    stored.record = job;
-    if (const auto staged = staged_.find(job.id); staged != staged_.end()) {
-      if (auto frames = staged->second.lock()) stored.frames = std::move(frames);
-      staged_.erase(staged);
-    }
-    stored.record.revision = ++revision_;
-    return true;
+    return earlier;
   }
 
   std::optional<JobRecord> GetJob(std::string_view id) override {
@@ -371,6 +362,27 @@ class MemoryStore final : public Store {
     JobRecord record;
     std::shared_ptr<MemoryFrameStore> frames = std::make_shared<MemoryFrameStore>();
   };
+
+  // The job that was created earlier for the same request. Needs mutex_.
+  std::optional<JobRecord> FindEarlier(const JobRecord& job) const {
+    const auto taken = ids_by_request_.find(job.request_id);
+    if (taken == ids_by_request_.end()) return std::nullopt;
+    const JobRecord& record = jobs_.at(taken->second).record;
+    if (record.request_digest != job.request_digest) throw RequestReusedError(job.request_id, record.id);
+    return record;
+  }
+
+  // Needs mutex_.
+  void Create(const JobRecord& job) {
+    if (!job.request_id.empty()) ids_by_request_[job.request_id] = job.id;
+    StoredJob& stored = jobs_[job.id];
+    stored.record = job;
+    if (const auto staged = staged_.find(job.id); staged != staged_.end()) {
+      if (auto frames = staged->second.lock()) stored.frames = std::move(frames);
+      staged_.erase(staged);
+    }
+    stored.record.revision = ++revision_;
+  }
 
   // A temporary folder of its own.
   struct Transfers {

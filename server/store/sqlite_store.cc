@@ -47,18 +47,14 @@ class SqliteStore final : public Store {
     RenewTransfers();
   }
 
-  bool CreateJob(const JobRecord& job, JobRecord* existing) override {
+  std::vector<std::optional<JobRecord>> CreateJobs(std::span<const JobRecord> jobs) override {
     if (const std::string problem = Problem(); !problem.empty()) throw NoSpaceError(problem);
-    if (!jobs_.CreateJob(job, existing)) return false;
+    std::vector<std::optional<JobRecord>> earlier = jobs_.CreateJobs(jobs);
     const std::lock_guard lock(mutex_);
-    if (const auto staged = staged_.find(job.id); staged != staged_.end()) {
-      if (const std::shared_ptr<FrameDatabase> frames = staged->second.lock()) {
-        frames->RemoveWhenClosed(false);
-        open_frames_[job.id] = frames;
-      }
-      staged_.erase(staged);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      if (!earlier[i]) TakeStaged(jobs[i].id);
     }
-    return true;
+    return earlier;
   }
   std::optional<JobRecord> GetJob(std::string_view id) override { return jobs_.GetJob(id); }
   std::optional<JobRecord> FindRequest(std::string_view request_id) override { return jobs_.FindRequest(request_id); }
@@ -163,6 +159,17 @@ class SqliteStore final : public Store {
       reserve_.Release();
       write();
     }
+  }
+
+  // A job is there now: its frames, if there are any, stay. Needs mutex_.
+  void TakeStaged(const std::string& job_id) {
+    const auto staged = staged_.find(job_id);
+    if (staged == staged_.end()) return;
+    if (const std::shared_ptr<FrameDatabase> frames = staged->second.lock()) {
+      frames->RemoveWhenClosed(false);
+      open_frames_[job_id] = frames;
+    }
+    staged_.erase(staged);
   }
 
   // The frames of a job if somebody has them open, which are then forgotten here. Needs mutex_.

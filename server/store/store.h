@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "server/store/job_query.h"
@@ -38,6 +39,18 @@ class DamageError : public StoreError {
 class NoSpaceError : public StoreError {
  public:
   using StoreError::StoreError;
+};
+
+// A request id was used for another job.
+class RequestReusedError : public StoreError {
+ public:
+  RequestReusedError(const std::string& request_id, std::string job_id)
+      : StoreError("request_id " + request_id + " was used for another job"), job_id_(std::move(job_id)) {}
+  // The job for which it was used.
+  const std::string& job_id() const { return job_id_; }
+
+ private:
+  std::string job_id_;
 };
 
 // As Job.State in job.proto; the numbers are stored.
@@ -101,9 +114,18 @@ struct JobChanges {
 class JobStore {
  public:
   virtual ~JobStore() = default;
-  // False, without any change, if the request id is taken; `existing` (not null) is then that job. Throws NoSpaceError
-  // if the disk is almost full.
-  virtual bool CreateJob(const JobRecord& job, JobRecord* existing) = 0;
+  // Creates jobs together: either all of them are stored, or none. A job whose request id was used for an earlier one
+  // is not created again; its place in the result has the earlier one, the others have nothing. Request ids of `jobs`
+  // differ, unless they are empty. Throws RequestReusedError if a request id was used with another request digest, and
+  // NoSpaceError if the disk is almost full.
+  virtual std::vector<std::optional<JobRecord>> CreateJobs(std::span<const JobRecord> jobs) = 0;
+  // The same for one job. False if there was an earlier one, which is then in `existing` (not null).
+  bool CreateJob(const JobRecord& job, JobRecord* existing) {
+    std::optional<JobRecord> earlier = std::move(CreateJobs({&job, 1}).front());
+    if (!earlier) return true;
+    *existing = *std::move(earlier);
+    return false;
+  }
   virtual std::optional<JobRecord> GetJob(std::string_view id) = 0;
   // The job with a request id; nothing for an empty one.
   virtual std::optional<JobRecord> FindRequest(std::string_view request_id) = 0;

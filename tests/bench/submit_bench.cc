@@ -54,6 +54,20 @@ void Run() {
       raw.Insert(request.request_id(), request.request_id(), request.job().SerializeAsString());
     }
   };
+  const auto submit_batches = [&](int size) {
+    for (int begin = 0; begin < kSubmissions; begin += size) {
+      v1::BatchCreateJobsRequest batch;
+      for (int i = 0; i < size; ++i) *batch.add_requests() = NextRequest(number);
+      grpc::ClientContext context;
+      v1::BatchCreateJobsResponse created;
+      if (!clients[0]->jobs->BatchCreateJobs(&context, batch, &created).ok()) std::abort();
+    }
+  };
+  for (const int size : {4, 16, 64}) {
+    std::printf("%d submissions: A over gRPC in batches of %d, B by raw SQLite\n", kSubmissions, size);
+    bench::MedianRatio(
+        "batch_vs_sqlite_" + std::to_string(size), 9, [&] { submit_batches(size); }, commit);
+  }
   for (const int count : {1, 4, kClients}) {
     std::printf("%d submissions: A over gRPC with %d clients, B by raw SQLite\n", kSubmissions, count);
     bench::MedianRatio(

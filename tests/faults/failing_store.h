@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -44,7 +45,7 @@ class FailingStore final : public Store {
  public:
   struct Points {
     Faults reads;         // of jobs and frames
-    Faults job_writes;    // CreateJob, UpdateJob, DeleteJob
+    Faults job_writes;    // CreateJobs, UpdateJob, DeleteJob
     Faults frame_writes;  // PutFrame, PutGeometry, PutSteering, PutLog
   };
 
@@ -52,9 +53,9 @@ class FailingStore final : public Store {
 
   Points& faults() { return *faults_; }
 
-  bool CreateJob(const JobRecord& job, JobRecord* existing) override {
+  std::vector<std::optional<JobRecord>> CreateJobs(std::span<const JobRecord> jobs) override {
     faults_->job_writes.Call();
-    return behind_->CreateJob(job, existing);
+    return behind_->CreateJobs(jobs);
   }
   std::optional<JobRecord> GetJob(std::string_view id) override {
     faults_->reads.Call();

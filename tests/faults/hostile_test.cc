@@ -224,7 +224,7 @@ TEST_F(HostileTest, JunkNamesAndMessages) {
                                             "JobService/DeleteJob",          "JobService/RestartJob",
                                             "JobService/VerifyJob",          "FrameService/ListFrames",
                                             "FrameService/StreamFrames",     "FrameService/GetGeometry",
-                                            "AssetService/FindMissingAssets"};
+                                            "JobService/BatchCreateJobs",    "AssetService/FindMissingAssets"};
   std::string nested;  // a thousand groups within each other, and fields of fields
   for (int i = 0; i < 1000; ++i) nested = "\x0b" + nested + "\x0c";
   std::string fields = "x";

@@ -1,6 +1,14 @@
 # The real server under kill -9.
 fascicle_test(server_kill_test SOURCES server_kill_test.cc DEPS fascicle_service_fixture TIMEOUT 300)
 add_dependencies(server_kill_test fascicled)
+# The same at named calls on files. A preloaded library has no place before that of the address sanitizer.
+if(NOT FASCICLE_SANITIZE)
+  add_library(fail_at SHARED fail_at.cc)
+  target_link_libraries(fail_at PRIVATE fascicle_settings)
+  fascicle_test(failpoint_test SOURCES failpoint_test.cc DEPS fascicle_service_fixture TIMEOUT 300)
+  target_compile_definitions(failpoint_test PRIVATE FAIL_AT_LIBRARY="$<TARGET_FILE:fail_at>")
+  add_dependencies(failpoint_test fascicled fail_at)
+endif()
 # Damaged data behind the service.
 fascicle_test(damage_service_test SOURCES damage_service_test.cc DEPS fascicle_service_fixture server/store TIMEOUT 180)
 # Busy with solving and streaming.

@@ -2,6 +2,7 @@
 #define FASCICLE_TESTS_SUPPORT_SERVER_PROCESS_H_
 
 #include <chrono>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,7 +15,9 @@ namespace fascicle::testing {
 // The real `fascicled` as a child.
 class ServerProcess : public ChildProcess {
  public:
-  explicit ServerProcess(std::vector<std::string> options) : ChildProcess(Command(std::move(options))) {}
+  // `environment`: as that of a ChildProcess.
+  explicit ServerProcess(std::vector<std::string> options, const std::map<std::string, std::string>& environment = {})
+      : ChildProcess(Command(std::move(options)), environment) {}
 
   // HOST:PORT once the server is ready; empty if it has ended or takes longer than `timeout`. Call once.
   std::string AwaitAddress(std::chrono::seconds timeout = std::chrono::seconds(20)) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -698,6 +699,39 @@ TEST_F(ServerTest, RunningJobsCanBeCancelledButNotDeleted) {
   EXPECT_EQ(json::parse(watched.out)["state"], "cancelled");
   for (const char* command : {"show", "cancel", "restart", "verify", "steer", "replay", "log", "delete", "watch"}) {
     EXPECT_EQ(Call({command, "jobs/none"}).exit_code, 2) << command;
+  }
+}
+
+TEST_F(ServerTest, ManyScenesAreSubmittedTogether) {
+  const std::string a = File("a.json", SceneText(2, 20)), b = File("b.json", SceneText(3, 20));
+  const Finished two = Call({"submit", a, b, "--label", "study=many"});
+  EXPECT_EQ(two.exit_code, 0) << two.err;
+  EXPECT_EQ(std::count(two.out.begin(), two.out.end(), '\n'), 2);
+  const Finished sweep = Call({"submit", a, "--sweep", "bodies[0].density=[1000, 1060]", "--sweep",
+                               "duration=[0.01, 0.02, 0.03]", "--label", "study=many", "--json"});
+  EXPECT_EQ(sweep.exit_code, 0) << sweep.err;
+  std::vector<std::string> names;
+  for (const json& job : Lines(sweep.out)) names.push_back(job["scene"]);
+  ASSERT_EQ(names.size(), 6U);
+  EXPECT_TRUE(names[1].ends_with(", bodies[0].density=1000, duration=0.02")) << names[1];
+  const Finished last = Call({"show", Lines(sweep.out)[5]["job"], "--scene"});
+  EXPECT_EQ(json::parse(last.out)["duration"], 0.03) << last.out << last.err;
+  const Finished listed = Call({"list", "--filter", "labels.study=many", "--json"});
+  EXPECT_EQ(Lines(listed.out).size(), 8U) << listed.err;
+}
+
+TEST_F(ServerTest, NothingIsSubmittedOfScenesOfWhichOneIsInvalid) {
+  const std::string good = File("good.json", SceneText(2, 20));
+  const std::string unknown = File("unknown.json", R"({"name": "x", "methd": {}})");
+  const Finished read = Call({"submit", good, unknown, "--label", "study=none"});
+  EXPECT_EQ(read.exit_code, 2);
+  EXPECT_NE(read.err.find("unknown.json: methd"), std::string::npos) << read.err;
+  const Finished checked = Call({"submit", good, "--sweep", "duration=[1, -1]", "--label", "study=none"});
+  EXPECT_EQ(checked.exit_code, 2);
+  EXPECT_NE(checked.err.find("good.json: duration"), std::string::npos) << checked.err;
+  EXPECT_EQ(Lines(Call({"list", "--filter", "labels.study=none", "--json"}).out).size(), 0U);
+  for (const char* sweep : {"duration", "duration=1", "duration=[]", "=[1]"}) {
+    EXPECT_EQ(Call({"submit", good, "--sweep", sweep}).exit_code, 2) << sweep;
   }
 }
 

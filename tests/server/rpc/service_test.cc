@@ -116,6 +116,82 @@ TEST_F(JobsTest, TheCheckOfASceneEndsWithItsCall) {
   EXPECT_FALSE(stubs_->Submit(SwingingBox(0.01, 0.01)).empty());
 }
 
+grpc::Status CreateBatch(Stubs& stubs, const v1::BatchCreateJobsRequest& request,
+                         v1::BatchCreateJobsResponse& response) {
+  grpc::ClientContext context;
+  return stubs.jobs->BatchCreateJobs(&context, request, &response);
+}
+
+v1::BatchCreateJobsRequest BatchOf(int count) {
+  v1::BatchCreateJobsRequest batch;
+  for (int i = 0; i < count; ++i) {
+    v1::CreateJobRequest& request = *batch.add_requests();
+    *request.mutable_job()->mutable_scene() = SwingingBox(0.01, 0.01);
+    request.mutable_job()->mutable_scene()->set_name("job " + std::to_string(i));
+    request.set_request_id("request " + std::to_string(i));
+  }
+  return batch;
+}
+
+TEST_F(JobsTest, ABatchIsCreatedOnce) {
+  const v1::BatchCreateJobsRequest batch = BatchOf(100);
+  v1::BatchCreateJobsResponse first, again;
+  ASSERT_TRUE(CreateBatch(*stubs_, batch, first).ok());
+  ASSERT_EQ(first.jobs_size(), 100);
+  EXPECT_EQ(first.jobs(7).scene_name(), "job 7");
+  ASSERT_TRUE(CreateBatch(*stubs_, batch, again).ok());
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(again.jobs(i).name(), first.jobs(i).name());
+  for (const int i : {0, 99}) {
+    EXPECT_TRUE(stubs_->AwaitState(first.jobs(i).name(), v1::Job::STATE_SUCCEEDED, 60s));
+  }
+  // As one of them alone.
+  v1::Job job;
+  EXPECT_TRUE(stubs_->Create(batch.requests(3), job).ok());
+  EXPECT_EQ(job.name(), first.jobs(3).name());
+}
+
+TEST_F(JobsTest, ABatchWithAFaultyJobCreatesNone) {
+  v1::BatchCreateJobsRequest batch = BatchOf(6), reused = BatchOf(2);
+  v1::BatchCreateJobsResponse response;
+  batch.mutable_requests(1)->mutable_job()->mutable_scene()->set_duration(-1);
+  batch.mutable_requests(3)->mutable_job()->clear_scene();
+  batch.mutable_requests(4)->set_validate_only(true);
+  batch.mutable_requests(5)->set_request_id("request 0");
+  const grpc::Status status = CreateBatch(*stubs_, batch, response);
+  EXPECT_EQ(ReasonOf(status), "3 INVALID_ARGUMENT");
+  std::set<std::string> fields;
+  const google::rpc::BadRequest bad = DetailOf<google::rpc::BadRequest>(status).value();
+  for (const auto& violation : bad.field_violations()) fields.insert(violation.field());
+  EXPECT_EQ(fields, (std::set<std::string>{"requests[1].job.scene.duration", "requests[3].job.scene",
+                                           "requests[4].validate_only", "requests[5].request_id"}));
+  v1::Job job;
+  ASSERT_TRUE(stubs_->Create(reused.requests(1), job).ok());
+  reused.mutable_requests(1)->mutable_job()->set_threads(3);
+  EXPECT_EQ(ReasonOf(CreateBatch(*stubs_, reused, response)), "6 REQUEST_ID_REUSED");
+  EXPECT_EQ(ReasonOf(CreateBatch(*stubs_, {}, response)), "3 INVALID_ARGUMENT");
+  EXPECT_EQ(ReasonOf(CreateBatch(*stubs_, BatchOf(1001), response)), "3 INVALID_ARGUMENT");
+  v1::Body& body = *reused.mutable_requests(0)->mutable_job()->mutable_scene()->mutable_bodies(0);
+  v1::FileRef& mesh = *body.mutable_mesh()->mutable_file();
+  mesh.set_path("missing.msh");
+  mesh.set_asset("assets/" + std::string(64, 'a'));
+  EXPECT_EQ(ReasonOf(CreateBatch(*stubs_, reused, response)), "9 MISSING_ASSET");
+  grpc::ClientContext context;
+  v1::ListJobsResponse listed;
+  EXPECT_TRUE(stubs_->jobs->ListJobs(&context, {}, &listed).ok());
+  EXPECT_EQ(listed.jobs_size(), 1);
+}
+
+TEST_F(JobsTest, ABatchThatIsDearToCheckIsRefused) {
+  v1::BatchCreateJobsRequest batch = BatchOf(200);
+  for (v1::CreateJobRequest& request : *batch.mutable_requests()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      request.mutable_job()->mutable_scene()->mutable_bodies(0)->mutable_mesh()->mutable_box()->set_divisions(axis, 40);
+    }
+  }
+  v1::BatchCreateJobsResponse response;
+  EXPECT_EQ(ReasonOf(CreateBatch(*stubs_, batch, response)), "8 BATCH_TOO_LARGE");
+}
+
 TEST_F(JobsTest, AJobsProfileSaysWhereItsTimeWent) {
   const std::string name = stubs_->Submit(LargeSteps(400));
   ASSERT_TRUE(stubs_->AwaitState(name, v1::Job::STATE_SUCCEEDED, 60s));

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 #include <set>
+#include <span>
 #include <stdexcept>
 #include <thread>
 
@@ -276,6 +277,7 @@ TEST_P(StoreContract, KnowsNoJobThatWasNotCreated) {
 TEST_P(StoreContract, GivesTheEarlierJobForARequestIdThatIsTaken) {
   JobRecord first = SampleJob(1), second = SampleJob(2);
   first.request_id = second.request_id = "same";
+  second.request_digest = first.request_digest;
   ASSERT_TRUE(store_->CreateJob(first, &existing_));
   EXPECT_FALSE(store_->CreateJob(second, &existing_));
   ExpectEqual(existing_, first);
@@ -288,6 +290,37 @@ TEST_P(StoreContract, GivesTheEarlierJobForARequestIdThatIsTaken) {
   EXPECT_TRUE(store_->CreateJob(second, &existing_));
 }
 
+TEST_P(StoreContract, CreatesManyJobsOrNone) {
+  std::vector<JobRecord> jobs = {SampleJob(1), SampleJob(2), SampleJob(3)};
+  for (JobRecord& job : jobs) job.request_id = "request of " + job.id;
+  jobs[1].request_id = "";
+  const std::vector<std::optional<JobRecord>> first = store_->CreateJobs(std::span(jobs).first(2));
+  EXPECT_EQ(first.size(), 2U);
+  EXPECT_FALSE(first[0] || first[1]);
+  // A repetition beside a new one. Each has its own revision, so that changes can be listed by parts.
+  const std::vector<JobRecord> again = {jobs[0], jobs[2]};
+  const std::vector<std::optional<JobRecord>> second = store_->CreateJobs(again);
+  ASSERT_TRUE(second[0]);
+  ExpectEqual(*second[0], jobs[0]);
+  EXPECT_FALSE(second[1]);
+  std::set<std::int64_t> revisions;
+  for (const JobRecord& job : jobs) revisions.insert(store_->GetJob(job.id).value().revision);
+  EXPECT_EQ(revisions.size(), 3U);
+  EXPECT_EQ(*revisions.rbegin(), store_->Revision());
+  // A request id of another job refuses all.
+  std::vector<JobRecord> others = {SampleJob(4), SampleJob(5)};
+  others[1].request_id = jobs[0].request_id;
+  others[1].request_digest = "another";
+  try {
+    store_->CreateJobs(others);
+    ADD_FAILURE() << "a request id was used twice";
+  } catch (const RequestReusedError& error) {
+    EXPECT_EQ(error.job_id(), jobs[0].id);
+  }
+  EXPECT_FALSE(store_->GetJob(others[0].id).has_value());
+  EXPECT_EQ(store_->ListJobs(10, "", {}).size(), 3U);
+}
+
 TEST_P(StoreContract, ConcurrentSubmissionsMakeOneJobForEachRequestId) {
   constexpr int kThreads = 8, kRequests = 60, kRepeats = 8;
   std::atomic<int> created = 0, wrong = 0, number = 0;
@@ -297,6 +330,7 @@ TEST_P(StoreContract, ConcurrentSubmissionsMakeOneJobForEachRequestId) {
       for (int i = 0; i < kRequests * kRepeats / kThreads; ++i) {
         JobRecord job = SampleJob(number++);
         job.request_id = "request " + std::to_string((i * 7 + t) % kRequests);
+        job.request_digest = "digest of " + job.request_id;
         JobRecord existing;
         const bool is_new = store_->CreateJob(job, &existing);
         created += is_new;

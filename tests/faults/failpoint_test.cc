@@ -1,0 +1,86 @@
+// The server dies before, within and after named calls on its files (fail_at.cc): nothing acknowledged is lost.
+#include <signal.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "killed_server.h"
+
+namespace fascicle::service_test {
+namespace {
+
+int FailuresOfEach() {
+  const char* number = std::getenv("FASCICLE_FAILURES_OF_EACH");
+  return number != nullptr ? std::atoi(number) : 2;
+}
+
+struct Failpoint {
+  std::string call;
+  std::string pattern;  // of the path
+  unsigned most;        // the server dies at one of so many such calls
+};
+
+std::vector<Failpoint> Failpoints() {
+  return {{"pwrite", "*/control.db-wal", 60},       {"fdatasync", "*/control.db-wal", 10},
+          {"pwrite", "*/control.copy.db-wal", 60},  {"fdatasync", "*/control.copy.db-wal", 1},
+          {"pwrite", "*/control.db", 8},            {"fdatasync", "*/control.db", 1},
+          {"pwrite", "*/control.copy.db", 8},       {"fdatasync", "*/control.copy.db", 1},
+          {"unlink", "*/control.db-wal", 1},        {"unlink", "*/control.copy.db-wal", 1},
+          {"pwrite", "*/jobs/*.db-wal", 60},        {"fdatasync", "*/jobs/*.db-wal", 20},
+          {"pwrite", "*/jobs/*.db", 10},            {"fdatasync", "*/jobs/*.db", 3},
+          {"unlink", "*/jobs/*.db-wal", 3},         {"unlink", "*/jobs/*.db", 1},
+          {"write", "*/assets/uploads/*", 5},       {"fsync", "*/assets/uploads/*", 5},
+          {"rename", "*/assets/*", 5},              {"fsync", "*/assets/*", 5}};
+}
+
+// FASCICLE_FAIL_AT for one death at this point.
+std::string SomeDeath(const Failpoint& point, std::mt19937& random) {
+  std::vector<std::string> moments = {"before", "after"};
+  if (point.call.ends_with("write")) moments.push_back("within");
+  return moments[random() % moments.size()] + " " + point.call + " " + point.pattern + " " +
+         std::to_string(1 + random() % point.most);
+}
+
+// One life of a server, which drains if it did not die. Whether it did.
+bool DiesOf(const std::string& death, const TemporaryFolder& data, int round, Ledger& ledger) {
+  ServerProcess server({"--listen", "127.0.0.1:0", "--data", data.path(), "--checkpoint", "0.01"},
+                       {{"LD_PRELOAD", FAIL_AT_LIBRARY}, {"FASCICLE_FAIL_AT", death}});
+  const std::string address = server.AwaitAddress();
+  if (!address.empty()) {
+    Clients clients(address, round, false, ledger);
+    if (!server.Wait(400ms)) server.Signal(SIGTERM);
+    EXPECT_TRUE(server.Wait(30s)) << death;
+    clients.Stop();
+  }
+  const int exit_code = server.Wait(30s).value_or(0);
+  EXPECT_TRUE(exit_code == 0 || exit_code == -SIGKILL) << death << ": " << exit_code << " " << server.ErrorOutput();
+  return exit_code == -SIGKILL;
+}
+
+TEST(FailpointTest, NothingAcknowledgedIsLostOrDoubled) {
+  const Digests expected = UndisturbedDigests();
+  TemporaryFolder data;
+  std::mt19937 random(2027);
+  Ledger ledger;
+  int round = 0, deaths = 0;
+  for (const Failpoint& point : Failpoints()) {
+    const int tries = 20 * FailuresOfEach();
+    int of_this = 0;
+    for (int i = 0; i < tries && of_this < FailuresOfEach() && !HasFailure(); ++i) {
+      of_this += DiesOf(SomeDeath(point, random), data, round++, ledger);
+    }
+    EXPECT_EQ(of_this, FailuresOfEach()) << point.call << " " << point.pattern;
+    deaths += of_this;
+  }
+  ExpectNothingLost(data.path(), round, expected, ledger);
+  std::cout << Failpoints().size() << " failpoints, " << deaths << " deaths in " << round << " lives, "
+            << ledger.jobs().size() << " jobs, " << ledger.deleted().size() << " deletions, " << ledger.assets().size()
+            << " uploads and " << ledger.frames().size() << " received frames: 0 lost, different or doubled\n";
+}
+
+}  // namespace
+}  // namespace fascicle::service_test
