@@ -75,8 +75,8 @@ struct Client::Impl {
     return Create<v1::Job>(package.assets, create, stop);
   }
 
-  Result<v1::BatchCreateJobsResponse> CreateBatch(const std::vector<AssetFile>& assets,
-                                                  std::span<const WantedJob> jobs, const std::stop_token& stop) {
+  Result<v1::BatchCreateJobsResponse> CreateBatch(const std::vector<AssetFile>& assets, std::span<const WantedJob> jobs,
+                                                  const std::stop_token& stop) {
     v1::BatchCreateJobsRequest request;
     for (const WantedJob& job : jobs) {
       v1::CreateJobRequest& one = *request.add_requests();

@@ -25,16 +25,26 @@ struct Failpoint {
 };
 
 std::vector<Failpoint> Failpoints() {
-  return {{"pwrite", "*/control.db-wal", 60},       {"fdatasync", "*/control.db-wal", 10},
-          {"pwrite", "*/control.copy.db-wal", 60},  {"fdatasync", "*/control.copy.db-wal", 1},
-          {"pwrite", "*/control.db", 8},            {"fdatasync", "*/control.db", 1},
-          {"pwrite", "*/control.copy.db", 8},       {"fdatasync", "*/control.copy.db", 1},
-          {"unlink", "*/control.db-wal", 1},        {"unlink", "*/control.copy.db-wal", 1},
-          {"pwrite", "*/jobs/*.db-wal", 60},        {"fdatasync", "*/jobs/*.db-wal", 20},
-          {"pwrite", "*/jobs/*.db", 10},            {"fdatasync", "*/jobs/*.db", 3},
-          {"unlink", "*/jobs/*.db-wal", 3},         {"unlink", "*/jobs/*.db", 1},
-          {"write", "*/assets/uploads/*", 5},       {"fsync", "*/assets/uploads/*", 5},
-          {"rename", "*/assets/*", 5},              {"fsync", "*/assets/*", 5}};
+  return {{"pwrite", "*/control.db-wal", 60},
+          {"fdatasync", "*/control.db-wal", 10},
+          {"pwrite", "*/control.copy.db-wal", 60},
+          {"fdatasync", "*/control.copy.db-wal", 1},
+          {"pwrite", "*/control.db", 8},
+          {"fdatasync", "*/control.db", 1},
+          {"pwrite", "*/control.copy.db", 8},
+          {"fdatasync", "*/control.copy.db", 1},
+          {"unlink", "*/control.db-wal", 1},
+          {"unlink", "*/control.copy.db-wal", 1},
+          {"pwrite", "*/jobs/*.db-wal", 60},
+          {"fdatasync", "*/jobs/*.db-wal", 20},
+          {"pwrite", "*/jobs/*.db", 10},
+          {"fdatasync", "*/jobs/*.db", 3},
+          {"unlink", "*/jobs/*.db-wal", 3},
+          {"unlink", "*/jobs/*.db", 1},
+          {"write", "*/assets/uploads/*", 5},
+          {"fsync", "*/assets/uploads/*", 5},
+          {"rename", "*/assets/*", 5},
+          {"fsync", "*/assets/*", 5}};
 }
 
 // FASCICLE_FAIL_AT for one death at this point.

@@ -219,12 +219,11 @@ TEST_F(HostileTest, HalfOpenConnectionsAndHalfMessages) {
 TEST_F(HostileTest, JunkNamesAndMessages) {
   Start();
   std::mt19937 random(8);
-  const std::vector<std::string> methods = {"JobService/CreateJob",          "JobService/GetJob",
-                                            "JobService/ListJobs",           "JobService/CancelJob",
-                                            "JobService/DeleteJob",          "JobService/RestartJob",
-                                            "JobService/VerifyJob",          "FrameService/ListFrames",
-                                            "FrameService/StreamFrames",     "FrameService/GetGeometry",
-                                            "JobService/BatchCreateJobs",    "AssetService/FindMissingAssets"};
+  const std::vector<std::string> methods = {
+      "JobService/CreateJob",     "JobService/GetJob",          "JobService/ListJobs",
+      "JobService/CancelJob",     "JobService/DeleteJob",       "JobService/RestartJob",
+      "JobService/VerifyJob",     "FrameService/ListFrames",    "FrameService/StreamFrames",
+      "FrameService/GetGeometry", "JobService/BatchCreateJobs", "AssetService/FindMissingAssets"};
   std::string nested;  // a thousand groups within each other, and fields of fields
   for (int i = 0; i < 1000; ++i) nested = "\x0b" + nested + "\x0c";
   std::string fields = "x";

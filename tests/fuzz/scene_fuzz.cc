@@ -1,5 +1,5 @@
-// Any bytes as a scene file: read, then translated. Files of the scene are small images. Start it with the scenes of tests/bad_input and client/examples as
-// its corpus.
+// Any bytes as a scene file: read, then translated. Files of the scene are small images. Start it with the scenes of
+// tests/bad_input and client/examples as its corpus.
 #include <cstddef>
 #include <cstdint>
 #include <optional>

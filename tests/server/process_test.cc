@@ -200,7 +200,7 @@ TEST_F(ProcessTest, DrainsWithOpenStreamsAndTheClientsResume) {
   const v1::Scene scene = LargeSteps(200);
   const std::vector<std::string> expected = Undisturbed(scene);
   Start();
-  constexpr int kJobs = 4, kWatchers = 20;
+  constexpr int kJobs = 4, kWatchers = 50;
   std::vector<std::string> names;
   {
     client::Client client(address_);
