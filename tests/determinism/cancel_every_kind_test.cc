@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <thread>
@@ -47,7 +48,7 @@ Scenes ScenesToCancel() {
   for (testing::NamedScene& larger : LargerScenes()) all.push_back(std::move(larger));
   Scenes scenes;
   for (std::size_t i = 0; i < all.size(); i += IsRelease() ? 1 : 7) {
-    all[i].scene.duration *= 1000;  // none ends by itself
+    all[i].scene.duration *= 1000;
     scenes[all[i].name] = std::make_shared<const Scene>(std::move(all[i].scene));
   }
   return scenes;
@@ -61,17 +62,18 @@ JobCodec CodecOf(const Scenes& scenes) {
   return codec;
 }
 
-// From the request to the end [s].
-double SecondsToCancel(JobManager& jobs, const std::string& name, std::chrono::milliseconds delay) {
+// From the request to the end [s]; nothing if the job ended before the request, as bodies that leave their grid make
+// it.
+std::optional<double> SecondsToCancel(JobManager& jobs, const std::string& name, std::chrono::milliseconds delay) {
   JobRecord record;
   record.spec = record.scene_name = name;
   const std::string id = jobs.Submit(record, nullptr).record.id;
   std::this_thread::sleep_for(delay);
+  if (IsFinal(jobs.Get(id)->record.state)) return std::nullopt;
   const Clock::time_point request = Clock::now();
   jobs.Cancel(id);
   while (!IsFinal(jobs.Get(id)->record.state)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   const double seconds = std::chrono::duration<double>(Clock::now() - request).count();
-  EXPECT_EQ(jobs.Get(id)->record.state, JobState::kCancelled) << name;
   return seconds;
 }
 
@@ -89,15 +91,19 @@ TEST(CancelEveryKindTest, JobsEndSoon) {
       // Moments of all magnitudes: preparations of small scenes take milliseconds, steps of large ones seconds.
       const double magnitude = std::uniform_real_distribution<double>(0, 3.3)(random);
       const std::chrono::milliseconds delay(static_cast<int>(std::pow(10, magnitude)));
-      times.emplace_back(SecondsToCancel(jobs, name, delay), name);
+      const std::optional<double> seconds = SecondsToCancel(jobs, name, delay);
+      if (seconds) times.emplace_back(*seconds, name);
     }
   }
+  ASSERT_GT(times.size(), scenes.size() * static_cast<std::size_t>(CancelsOfEach()) / 2);
   std::sort(times.begin(), times.end());
   const auto& [p99, kind] = times[times.size() * 99 / 100];
   const auto& [longest, slowest] = times.back();
   std::printf("%zu cancellations of %zu kinds: p50 %.4f s, p99 %.4f s (%s), longest %.4f s (%s)\n", times.size(),
               scenes.size(), times[times.size() / 2].first, p99, kind.c_str(), longest, slowest.c_str());
-  if (IsRelease()) EXPECT_LE(p99, 1);
+  if (IsRelease()) {
+    EXPECT_LE(p99, 1);
+  }
 }
 
 }  // namespace
