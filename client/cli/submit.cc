@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,15 +53,21 @@ v1::Job JobWithoutScene(const SubmitOptions& options) {
   return job;
 }
 
-// The jobs of a sweep are told apart by the values in their scenes' names.
+// ", bodies[0].density=1000": what tells the jobs of a sweep apart.
+std::string ValuesOf(const SweepPoint& point) {
+  std::string values;
+  for (const std::string& setting : point) values += ", " + setting;
+  return values;
+}
+
 void AddScene(const Context& context, const SubmitOptions& options, const std::string& path, const SweepPoint& point,
               Submission& submission) {
   SceneArgument argument = {path, options.scene.settings, options.scene.start};
   argument.settings.insert(argument.settings.end(), point.begin(), point.end());
   ScenePackage package = LoadSceneOrFail(argument);
   PackStart(context, argument.start, package);
-  for (const std::string& setting : point) package.scene.mutable_name()->append(", " + setting);
-  WantedJob& wanted = submission.jobs.emplace_back(WantedJob{path, JobWithoutScene(options)});
+  package.scene.mutable_name()->append(ValuesOf(point));
+  WantedJob& wanted = submission.jobs.emplace_back(WantedJob{path + ValuesOf(point), JobWithoutScene(options)});
   wanted.job.mutable_scene()->Swap(&package.scene);
   for (AssetFile& file : package.assets) {
     const auto is_same = [&](const AssetFile& other) { return other.sha256_hex == file.sha256_hex; };
@@ -70,26 +77,44 @@ void AddScene(const Context& context, const SubmitOptions& options, const std::s
   }
 }
 
+// Collects what is wrong with a scene, each fault of a file once.
+class SceneFaults {
+ public:
+  void Add(const std::string& path, const SweepPoint& point, const Error& error) {
+    Problems problems = error.problems;
+    if (problems.empty()) problems.Add("", error.message);
+    for (const Problem& problem : problems.kept()) {
+      const std::string field = problem.path == path ? "" : problem.path;
+      if (!told_.insert(path + '\n' + field + '\n' + problem.message).second) continue;
+      problems_.Add(path + ValuesOf(point) + (field.empty() ? "" : ": " + field), problem.message, problem.hint);
+    }
+  }
+  const Problems& problems() const { return problems_; }
+
+ private:
+  std::set<std::string> told_;
+  Problems problems_;
+};
+
 // Loads all scenes; CommandError with the problems of all of them.
 Submission Load(const SubmitOptions& options, const Context& context) {
   const std::vector<SweepPoint> points = PointsOf(options.sweeps);
+  const bool is_one = options.paths.size() * points.size() == 1;
   Submission submission;
-  Error invalid{Error::Kind::kInvalid, "some of the scenes are not valid", "INVALID_SCENE", {}};
+  SceneFaults faults;
   for (const std::string& path : options.paths) {
     for (const SweepPoint& point : points) {
       try {
         AddScene(context, options, path, point, submission);
       } catch (const CommandError& error) {
-        if (error.error().kind != Error::Kind::kInvalid || options.paths.size() == 1) throw;
-        for (const Problem& problem : error.error().problems.kept()) {
-          const std::string field = problem.path == path ? path : path + ": " + problem.path;
-          invalid.problems.Add(field, problem.message, problem.hint);
-        }
-        break;  // the other points of this scene have the same problems
+        if (is_one || error.error().kind != Error::Kind::kInvalid) throw;
+        faults.Add(path, point, error.error());
       }
     }
   }
-  if (!invalid.problems.empty()) throw CommandError(std::move(invalid));
+  if (!faults.problems().empty()) {
+    throw CommandError({Error::Kind::kInvalid, "some of the scenes are not valid", "INVALID_SCENE", faults.problems()});
+  }
   return submission;
 }
 
@@ -103,7 +128,7 @@ int Submit(const SubmitOptions& options, const Context& context) {
   Client client = Connect(context);
   const auto print = [&](const v1::Job& job) { PrintSubmitted(job, context.json); };
   if (submission.jobs.size() > 1) {
-    Check(client.SubmitAll(submission.assets, submission.jobs, print));
+    Check(client.SubmitAll(submission.assets, std::move(submission.jobs), print));
   } else {
     v1::Job& wanted = submission.jobs.front().job;
     const ScenePackage package = {std::move(*wanted.mutable_scene()), std::move(submission.assets)};

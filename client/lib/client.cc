@@ -81,7 +81,7 @@ struct Client::Impl {
     for (const WantedJob& job : jobs) {
       v1::CreateJobRequest& one = *request.add_requests();
       *one.mutable_job() = job.job;
-      one.set_request_id(RandomRequestId());
+      one.set_request_id(job.request_id);
     }
     const auto create = [&](grpc::ClientContext& context, v1::BatchCreateJobsResponse& response) {
       return connection.jobs().BatchCreateJobs(&context, request, &response);
@@ -118,9 +118,11 @@ Result<v1::Job> Client::Submit(const ScenePackage& package, v1::Job wanted, cons
   return impl_->CreateOne(package, request, stop);
 }
 
-std::optional<Error> Client::SubmitAll(const std::vector<AssetFile>& assets, const std::vector<WantedJob>& jobs,
+std::optional<Error> Client::SubmitAll(const std::vector<AssetFile>& assets, std::vector<WantedJob> jobs,
                                        const std::function<void(const v1::Job& job)>& created,
                                        const std::stop_token& stop) {
+  // A job keeps its id if it is sent again in a smaller batch.
+  for (WantedJob& job : jobs) job.request_id = RandomRequestId();
   return SendInBatches(jobs, [&](std::span<const WantedJob> batch) -> std::optional<Error> {
     const Result<v1::BatchCreateJobsResponse> answer = impl_->CreateBatch(assets, batch, stop);
     if (!answer.ok()) return ErrorOfBatch(answer.error(), batch);

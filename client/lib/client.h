@@ -60,8 +60,9 @@ struct ScenePackage {
 
 // One of many jobs to be submitted together.
 struct WantedJob {
-  std::string origin;  // of its scene, for messages: the name of a file
-  v1::Job job;         // with its scene, whose FileRef.asset are all set
+  std::string origin;           // of its scene, for messages: the name of a file
+  v1::Job job;                  // with its scene, whose FileRef.asset are all set
+  std::string request_id = {};  // set by SubmitAll
 };
 
 struct WatchOptions {
@@ -128,7 +129,7 @@ class Client {
   Result<v1::Job> Submit(const ScenePackage& package, v1::Job wanted, const std::stop_token& stop = {});
   // Uploads the files that the server lacks and creates the jobs, some hundreds in one commit. Tells each of them once
   // it is created, in their order. After an error, those that were not told are not there, unless the server was lost.
-  std::optional<Error> SubmitAll(const std::vector<AssetFile>& assets, const std::vector<WantedJob>& jobs,
+  std::optional<Error> SubmitAll(const std::vector<AssetFile>& assets, std::vector<WantedJob> jobs,
                                  const std::function<void(const v1::Job& job)>& created,
                                  const std::stop_token& stop = {});
   // Checks a scene without creating a job.

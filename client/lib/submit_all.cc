@@ -62,6 +62,8 @@ Error ErrorOfBatch(Error error, std::span<const WantedJob> jobs) {
   for (const Problem& problem : error.problems.kept()) {
     problems.Add(PathWithOrigin(problem.path, jobs), problem.message, problem.hint);
   }
+  while (problems.count() < error.problems.count()) problems.Add("", "");  // counted, not kept
+  if (!problems.empty()) error.message = "some of the scenes are not valid";
   error.problems = std::move(problems);
   return error;
 }

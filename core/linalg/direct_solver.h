@@ -4,19 +4,23 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stop_token>
 
 namespace fascicle {
 
 // Factorization L D L^T of a sparse symmetric matrix, definite or indefinite, by MUMPS's multifrontal method with
 // pivoting [Amestoy, Duff, L'Excellent & Koster 2001]. The pattern is analyzed once; values may change. Not
-// thread-safe. Calls of different solvers wait for each other, because the library has global state.
+// thread-safe. Because the library has global state, calls of different solvers wait for each other up to 6,000
+// unknowns (tenths of a second); beyond, each solver has a process of its own (SolverProcess).
 //
 // The same input gives the same bits in any process, for any number of threads, on processors for which OpenBLAS has
 // the same kernels. Those for AVX-512 (SkylakeX, Cooperlake) add in a different order than those for AVX2 (Haswell,
 // Zen).
 class DirectSolver {
  public:
-  DirectSolver();
+  // Calls for more than 6,000 unknowns throw Stopped after a stop request, and std::bad_alloc if their process was
+  // ended.
+  explicit DirectSolver(std::stop_token stop = {});
   ~DirectSolver();
   DirectSolver(const DirectSolver&) = delete;
   DirectSolver& operator=(const DirectSolver&) = delete;

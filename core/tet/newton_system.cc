@@ -294,7 +294,7 @@ bool NewtonSystem::Solve(double tolerance, ThreadTeam& team, NodalVector& dx, st
   }
   const StageTimer timer(profile_, "direct solve");
   ++solves_.direct;
-  if (!direct_) direct_ = std::make_unique<DirectSaddleSolver>(matrix);
+  if (!direct_) direct_ = std::make_unique<DirectSaddleSolver>(matrix, team.stop());
   if (!direct_is_current_ && !direct_->Factor(matrix)) return false;
   direct_is_current_ = true;
   direct_->Solve(side_, volume_side_, dx, dp);

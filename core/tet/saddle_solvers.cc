@@ -68,7 +68,8 @@ std::optional<Prolongation> FromCorners(const TetModel& model, const FreeCompone
 
 }  // namespace
 
-DirectSaddleSolver::DirectSaddleSolver(const SaddleMatrix& matrix) : unknown_of_node_(matrix.nodes()) {
+DirectSaddleSolver::DirectSaddleSolver(const SaddleMatrix& matrix, const std::stop_token& stop)
+    : unknown_of_node_(matrix.nodes()), solver_(stop) {
   for (std::size_t n = 0; n < matrix.nodes(); ++n) {
     for (int c = 0; c < 3; ++c) unknown_of_node_[n][c] = matrix.free[n][c] ? node_unknowns_++ : kNone;
   }

@@ -2,6 +2,7 @@
 #define FASCICLE_CORE_TET_SADDLE_SOLVERS_H_
 
 #include <memory>
+#include <stop_token>
 
 #include "core/linalg/direct_solver.h"
 #include "core/linalg/flexible_gmres.h"
@@ -18,8 +19,8 @@ namespace fascicle {
 // power 4/3.
 class DirectSaddleSolver {
  public:
-  // Analyzes the sparsity pattern.
-  explicit DirectSaddleSolver(const SaddleMatrix& matrix);
+  // Analyzes the sparsity pattern. Calls of a large system throw Stopped after a stop request.
+  explicit DirectSaddleSolver(const SaddleMatrix& matrix, const std::stop_token& stop = {});
 
   // False if the matrix can't be factored or its inertia is not that of a minimum, which has as many negative
   // eigenvalues as there are patches.

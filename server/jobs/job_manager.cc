@@ -155,8 +155,9 @@ struct JobManager::Impl {
       const auto coming = impl_.coming.find(owner);
       const int others = impl_.queue.CountOf(owner) + (coming == impl_.coming.end() ? 0 : coming->second);
       if (most <= 0 || others + count <= most) return;
-      throw OwnerLimitError("an owner may have " + std::to_string(most) +
-                            " jobs in the queue: wait until some have started, or cancel some");
+      throw OwnerLimitError("an owner may have " + std::to_string(most) + " jobs in the queue, " +
+                            std::to_string(others) + " are there, and " + std::to_string(count) +
+                            " more would come: wait until some have started, cancel some, or submit fewer at once");
     }
     static void Subtract(Counts& counts, const std::string& owner, int count) {
       const auto entry = counts.find(owner);
@@ -368,10 +369,18 @@ struct JobManager::Impl {
     }
     std::vector<SubmittedJob> submitted;
     for (std::size_t i = 0; i < records.size(); ++i) {
-      JobRecord& record = earlier[i] ? *earlier[i] : records[i];
-      const std::shared_ptr<ActiveJob> job = FindActive(record.id);
-      submitted.push_back({View(job, std::move(record)), earlier[i].has_value()});
+      submitted.push_back({.view = {}, .is_repeated = earlier[i].has_value()});
+      if (earlier[i]) records[i] = *std::move(earlier[i]);
     }
+    // The place of one job in the queue is found faster than those of all.
+    std::vector<JobView> views;
+    if (records.size() == 1) {
+      const std::shared_ptr<ActiveJob> job = FindActive(records[0].id);
+      views.push_back(View(job, std::move(records[0])));
+    } else {
+      views = ViewsOf(std::move(records));
+    }
+    for (std::size_t i = 0; i < views.size(); ++i) submitted[i].view = std::move(views[i]);
     return submitted;
   }
 

@@ -8,6 +8,7 @@
 
 #include "core/base/problems.h"
 #include "core/base/profile.h"
+#include "core/base/stop.h"
 #include "server/rpc/errors.h"
 #include "server/rpc/job_messages.h"
 #include "server/rpc/new_job.h"
@@ -29,7 +30,7 @@ void CheckParts(const v1::BatchCreateJobsRequest& batch, Problems& problems) {
       problems.Add(JoinPath(path, "validate_only"), "is not possible in a batch", "check the job with CreateJob");
     }
     if (!request.request_id().empty() && !ids.insert(request.request_id()).second) {
-      problems.Add(JoinPath(path, "request_id"), "is that of another request of the batch");
+      problems.Add(JoinPath(path, "request_id"), "is that of another request of the batch", "give each its own");
     }
   }
 }
@@ -46,9 +47,10 @@ grpc::Status CreateBatch(RpcContext& context, const v1::BatchCreateJobsRequest& 
                          const std::stop_token& stop, v1::BatchCreateJobsResponse& response) {
   const int count = request.requests_size();
   if (count < 1 || count > kMostJobs) {
-    return InvalidArgument("requests", "must be 1 to " + std::to_string(kMostJobs));
+    return InvalidArgument("requests", "must be 1 to " + std::to_string(kMostJobs) + ": send more in several batches");
   }
   JobFaults faults;
+  std::set<std::string> missing_assets;  // jobs may share them
   CheckParts(request, faults.problems);
   std::vector<JobRecord> records;
   std::shared_ptr<const Scene> first_scene;  // the others may need much memory together
@@ -57,13 +59,15 @@ grpc::Status CreateBatch(RpcContext& context, const v1::BatchCreateJobsRequest& 
     JobFaults found;
     NewJob job = CheckNewJob(context, request.requests(i), stop, found);
     faults.problems.Append(IndexPath("requests", static_cast<std::size_t>(i)), found.problems);
-    for (std::string& asset : found.missing_assets) faults.missing_assets.push_back(std::move(asset));
+    missing_assets.insert(found.missing_assets.begin(), found.missing_assets.end());
     records.push_back(std::move(job.record));
     if (i == 0) first_scene = std::move(job.scene);
     profile.NoteCpu();
     if (profile.cpu_seconds() > kLongestChecks && i + 1 < count) return TooLarge(i + 1, count);
   }
+  faults.missing_assets.assign(missing_assets.begin(), missing_assets.end());
   if (!faults.empty()) return StatusOf(faults, details_limit);
+  ThrowIfStopped(stop);
   for (const SubmittedJob& job : context.jobs.Submit(std::move(records), std::move(first_scene))) {
     *response.add_jobs() = ToMessage(job.view);
   }

@@ -9,8 +9,8 @@
 
 namespace fascicle::server {
 
-// Checks the jobs of a batch and creates all of them, or none. RESOURCE_EXHAUSTED (BATCH_TOO_LARGE) if the checks take
-// more processor time than a second.
+// Checks the jobs of a batch and creates all of them, or none. RESOURCE_EXHAUSTED (BATCH_TOO_LARGE) if all checks but
+// the last take this thread more than a second of processor time.
 grpc::Status CreateBatch(RpcContext& context, const v1::BatchCreateJobsRequest& request, std::size_t details_limit,
                          const std::stop_token& stop, v1::BatchCreateJobsResponse& response);
 

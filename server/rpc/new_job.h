@@ -23,7 +23,7 @@ struct NewJob {
   std::shared_ptr<const Scene> scene;
 };
 
-// Why jobs cannot be.
+// Why a job, or some of many, cannot be created.
 struct JobFaults {
   Problems problems;                        // with fields of the request
   std::vector<std::string> missing_assets;  // `assets/{sha256}`

@@ -59,38 +59,41 @@ void ControlDatabase::Change(const Write& write, std::size_t count) {
   }
 }
 
-std::vector<std::string> ControlDatabase::EarlierIds(std::span<const JobRecord> jobs) {
-  std::vector<std::string> ids;
+std::vector<std::optional<JobRecord>> ControlDatabase::FindEarlier(std::span<const JobRecord> jobs) {
+  std::vector<std::optional<JobRecord>> earlier;
   for (const JobRecord& job : jobs) {
-    std::string& id = ids.emplace_back();
-    if (job.request_id.empty()) continue;
-    const std::optional<JobWriter::EarlierRequest> earlier = main_.FindRequest(job.request_id);
-    if (!earlier) continue;
-    if (earlier->digest != job.request_digest) throw RequestReusedError(job.request_id, earlier->id);
-    id = earlier->id;
+    earlier.push_back(FindRequest(job.request_id));
+    if (!earlier.back() || earlier.back()->request_digest == job.request_digest) continue;
+    throw RequestReusedError(job.request_id, earlier.back()->id);
   }
-  return ids;
+  return earlier;
 }
 
 std::vector<std::optional<JobRecord>> ControlDatabase::CreateJobs(std::span<const JobRecord> jobs) {
-  std::vector<std::string> earlier;
+  std::vector<std::optional<JobRecord>> earlier;
+  // Whether within the commit the same jobs are there that were found before it.
+  const auto are_still_there = [&] {
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      const std::string& request = jobs[i].request_id;
+      if (!request.empty() && main_.FindRequest(request) != (earlier[i] ? earlier[i]->id : "")) return false;
+    }
+    return true;
+  };
+  bool is_done = false;
   const auto insert = [&](std::int64_t revision) {
-    earlier = EarlierIds(jobs);
-    for (std::size_t i = 0; i < jobs.size(); ++i, ++revision) {
-      if (!earlier[i].empty()) continue;
+    is_done = are_still_there();
+    for (std::size_t i = 0; i < jobs.size() && is_done; ++i, ++revision) {
+      if (earlier[i]) continue;
       main_.Insert(jobs[i], revision);
       copy_.Insert(jobs[i], revision);
     }
   };
-  Change(insert, jobs.size());
-  std::vector<std::optional<JobRecord>> found(jobs.size());
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (earlier[i].empty()) continue;
-    found[i] = GetJob(earlier[i]);
-    // Deleted in between, so the request id is free again.
-    if (!found[i]) found[i] = std::move(CreateJobs(jobs.subspan(i, 1)).front());
+  // Again if one of them was created or deleted in between.
+  while (!is_done) {
+    earlier = FindEarlier(jobs);
+    Change(insert, jobs.size());
   }
-  return found;
+  return earlier;
 }
 
 std::optional<JobRecord> ControlDatabase::GetJob(std::string_view id) {

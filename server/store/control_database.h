@@ -49,8 +49,8 @@ class ControlDatabase final : public JobStore {
   // Makes changes of `count` jobs durable: write(revision), with the number of the first of these changes.
   template <class Write>
   void Change(const Write& write, std::size_t count = 1);
-  // The ids of the earlier jobs with the request ids of `jobs`; empty for those that are new. Within a commit.
-  std::vector<std::string> EarlierIds(std::span<const JobRecord> jobs);
+  // The earlier jobs with the request ids of `jobs`; nothing for those that are new. Throws RequestReusedError.
+  std::vector<std::optional<JobRecord>> FindEarlier(std::span<const JobRecord> jobs);
   // Forgets old ones if there are too many.
   void NoteRemoval(std::int64_t revision);
 

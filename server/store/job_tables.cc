@@ -295,7 +295,7 @@ std::string JobChecksum() { return "row_checksum(" + Columns() + ")"; }
 
 JobWriter::JobWriter(Database& database, const std::string& schema)
     : database_(database),
-      find_request_(database.Prepare("SELECT id, request_digest FROM " + schema + ".jobs WHERE request_id = ?")),
+      find_request_(database.Prepare("SELECT id FROM " + schema + ".jobs WHERE request_id = ?")),
       insert_job_(database.Prepare(InsertSql(schema))),
       insert_spec_(database.Prepare("INSERT INTO " + schema +
                                     ".specs (job_id, spec, checksum) VALUES (?1, ?2, row_checksum(?1, ?2))")),
@@ -314,10 +314,9 @@ JobWriter::JobWriter(Database& database, const std::string& schema)
                                        ".removals (revision, job_id, checksum) VALUES (?1, ?2, row_checksum(?1, ?2))")),
       forget_removals_(database.Prepare("DELETE FROM " + schema + ".removals WHERE revision <= ?")) {}
 
-std::optional<JobWriter::EarlierRequest> JobWriter::FindRequest(std::string_view request_id) {
+std::string JobWriter::FindRequest(std::string_view request_id) {
   Rows rows = find_request_.Query(request_id);
-  if (!rows.Next()) return std::nullopt;
-  return EarlierRequest{rows.String(0), std::string(rows.Bytes(1))};
+  return rows.Next() ? rows.String(0) : std::string();
 }
 
 void JobWriter::Insert(const JobRecord& job, std::int64_t revision) {

@@ -25,11 +25,7 @@ class JobWriter {
   JobWriter(Database& database, const std::string& schema);
 
   // The id of the job with this request id; empty if there is none.
-  struct EarlierRequest {
-    std::string id;  // of its job
-    std::string digest;
-  };
-  std::optional<EarlierRequest> FindRequest(std::string_view request_id);
+  std::string FindRequest(std::string_view request_id);
   // `revision`: the number of this change, here and below.
   void Insert(const JobRecord& job, std::int64_t revision);
   // Both throw DamageError if the stored row is damaged, whose checksum would otherwise be renewed.

@@ -28,6 +28,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Scenes = std::map<std::string, std::shared_ptr<const Scene>>;
 
+constexpr std::chrono::seconds kLongest(60);
+
 bool IsRelease() { return std::getenv("FASCICLE_CANCELS_OF_EACH") != nullptr; }
 int CancelsOfEach() { return IsRelease() ? std::atoi(std::getenv("FASCICLE_CANCELS_OF_EACH")) : 1; }
 
@@ -69,11 +71,14 @@ std::optional<double> SecondsToCancel(JobManager& jobs, const std::string& name,
   record.spec = record.scene_name = name;
   const std::string id = jobs.Submit(record, nullptr).record.id;
   std::this_thread::sleep_for(delay);
-  if (IsFinal(jobs.Get(id)->record.state)) return std::nullopt;
   const Clock::time_point request = Clock::now();
-  jobs.Cancel(id);
-  while (!IsFinal(jobs.Get(id)->record.state)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const JobState state = jobs.Cancel(id)->record.state;
+  if (IsFinal(state) && state != JobState::kCancelled) return std::nullopt;
+  const auto is_cancelled = [&] { return jobs.Get(id)->record.state == JobState::kCancelled; };
+  while (!is_cancelled() && Clock::now() - request < kLongest)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   const double seconds = std::chrono::duration<double>(Clock::now() - request).count();
+  EXPECT_TRUE(is_cancelled()) << name;
   return seconds;
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -68,8 +69,9 @@ bool DiesOf(const std::string& death, const TemporaryFolder& data, int round, Le
     EXPECT_TRUE(server.Wait(30s)) << death;
     clients.Stop();
   }
-  const int exit_code = server.Wait(30s).value_or(0);
-  EXPECT_TRUE(exit_code == 0 || exit_code == -SIGKILL) << death << ": " << exit_code << " " << server.ErrorOutput();
+  const std::optional<int> exit_code = server.Wait(30s);
+  EXPECT_TRUE(exit_code == 0 || exit_code == -SIGKILL)
+      << death << ": " << exit_code.value_or(-1) << " " << server.ErrorOutput();
   return exit_code == -SIGKILL;
 }
 

@@ -720,6 +720,23 @@ TEST_F(ServerTest, ManyScenesAreSubmittedTogether) {
   EXPECT_EQ(Lines(listed.out).size(), 8U) << listed.err;
 }
 
+TEST_F(ServerTest, JobsThatAreDearToCheckAreSubmittedInSmallerBatches) {
+  json scene = json::parse(SceneText(2, 20));
+  scene["bodies"][0]["mesh"]["box"]["divisions"] = {40, 40, 40};
+  std::string values = "1000";
+  for (int i = 1; i < 40; ++i) values += ", " + std::to_string(1000 + i);
+  const Finished submitted = Call({"submit", File("dear.json", scene.dump()), "--sweep",
+                                   "bodies[0].density=[" + values + "]", "--label", "study=dear", "--json"});
+  EXPECT_EQ(submitted.exit_code, 0) << submitted.err;
+  const std::vector<json> jobs = Lines(submitted.out);
+  ASSERT_EQ(jobs.size(), 40U);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    EXPECT_TRUE(std::string(jobs[i]["scene"]).ends_with("density=" + std::to_string(1000 + i)));
+  }
+  const Finished listed = Call({"list", "--filter", "labels.study=dear", "--limit", "100", "--json"});
+  EXPECT_EQ(Lines(listed.out).size(), 40U) << "each was created once";
+}
+
 TEST_F(ServerTest, NothingIsSubmittedOfScenesOfWhichOneIsInvalid) {
   const std::string good = File("good.json", SceneText(2, 20));
   const std::string unknown = File("unknown.json", R"({"name": "x", "methd": {}})");
@@ -728,7 +745,11 @@ TEST_F(ServerTest, NothingIsSubmittedOfScenesOfWhichOneIsInvalid) {
   EXPECT_NE(read.err.find("unknown.json: methd"), std::string::npos) << read.err;
   const Finished checked = Call({"submit", good, "--sweep", "duration=[1, -1]", "--label", "study=none"});
   EXPECT_EQ(checked.exit_code, 2);
-  EXPECT_NE(checked.err.find("good.json: duration"), std::string::npos) << checked.err;
+  EXPECT_NE(checked.err.find("good.json, duration=-1: duration"), std::string::npos) << checked.err;
+  const Finished started = Call({"submit", good, good, "--start", "nowhere", "--label", "study=none"});
+  EXPECT_EQ(started.exit_code, 2) << started.err;
+  const Finished meshes = Call({"submit", good, "--sweep", R"(duration=["a", "b", 1])", "--label", "study=none"});
+  EXPECT_NE(meshes.err.find("duration=\"a\""), std::string::npos) << meshes.err;
   EXPECT_EQ(Lines(Call({"list", "--filter", "labels.study=none", "--json"}).out).size(), 0U);
   for (const char* sweep : {"duration", "duration=1", "duration=[]", "=[1]"}) {
     EXPECT_EQ(Call({"submit", good, "--sweep", sweep}).exit_code, 2) << sweep;

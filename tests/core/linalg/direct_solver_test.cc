@@ -3,9 +3,21 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <new>
 #include <random>
+#include <stop_token>
 #include <thread>
 #include <vector>
+
+#include "core/base/stop.h"
+#include "core/linalg/elimination_order.h"
+#include "core/linalg/mumps_factors.h"
 
 namespace fascicle {
 namespace {
@@ -88,6 +100,100 @@ TEST(DirectSolverTest, SolversInSeveralThreadsDoNotMix) {
   for (unsigned k = 0; k < 4; ++k) threads.emplace_back([&, k] { together[k] = solve(k); });
   threads.clear();
   EXPECT_EQ(alone, together);
+}
+
+// Differences of neighbours in a grid of n^3 nodes, quasi-definite: every seventh unknown has a negative diagonal.
+struct Differences {
+  explicit Differences(std::int32_t n) : size(n * n * n) {
+    const auto add = [this](std::int32_t row, std::int32_t column, double value) {
+      rows.push_back(row);
+      columns.push_back(column);
+      values.push_back(value);
+    };
+    for (std::int32_t i = 0; i < size; ++i) {
+      add(i, i, i % 7 == 0 ? -7 : 7);
+      if (i % n > 0) add(i, i - 1, -1);
+      if (i / n % n > 0) add(i, i - n, -1);
+      if (i / (n * n) > 0) add(i, i - n * n, -1);
+    }
+  }
+
+  std::int32_t size;
+  std::vector<std::int32_t> rows, columns;
+  std::vector<double> values;
+};
+
+std::vector<double> Ones(std::int32_t size) { return std::vector<double>(static_cast<std::size_t>(size), 1.0); }
+
+// The processes that this one has started.
+std::vector<pid_t> Children() {
+  std::vector<pid_t> children;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::ifstream file(task.path() / "children");
+    for (pid_t child = 0; file >> child;) children.push_back(child);
+  }
+  return children;
+}
+
+TEST(DirectSolverTest, ALargeSystemHasTheSameBitsInAProcessOfItsOwn) {
+  const Differences grid(20);
+  DirectSolver solver;
+  ASSERT_TRUE(solver.Analyze(grid.size, grid.rows, grid.columns));
+  EXPECT_EQ(Children().size(), 1U);
+  MumpsFactors here;
+  ASSERT_TRUE(here.Analyze(EliminationOrder(grid.size, grid.rows, grid.columns), grid.rows, grid.columns));
+  std::vector<double> values = grid.values, by_solver = Ones(grid.size), by_factors = by_solver;
+  for (const double factor : {1.0, -2.0}) {  // new values for the same pattern
+    for (double& value : values) value *= factor;
+    const DirectSolver::Factored there = solver.Factor(values);
+    ASSERT_TRUE(there.ok);
+    EXPECT_EQ(there.negative_pivots, here.Factor(values).negative_pivots);
+    solver.Solve(by_solver);
+    ASSERT_TRUE(here.Solve(by_factors));
+    EXPECT_EQ(by_solver, by_factors);
+  }
+  EXPECT_GT(std::abs(by_solver.front()), 0);
+}
+
+TEST(DirectSolverTest, NobodyWaitsForALargeSystemWhichAStopRequestEnds) {
+  const Differences large(64);
+  std::stop_source stop;
+  std::atomic<bool> is_factoring = false, is_over = false;
+  std::thread other([&] {
+    DirectSolver solver(stop.get_token());
+    try {
+      EXPECT_TRUE(solver.Analyze(large.size, large.rows, large.columns));
+      is_factoring = true;
+      solver.Factor(large.values);
+      ADD_FAILURE() << "it ended before it was stopped";
+    } catch (const Stopped&) {
+    }
+    is_over = true;
+  });
+  while (!is_factoring) std::this_thread::yield();
+  const Differences small(10);
+  for (int i = 0; i < 5; ++i) {
+    DirectSolver solver;
+    EXPECT_TRUE(solver.Analyze(small.size, small.rows, small.columns));
+    EXPECT_TRUE(solver.Factor(small.values).ok);
+  }
+  EXPECT_FALSE(is_over) << "the small systems waited";
+  const auto request = std::chrono::steady_clock::now();
+  stop.request_stop();
+  other.join();
+  EXPECT_LT(std::chrono::steady_clock::now() - request, std::chrono::seconds(2));
+  EXPECT_TRUE(Children().empty());
+}
+
+TEST(DirectSolverTest, AProcessThatIsKilledIsNoEndOfThisOne) {
+  const Differences grid(20);
+  DirectSolver solver;
+  ASSERT_TRUE(solver.Analyze(grid.size, grid.rows, grid.columns));
+  ASSERT_TRUE(solver.Factor(grid.values).ok);
+  for (const pid_t child : Children()) kill(child, SIGKILL);
+  std::vector<double> b = Ones(grid.size);
+  EXPECT_THROW(solver.Solve(b), std::bad_alloc);
+  EXPECT_FALSE(solver.Factor(grid.values).ok);
 }
 
 }  // namespace

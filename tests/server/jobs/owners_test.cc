@@ -107,6 +107,33 @@ TEST_F(OwnersTest, LimitsOfAnOwnerAreToldAndLeaveOthersAlone) {
   manager.Submit(JobOf("ann"), nullptr);
 }
 
+TEST_F(OwnersTest, JobsThatAreSubmittedTogetherFitTogetherOrNotAtAll) {
+  JobManagerOptions options = Options(0);
+  options.max_queued_per_owner = 3;
+  JobManager manager(*store_, BoxCodec(), options);
+  std::vector<JobRecord> batch = {JobOf("ann"), JobOf("bob"), JobOf("ann")};
+  for (std::size_t i = 0; i < batch.size(); ++i) batch[i].request_id = "request " + std::to_string(i);
+  const std::vector<SubmittedJob> first = manager.Submit(batch);
+  ASSERT_EQ(first.size(), 3U);
+  EXPECT_EQ(first[2].view.queue_position, 2);
+  try {
+    manager.Submit({JobOf("bob"), JobOf("ann"), JobOf("ann")});
+    FAIL() << "four jobs of ann";
+  } catch (const OwnerLimitError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("2 are there, and 2 more would come"));
+  }
+  EXPECT_EQ(manager.List(10, "", {}).size(), 3U) << "none of the batch was created";
+  manager.Submit(JobOf("ann"), nullptr);
+  // Repeated, it is answered although there is no room; with another job, it is refused.
+  const std::vector<SubmittedJob> again = manager.Submit(batch);
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    EXPECT_EQ(again[i].view.record.id, first[i].view.record.id);
+    EXPECT_TRUE(again[i].is_repeated);
+  }
+  batch[1].request_digest = "another";
+  EXPECT_THROW(manager.Submit(batch), RequestReusedError);
+}
+
 TEST_F(OwnersTest, ExactlyAsManyJobsAreAcceptedAtOnceAsTheLimitAllows) {
   constexpr int kThreads = 8, kLimit = 5;
   JobManagerOptions options = Options(0);
