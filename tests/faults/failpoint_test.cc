@@ -58,14 +58,15 @@ std::string SomeDeath(const Failpoint& point, std::mt19937& random) {
          std::to_string(1 + random() % point.most);
 }
 
-// One life of a server, which drains if it did not die. Whether it did.
-bool DiesOf(const std::string& death, const TemporaryFolder& data, int round, Ledger& ledger) {
+// One life of a server, which drains if it did not die within `life`. Whether it died.
+bool DiesOf(const std::string& death, std::chrono::milliseconds life, const TemporaryFolder& data, int round,
+            Ledger& ledger) {
   ServerProcess server({"--listen", "127.0.0.1:0", "--data", data.path(), "--checkpoint", "0.01"},
                        {{"LD_PRELOAD", FAIL_AT_LIBRARY}, {"FASCICLE_FAIL_AT", death}});
   const std::string address = server.AwaitAddress();
   if (!address.empty()) {
     Clients clients(address, round, false, ledger);
-    if (!server.Wait(400ms)) server.Signal(SIGTERM);
+    if (!server.Wait(life)) server.Signal(SIGTERM);
     EXPECT_TRUE(server.Wait(30s)) << death;
     clients.Stop();
   }
@@ -86,7 +87,8 @@ TEST(FailpointTest, NothingAcknowledgedIsLostOrDoubled) {
     for (const Failpoint& point : Failpoints()) {
       bool has_died = false;
       for (int tries = 0; tries < kMostTries && !has_died && !HasFailure(); ++tries) {
-        has_died = DiesOf(SomeDeath(point, random), data, round++, ledger);
+        const std::chrono::milliseconds life = 400ms * (1 + tries);  // on a busy machine, little happens in a short one
+        has_died = DiesOf(SomeDeath(point, random), life, data, round++, ledger);
       }
       ASSERT_TRUE(has_died) << "never reached: " << point.call << " " << point.pattern;
       ++deaths;
