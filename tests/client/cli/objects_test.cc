@@ -110,7 +110,7 @@ void End(server::ActiveJob& job, server::JobState state, const std::string& fail
 // Runs the scene as a worker does, with added objects; returns its frames.
 std::vector<Frame> StoreRun(server::Store& store) {
   const server::JobRecord record = RecordOf(1, BoxOverGround());
-  JobRecord existing;
+  server::JobRecord existing;
   EXPECT_TRUE(store.CreateJob(record, &existing));
   const server::JobCodec codec = server::MakeJobCodec(nullptr);
   const auto scene = codec.decode_scene(record.spec, store, nullptr, {});
@@ -131,7 +131,7 @@ std::vector<Frame> StoreRun(server::Store& store) {
 
 void StoreFailure(int number, const std::string& failure, server::Store& store) {
   const server::JobRecord record = RecordOf(number, BoxOverGround());
-  JobRecord existing;
+  server::JobRecord existing;
   EXPECT_TRUE(store.CreateJob(record, &existing));
   server::ActiveJob job(store, record);
   job.SetFrames(store.OpenFrames(record.id));

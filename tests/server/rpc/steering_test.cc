@@ -89,7 +89,7 @@ TEST_F(SteeringServiceTest, AnInputTakesEffectWithTheStepThatIsTold) {
   ASSERT_TRUE(Apply(job, input, &later).ok());
   EXPECT_EQ(later.step(), first.step() + 1000);
   input = Input(3, 0.2);
-  input.set_at_time(stubs_->Get(job).progress().time() + 0.05);
+  input.set_at_time(stubs_->Get(job).progress().time() + 0.5);
   ASSERT_TRUE(Apply(job, input, &at_time).ok());
   EXPECT_FALSE(at_time.has_step());
 
