@@ -369,18 +369,10 @@ struct JobManager::Impl {
     }
     std::vector<SubmittedJob> submitted;
     for (std::size_t i = 0; i < records.size(); ++i) {
-      submitted.push_back({.view = {}, .is_repeated = earlier[i].has_value()});
-      if (earlier[i]) records[i] = *std::move(earlier[i]);
+      JobRecord& record = earlier[i] ? *earlier[i] : records[i];
+      const std::shared_ptr<ActiveJob> job = FindActive(record.id);
+      submitted.push_back({View(job, std::move(record)), earlier[i].has_value()});
     }
-    // The place of one job in the queue is found faster than those of all.
-    std::vector<JobView> views;
-    if (records.size() == 1) {
-      const std::shared_ptr<ActiveJob> job = FindActive(records[0].id);
-      views.push_back(View(job, std::move(records[0])));
-    } else {
-      views = ViewsOf(std::move(records));
-    }
-    for (std::size_t i = 0; i < views.size(); ++i) submitted[i].view = std::move(views[i]);
     return submitted;
   }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -26,17 +25,21 @@ JobQueue::Rank JobQueue::RankOf(int running, const Level& level, double used, st
 }
 
 void JobQueue::Add(const std::string& id, const std::string& owner, int priority) {
-  if (!waiting_.emplace(id, Waiting{owner, priority}).second) return;
-  Owner& of = owners_[owner];
-  of.waiting[priority].insert(id);
-  ++of.count;
+  if (waiting_.emplace(id, Waiting{owner, priority}).second) Insert(owners_[owner], id, priority);
+}
+
+void JobQueue::Insert(Owner& owner, const std::string& id, int priority) {
+  Ids& ids = owner.waiting[priority];
+  ids.insert(std::lower_bound(ids.begin(), ids.end(), id), id);
+  ++owner.count;
   places_.reset();
 }
 
 void JobQueue::Erase(Owner& owner, const std::string& id, int priority) {
-  const auto same = owner.waiting.find(priority);
-  same->second.erase(id);
-  if (same->second.empty()) owner.waiting.erase(same);
+  const auto level = owner.waiting.find(priority);
+  Ids& ids = level->second;
+  ids.erase(std::lower_bound(ids.begin(), ids.end(), id));
+  if (ids.empty()) owner.waiting.erase(level);
   --owner.count;
   places_.reset();
 }
@@ -53,8 +56,7 @@ void JobQueue::SetPriority(std::string_view id, int priority) {
   if (found == waiting_.end()) return;
   Owner& owner = owners_.at(found->second.owner);
   Erase(owner, found->first, found->second.priority);
-  owner.waiting[priority].insert(found->first);
-  ++owner.count;
+  Insert(owner, found->first, priority);
   found->second.priority = priority;
 }
 
@@ -68,7 +70,7 @@ std::optional<std::string> JobQueue::Take(Clock::time_point now) {
   for (auto& [name, owner] : owners_) {
     if (owner.waiting.empty()) continue;
     const Level& level = *owner.waiting.begin();
-    const Rank rank = RankOf(owner.running, level, UsedBy(owner, now), *level.second.begin());
+    const Rank rank = RankOf(owner.running, level, UsedBy(owner, now), level.second.front());
     if (rank.is_over_limit || (next != nullptr && !(rank < best))) continue;
     next = &owner;
     best = rank;
@@ -134,7 +136,7 @@ int JobQueue::CountBefore(const Owner& owner, const Rank& rank, Clock::time_poin
     while (low < high) {
       const int middle = (low + high) / 2;
       Rank one = RankOf(owner.running + count + middle, level, used, rank.id);
-      if (!(one < rank) && !(rank < one)) one.id = *std::next(level.second.begin(), middle);
+      if (!(one < rank) && !(rank < one)) one.id = level.second[static_cast<std::size_t>(middle)];
       (one < rank ? low : high) = one < rank ? middle + 1 : middle;
     }
     count += low;
@@ -150,7 +152,8 @@ int JobQueue::PlaceOf(std::string_view id, Clock::time_point now) const {
   int running = own.running;
   auto level = own.waiting.begin();
   for (; level->first != found->second.priority; ++level) running += static_cast<int>(level->second.size());
-  running += static_cast<int>(std::distance(level->second.begin(), level->second.find(found->first)));
+  const Ids& ids = level->second;
+  running += static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
   const Rank rank = RankOf(running, *level, UsedBy(own, now), id);
   int place = 0;
   for (const auto& [name, owner] : owners_) place += CountBefore(owner, rank, now);

@@ -3,11 +3,11 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -60,17 +60,19 @@ class JobQueue {
     int threads = 1;
     Clock::time_point since;
   };
+  // Of waiting jobs, ascending, which is the order of creation. Most are added at the end and taken from the beginning,
+  // and their places are counted: all without visiting the others.
+  using Ids = std::deque<std::string>;
   struct Owner {
-    // The ids of waiting jobs by descending priority; ids are in the order of creation.
-    std::map<int, std::set<std::string>, std::greater<>> waiting;
-    int count = 0;  // of waiting jobs
+    std::map<int, Ids, std::greater<>> waiting;  // by descending priority
+    int count = 0;                               // of waiting jobs
     int running = 0;
     double used = 0;  // processor time at `used_at` [s]
     Clock::time_point used_at;
   };
 
   // Jobs of an owner with the same priority.
-  using Level = std::pair<const int, std::set<std::string>>;
+  using Level = std::pair<const int, Ids>;
 
   // The smallest is started first. Ranks of an owner's jobs ascend in the order in which they are started.
   struct Rank {
@@ -87,6 +89,7 @@ class JobQueue {
   Rank RankOf(int running, const Level& level, double used, std::string_view id) const;
   // How many jobs of an owner have a smaller rank.
   int CountBefore(const Owner& owner, const Rank& rank, Clock::time_point now) const;
+  void Insert(Owner& owner, const std::string& id, int priority);
   void Erase(Owner& owner, const std::string& id, int priority);
   void ForgetIdleOwners(Clock::time_point now);
 
