@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/lanes.h"
+#include "core/base/matrix3.h"
 #include "core/materials/tensor_algebra.h"
 #include "core/tet/kernels.h"
 #include "core/tet/shape_functions.h"

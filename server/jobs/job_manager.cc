@@ -152,8 +152,8 @@ struct JobManager::Impl {
 
     void CheckRoom(const std::string& owner, int count) const {
       const int most = impl_.options.max_queued_per_owner;
-      const auto coming = impl_.coming.find(owner);
-      const int others = impl_.queue.CountOf(owner) + (coming == impl_.coming.end() ? 0 : coming->second);
+      const auto entry = impl_.coming.find(owner);
+      const int others = impl_.queue.CountOf(owner) + (entry == impl_.coming.end() ? 0 : entry->second);
       if (most <= 0 || others + count <= most) return;
       throw OwnerLimitError("an owner may have " + std::to_string(most) + " jobs in the queue, " +
                             std::to_string(others) + " are there, and " + std::to_string(count) +
