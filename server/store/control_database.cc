@@ -88,11 +88,13 @@ std::vector<std::optional<JobRecord>> ControlDatabase::CreateJobs(std::span<cons
       copy_.Insert(jobs[i], revision);
     }
   };
-  // Again if one of them was created or deleted in between.
-  while (!is_done) {
+  // Again if one of them was created or deleted in between. Damaged ids would never agree.
+  constexpr int kMostAttempts = 100;
+  for (int attempt = 0; attempt < kMostAttempts && !is_done; ++attempt) {
     earlier = FindEarlier(jobs);
     Change(insert, jobs.size());
   }
+  if (!is_done) throw DamageError(database_.path() + ": the record of an earlier job is damaged");
   return earlier;
 }
 
