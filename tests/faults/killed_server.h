@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/base/digest.h"
+#include "listed_jobs.h"
 #include "tests/support/files.h"
 #include "tests/support/server_process.h"
 #include "tests/support/service_fixture.h"
@@ -245,17 +246,7 @@ inline void ExpectNothingLost(const std::filesystem::path& data, int rounds, con
     EXPECT_EQ(stored[static_cast<std::size_t>(where.second)], digest);
   }
   ExpectAssets(stubs, ledger);
-  int listed = 0;
-  v1::ListJobsRequest page;
-  page.set_page_size(1000);
-  do {
-    grpc::ClientContext context;
-    v1::ListJobsResponse answer;
-    ASSERT_TRUE(stubs.jobs->ListJobs(&context, page, &answer).ok());
-    listed += answer.jobs_size();
-    page.set_page_token(answer.next_page_token());
-  } while (!page.page_token().empty());
-  EXPECT_EQ(listed, there) << "a job was doubled";
+  EXPECT_EQ(ListedJobs(stubs).size(), static_cast<std::size_t>(there)) << "a job was doubled";
 }
 
 }  // namespace fascicle::service_test

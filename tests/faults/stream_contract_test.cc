@@ -13,6 +13,7 @@
 #include <set>
 #include <thread>
 
+#include "listed_jobs.h"
 #include "tests/support/files.h"
 #include "tests/support/server_process.h"
 #include "tests/support/service_fixture.h"
@@ -248,18 +249,11 @@ TEST(LostReplies, ARequestBecomesOneJob) {
     });
   }
   for (std::thread& thread : threads) thread.join();
-  std::set<std::string> distinct, listed;
+  std::set<std::string> distinct;
   for (const auto& [request, job] : jobs) distinct.insert(job);
   Stubs stubs(server->address());
-  v1::ListJobsRequest page;
-  page.set_page_size(1000);
-  do {
-    grpc::ClientContext context;
-    v1::ListJobsResponse response;
-    ASSERT_TRUE(stubs.jobs->ListJobs(&context, page, &response).ok());
-    for (const v1::Job& job : response.jobs()) listed.insert(job.name());
-    page.set_page_token(response.next_page_token());
-  } while (!page.page_token().empty());
+  const std::vector<std::string> names = ListedJobs(stubs);
+  const std::set<std::string> listed(names.begin(), names.end());
   EXPECT_EQ(distinct.size(), static_cast<std::size_t>(requests));
   EXPECT_EQ(listed, distinct) << "jobs that nobody asked for";
   EXPECT_GT(lost, requests / 10);
